@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+# Every library comes from Debian 12; scripts/setup.sh installs them.
+find_package(Eigen3 3.4 REQUIRED)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs video features2d calib3d)
+find_package(Ceres 2.1 REQUIRED)
+find_package(opengv REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(Threads REQUIRED)
+if(EDGED_TESTS)
+  enable_testing()
+  find_package(GTest 1.12 REQUIRED)
+  include(GoogleTest)
+endif()
+if(EDGED_BENCH)
+  find_package(benchmark 1.7 REQUIRED)
+endif()

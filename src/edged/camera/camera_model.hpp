@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A pinhole camera with radial-tangential or equidistant distortion.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+namespace edged {
+
+enum class DistortionModel {
+  None,
+  RadTan,       ///< Brown: k1, k2, p1, p2 [, k3]
+  Equidistant,  ///< Kannala-Brandt: k1..k4
+};
+
+/// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
+/// A value: cheap to copy, never changed after construction.
+class CameraModel {
+ public:
+  CameraModel() = default;
+  /// Throws InputError when a focal length is not positive and finite, the size is not positive, or the distortion is not
+  /// monotone over the image (a pixel would have no or two bearings).
+  CameraModel(int width, int height, double fx, double fy, double cx, double cy,
+              DistortionModel distortion = DistortionModel::None, const std::array<double, 5>& coefficients = {});
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  double fx() const { return fx_; }
+  double fy() const { return fy_; }
+  double cx() const { return cx_; }
+  double cy() const { return cy_; }
+  DistortionModel distortion() const { return distortion_; }
+  const std::array<double, 5>& coefficients() const { return k_; }
+
+  /// (fx + fy) / 2 [px]: turns angles near the axis into pixels.
+  double mean_focal() const { return 0.5 * (fx_ + fy_); }
+
+  /// Pixel of a point (x, y) on the unit plane.
+  Eigen::Vector2d distort_to_pixel(const Eigen::Vector2d& point) const;
+
+  /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m). May lie outside the image.
+  std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
+
+  /// Unit-plane point (x, y) of a pixel, by Newton steps to 1e-10.
+  Eigen::Vector2d pixel_to_point(const Eigen::Vector2d& pixel) const;
+
+  /// True when the pixel is at least border_px inside the image.
+  bool contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
+    return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_ - 1 - border_px &&
+           pixel.y() <= height_ - 1 - border_px;
+  }
+
+  bool operator==(const CameraModel&) const = default;
+
+ private:
+  int width_ = 0, height_ = 0;
+  double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
+  DistortionModel distortion_ = DistortionModel::None;
+  std::array<double, 5> k_{};
+};
+
+std::string to_string(DistortionModel model);
+
+}  // namespace edged

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Geometry between views: triangulation and its quality.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "edged/core/lie.hpp"
+
+namespace edged {
+
+/// One sight of a point: where the camera stood and where on its unit plane the point was seen.
+struct View {
+  SE3 T_W_C;
+  Eigen::Vector2d point;
+};
+
+struct TriangulatedPoint {
+  Eigen::Vector3d p_W;
+  double parallax = 0.0;      ///< largest angle between any two of its rays [rad]
+  double rms_residual = 0.0;  ///< on the unit plane
+};
+
+/// Least-squares point of two or more views: linear start, then Gauss-Newton on the unit-plane residual. Nothing when
+/// there are fewer than two views, the parallax is below min_parallax [rad], or the point is not in front of all views.
+std::optional<TriangulatedPoint> triangulate(std::span<const View> views, double min_parallax = 1e-3);
+
+/// Angle between two rays given on unit planes, after rotating the second by R_1_2 into the first camera's frame [rad].
+double ray_angle(const Eigen::Vector2d& point_1, const Eigen::Matrix3d& R_1_2, const Eigen::Vector2d& point_2);
+
+}  // namespace edged

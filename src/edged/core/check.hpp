@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The two kinds of exception: InputError for what a user can mend, a failed EDGED_CHECK for a bug of ours.
+#pragma once
+
+#include <spdlog/fmt/fmt.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace edged {
+
+/// Bad input, calibration, configuration or arguments. The message is one line that names the file, line or key
+/// and the remedy. Caught once, in main.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+
+  template <typename... Args>
+  static InputError format(fmt::format_string<Args...> text, Args&&... args) {
+    return InputError(fmt::format(text, std::forward<Args>(args)...));
+  }
+};
+
+/// A broken precondition: a bug, with the values that show it.
+class CheckError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+[[noreturn]] void fail_check(const char* condition, const char* file, int line, const std::string& message);
+
+}  // namespace edged
+
+/// EDGED_CHECK(n > 0, "n is {}", n) throws CheckError when the condition does not hold, in every build type.
+#define EDGED_CHECK(condition, ...)                                                           \
+  do {                                                                                        \
+    if (!(condition)) {                                                                       \
+      ::edged::fail_check(#condition, __FILE__, __LINE__, ::fmt::format("" __VA_ARGS__));     \
+    }                                                                                         \
+  } while (false)

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Options: each is declared once, in the `visit` function of the struct that owns it, with unit, range and effect.
+// Loading, --set, the resolved dump and the printed reference all walk the same list.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace edged {
+
+/// What a user must know of an option. min and max bound numbers, both inclusive.
+struct FieldDoc {
+  std::string_view unit = "";
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  std::string_view effect = "";
+};
+
+/// One option of a config struct, bound to its variable.
+struct ConfigField {
+  std::string key;            ///< dotted, e.g. "frontend.tracker.max_features"
+  std::string type;           ///< "bool", "int", "number", "text" or "a | b | c"
+  std::string unit;           ///< "" where it has none
+  std::string range;          ///< e.g. "0.1 .. 10"
+  std::string default_value;  ///< as the struct was when the list was made
+  std::string effect;
+  std::function<std::string()> get;
+  std::function<void(const std::string&)> set;  ///< throws InputError naming the key and the range
+};
+
+/// The list of all options of a config struct, made by its `void visit(ConfigFields&)`.
+/// The struct must outlive the list.
+class ConfigFields {
+ public:
+  template <typename Config>
+  static ConfigFields of(Config& config) {
+    ConfigFields fields;
+    config.visit(fields);
+    return fields;
+  }
+
+  void add(std::string_view name, bool& value, const FieldDoc& doc);
+  void add(std::string_view name, int& value, const FieldDoc& doc);
+  void add(std::string_view name, double& value, const FieldDoc& doc);
+  void add(std::string_view name, std::string& value, const FieldDoc& doc);
+
+  /// An option that takes one of a few names.
+  template <typename Enum>
+  void choice(std::string_view name, Enum& value, std::initializer_list<std::pair<std::string_view, Enum>> choices,
+              const FieldDoc& doc) {
+    std::vector<std::string> names;
+    std::vector<Enum> values;
+    for (const auto& [text, v] : choices) names.emplace_back(text), values.push_back(v);
+    add_choice(
+        name, names,
+        [&value, values] {
+          std::size_t i = 0;
+          while (i + 1 < values.size() && values[i] != value) ++i;
+          return i;
+        },
+        [&value, values](std::size_t i) { value = values[i]; }, doc);
+  }
+
+  /// All options of a nested struct, their keys prefixed with name and a dot.
+  template <typename Config>
+  void group(std::string_view name, Config& nested) {
+    const std::string outer = prefix_;
+    prefix_ += std::string(name) + ".";
+    nested.visit(*this);
+    prefix_ = outer;
+  }
+
+  const std::vector<ConfigField>& all() const { return fields_; }
+
+  /// Sets one option from text. Throws InputError that names the key, with the nearest known one for a typing error.
+  void set(const std::string& key, const std::string& value);
+
+  /// "key=value", as given to --set.
+  void set(const std::string& assignment);
+
+  /// Reads a yaml file of nested maps or dotted keys. Throws InputError naming file, line and key.
+  void load(const std::filesystem::path& file);
+
+  /// Nested yaml with every option, unit and effect as comments: loads back to the same values.
+  std::string to_yaml() const;
+
+ private:
+  void add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,
+                 std::function<std::string()> get, std::function<void(const std::string&)> set);
+  void add_choice(std::string_view name, const std::vector<std::string>& names, std::function<std::size_t()> get,
+                  std::function<void(std::size_t)> set, const FieldDoc& doc);
+
+  std::string prefix_;
+  std::vector<ConfigField> fields_;
+};
+
+}  // namespace edged

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The one interface of everything that can be run: a recording on disk or the simulator.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// The true motion, where the recording has it.
+struct GroundTruth {
+  Trajectory trajectory;      ///< T_W_X, in time order
+  std::string frame = "body"; ///< X: "body" or the name of the camera whose pose it is; stamps are on that sensor's clock
+};
+
+/// What is known of a recording before it is read through.
+struct DatasetInfo {
+  std::string name;                       ///< folder name or simulator preset
+  std::string format;                     ///< "ecd", "euroc", "simulator", ...
+  std::string pose_frame = "body";        ///< frame whose pose the format's users expect: "body" or a camera name
+  std::optional<Timestamp> begin;         ///< first stamp of any sensor, if known cheaply
+  std::optional<Timestamp> end;           ///< last stamp, if known cheaply (for the progress line)
+  bool has_events = false, has_frames = false, has_imu = false;
+};
+
+/// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
+/// ties broken IMU, events, frame. Streams: holds a bounded part of the recording in memory at any time.
+class Dataset {
+ public:
+  virtual ~Dataset() = default;
+
+  virtual const DatasetInfo& info() const = 0;
+
+  /// The next measurement, or nothing at the end. An EventBatch ends before the next other measurement and spans at
+  /// most a few milliseconds. Throws InputError for what cannot be repaired.
+  virtual std::optional<Measurement> next() = 0;
+
+  virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
+
+  /// Repairs made so far, by kind ("events out of order", "frame missing", ...) with their counts.
+  virtual std::map<std::string, std::size_t> repairs() const { return {}; }
+};
+
+}  // namespace edged

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Stage timers: wall time per call, kept as a histogram of bounded size.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace edged {
+
+/// Durations of one stage in logarithmic bins 5 % wide from 1 us to about 1000 s.
+class StageTiming {
+ public:
+  void add(double seconds);
+  std::uint64_t count() const { return count_; }
+  double mean_s() const { return count_ == 0 ? 0.0 : total_s_ / static_cast<double>(count_); }
+  double total_s() const { return total_s_; }
+  double max_s() const { return max_s_; }
+  /// Upper edge of the bin that holds the share q in [0, 1] of the calls: exact to 5 %.
+  double quantile_s(double q) const;
+
+ private:
+  static constexpr int kBins = 440;
+  std::array<std::uint64_t, kBins> bins_{};
+  std::uint64_t count_ = 0;
+  double total_s_ = 0.0;
+  double max_s_ = 0.0;
+};
+
+/// All stages of a run, in the order of their first use.
+class StageTimings {
+ public:
+  /// Measures the time until the returned object goes out of scope.
+  class Scope {
+   public:
+    explicit Scope(StageTiming& stage) : stage_(stage), start_(std::chrono::steady_clock::now()) {}
+    ~Scope() { stage_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count()); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    StageTiming& stage_;
+    std::chrono::steady_clock::time_point start_;
+  };
+
+  [[nodiscard]] Scope measure(const std::string& stage);
+  struct Entry {
+    std::string name;
+    StageTiming timing;
+  };
+  const std::vector<Entry>& all() const { return stages_; }
+
+ private:
+  std::vector<Entry> stages_;
+};
+
+}  // namespace edged

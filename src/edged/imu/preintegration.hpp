@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// IMU preintegration between two instants (Forster et al., "On-Manifold Preintegration", T-RO 2017), and propagation.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/imu/noise.hpp"
+
+namespace edged {
+
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+using Matrix15d = Eigen::Matrix<double, 15, 15>;
+
+/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours. `samples` are in time order
+/// and must cover [t_0, t_1] (CheckError otherwise).
+std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);
+
+/// The motion between the first and the last sample, free of the state it starts from:
+/// R_1 = R_0 dR, v_1 = v_0 + g dt + R_0 dv, p_1 = p_0 + v_0 dt + g dt^2 / 2 + R_0 dp.
+/// Midpoint rule per interval. Error state order: (d_phi, d_v, d_p), right perturbation of dR.
+class Preintegration {
+ public:
+  Preintegration() = default;
+  /// samples: two or more, in time order, as slice_imu gives them; biases are subtracted before integrating.
+  Preintegration(std::span<const ImuSample> samples, const Eigen::Vector3d& bias_gyro,
+                 const Eigen::Vector3d& bias_accel, const ImuNoise& noise);
+
+  /// Integrates again around new biases (when they have moved too far for the first-order correction).
+  Preintegration reintegrated(const Eigen::Vector3d& bias_gyro, const Eigen::Vector3d& bias_accel) const;
+
+  /// This interval and the one that follows it, as one (keeps the biases of this one).
+  Preintegration joined(const Preintegration& next) const;
+
+  double dt() const { return dt_; }  ///< [s]
+  Timestamp begin() const { return samples_.front().t; }
+  Timestamp end() const { return samples_.back().t; }
+  const std::vector<ImuSample>& samples() const { return samples_; }
+  const Eigen::Vector3d& bias_gyro() const { return bias_gyro_; }
+  const Eigen::Vector3d& bias_accel() const { return bias_accel_; }
+
+  /// The deltas corrected to first order for other biases.
+  Eigen::Quaterniond dR(const Eigen::Vector3d& bias_gyro) const;
+  Eigen::Vector3d dv(const Eigen::Vector3d& bias_gyro, const Eigen::Vector3d& bias_accel) const;
+  Eigen::Vector3d dp(const Eigen::Vector3d& bias_gyro, const Eigen::Vector3d& bias_accel) const;
+
+  const Eigen::Matrix3d& d_dR_d_bg() const { return d_dR_d_bg_; }  ///< d Log(dR) / d bias_gyro, right
+  const Eigen::Matrix3d& d_dv_d_bg() const { return d_dv_d_bg_; }
+  const Eigen::Matrix3d& d_dv_d_ba() const { return d_dv_d_ba_; }
+  const Eigen::Matrix3d& d_dp_d_bg() const { return d_dp_d_bg_; }
+  const Eigen::Matrix3d& d_dp_d_ba() const { return d_dp_d_ba_; }
+
+  const Matrix9d& covariance() const { return covariance_; }  ///< of (d_phi, d_v, d_p) from the white noise
+  const ImuNoise& noise() const { return noise_; }
+  bool saturated() const { return saturated_; }  ///< some sample reached the range of the sensor
+
+ private:
+  void integrate_step(const ImuSample& a, const ImuSample& b);
+
+  std::vector<ImuSample> samples_;
+  ImuNoise noise_;
+  Eigen::Vector3d bias_gyro_ = Eigen::Vector3d::Zero(), bias_accel_ = Eigen::Vector3d::Zero();
+  double dt_ = 0.0;
+  Eigen::Quaterniond dR_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d dv_ = Eigen::Vector3d::Zero(), dp_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d d_dR_d_bg_ = Eigen::Matrix3d::Zero(), d_dv_d_bg_ = Eigen::Matrix3d::Zero(),
+                  d_dv_d_ba_ = Eigen::Matrix3d::Zero(), d_dp_d_bg_ = Eigen::Matrix3d::Zero(),
+                  d_dp_d_ba_ = Eigen::Matrix3d::Zero();
+  Matrix9d covariance_ = Matrix9d::Zero();
+  bool saturated_ = false;
+};
+
+/// The state at the last sample, from the state at the first. Biases are carried over.
+NavState propagate(const NavState& start, const Preintegration& motion);
+
+/// The states at every sample, the first being `start`: the poses that the warp interpolates between.
+std::vector<NavState> propagate_all(const NavState& start, std::span<const ImuSample> samples);
+
+}  // namespace edged
