@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The system: packets in, states out. `Odometry::process` is the paper's data flow, one line a step.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/timing.hpp"
+#include "edged/imu/noise.hpp"
+#include "edged/pipeline/odometry_config.hpp"
+#include "edged/pipeline/packetizer.hpp"
+
+namespace edged {
+
+enum class TrackingStatus { Initializing, Good, Degraded, Lost };
+std::string to_string(TrackingStatus status);
+
+/// What one packet brought.
+struct OdometryOutput {
+  TrackingStatus status = TrackingStatus::Initializing;
+  NavState state;            ///< at the packet's time; meaningful unless status is Initializing
+  bool keyframe = false;     ///< this packet became a keyframe
+  int event_tracks = 0;      ///< live corners on the event frame
+  int frame_tracks = 0;      ///< live corners on the standard frame
+  int landmarks = 0;         ///< in the window
+  double event_rate_hz = 0;  ///< of this packet
+  double scene_depth = 0;    ///< [m], median z-depth used by the warp
+  std::string waiting_for;   ///< while Initializing: what is missing, with numbers
+};
+
+/// Synchronous and deterministic: the same packets give the same bits.
+class Odometry {
+ public:
+  /// Throws InputError when the rig lacks a camera the mode needs or the config contradicts itself.
+  Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config);
+  ~Odometry();
+
+  /// Packets in time order. Never throws on data; lost tracking is a status.
+  OdometryOutput process(const Packet& packet);
+
+  const StageTimings& timings() const;
+
+  /// The motion-compensated event frame of the last packet (CV_8UC1, undistorted), empty when it had none.
+  const cv::Mat& event_frame() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace edged
