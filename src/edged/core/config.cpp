@@ -1,0 +1,263 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/core/config.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <system_error>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+std::string range_text(const FieldDoc& doc) {
+  const bool low = std::isfinite(doc.min), high = std::isfinite(doc.max);
+  if (low && high) return fmt::format("{} .. {}", doc.min, doc.max);
+  if (low) return fmt::format(">= {}", doc.min);
+  if (high) return fmt::format("<= {}", doc.max);
+  return "any";
+}
+
+/// The whole text as a number, or false.
+template <typename Number>
+bool parse(const std::string& text, Number& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+template <typename Number>
+Number parse_number(const std::string& key, const std::string& text, const char* wanted, const FieldDoc& doc,
+                    const std::string& range) {
+  Number value{};
+  if (!parse(text, value) || std::isnan(static_cast<double>(value))) {
+    throw InputError::format("option '{}' is '{}', but wants {} ({})", key, text, wanted, range);
+  }
+  if (static_cast<double>(value) < doc.min || static_cast<double>(value) > doc.max) {
+    throw InputError::format("option '{}' is {}, outside its range {}{}{}", key, text, range,
+                             doc.unit.empty() ? "" : " ", doc.unit);
+  }
+  return value;
+}
+
+bool parse_bool(const std::string& key, const std::string& text) {
+  for (const char* yes : {"true", "on", "yes", "1"}) {
+    if (text == yes) return true;
+  }
+  for (const char* no : {"false", "off", "no", "0"}) {
+    if (text == no) return false;
+  }
+  throw InputError::format("option '{}' is '{}', but wants true or false", key, text);
+}
+
+/// Levenshtein distance: single-letter edits that turn a into b.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
+
+/// The known key that the user most likely meant: like the whole key, or like its last part when the group was left
+/// out.
+std::string nearest_key(const std::vector<ConfigField>& fields, const std::string& key) {
+  const auto distance = [&](const ConfigField& field) {
+    return std::min(edit_distance(key, field.key), edit_distance(last_part(key), last_part(field.key)) + 1);
+  };
+  const auto nearest = std::min_element(fields.begin(), fields.end(), [&](const ConfigField& a, const ConfigField& b) {
+    return distance(a) < distance(b);
+  });
+  return nearest == fields.end() ? "" : nearest->key;
+}
+
+/// Calls use(key, value, line) for every scalar below node; line counts from 1.
+void for_each_scalar(const YAML::Node& node, const std::string& prefix, const std::string& file,
+                     const std::function<void(const std::string&, const std::string&, int)>& use) {
+  const int node_line = node.Mark().line + 1;
+  if (node.IsScalar()) return use(prefix, node.Scalar(), node_line);
+  if (node.IsNull() && prefix.empty()) return;
+  if (!node.IsMap()) {
+    throw InputError::format("{}:{}: '{}' must be a single value or a map of options", file, node_line, prefix);
+  }
+  for (const auto& entry : node) {
+    const std::string name = entry.first.Scalar();
+    for_each_scalar(entry.second, prefix.empty() ? name : prefix + "." + name, file, use);
+  }
+}
+
+std::vector<std::string> split_key(const std::string& key) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t dot; (dot = key.find('.', begin)) != std::string::npos; begin = dot + 1) {
+    parts.push_back(key.substr(begin, dot - begin));
+  }
+  parts.push_back(key.substr(begin));
+  return parts;
+}
+
+std::string yaml_scalar(const ConfigField& field) {
+  const std::string value = field.get();
+  if (field.type != "text") return value;
+  std::string quoted = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\n') {
+      quoted += "\\n";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+std::string yaml_comment(const ConfigField& field) {
+  std::string comment;
+  const auto append = [&comment](const std::string& text) {
+    if (text.empty() || text == "any") return;
+    if (!comment.empty()) comment += "; ";
+    comment += text;
+  };
+  append(field.unit.empty() ? field.range
+                            : fmt::format("[{}] {}", field.unit, field.range == "any" ? "" : field.range));
+  if (field.get() != field.default_value) append("default " + field.default_value);
+  append(field.effect);
+  return comment;
+}
+
+}  // namespace
+
+void ConfigFields::add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,
+                             std::function<std::string()> get, std::function<void(const std::string&)> set) {
+  ConfigField field{.key = prefix_ + std::string(name),
+                    .type = std::move(type),
+                    .unit = std::string(doc.unit),
+                    .range = numeric ? range_text(doc) : "any",
+                    .default_value = get(),
+                    .effect = std::string(doc.effect),
+                    .get = std::move(get),
+                    .set = std::move(set)};
+  for (const ConfigField& other : fields_) EDGED_CHECK(other.key != field.key, "option '{}' declared twice", field.key);
+  fields_.push_back(std::move(field));
+}
+
+void ConfigFields::add(std::string_view name, bool& value, const FieldDoc& doc) {
+  const std::string key = prefix_ + std::string(name);
+  add_field(
+      name, "bool", doc, false, [&value] { return value ? "true" : "false"; },
+      [&value, key](const std::string& text) { value = parse_bool(key, text); });
+}
+
+void ConfigFields::add(std::string_view name, int& value, const FieldDoc& doc) {
+  const std::string key = prefix_ + std::string(name);
+  EDGED_CHECK(value >= doc.min && value <= doc.max, "default {} of '{}' is outside {}", value, key, range_text(doc));
+  add_field(
+      name, "int", doc, true, [&value] { return fmt::format("{}", value); },
+      [&value, key, doc, range = range_text(doc)](const std::string& text) {
+        value = parse_number<int>(key, text, "a whole number", doc, range);
+      });
+}
+
+void ConfigFields::add(std::string_view name, double& value, const FieldDoc& doc) {
+  const std::string key = prefix_ + std::string(name);
+  EDGED_CHECK(value >= doc.min && value <= doc.max, "default {} of '{}' is outside {}", value, key, range_text(doc));
+  add_field(
+      name, "number", doc, true,
+      [&value] { return fmt::format("{}", value); },  // shortest text that reads back exactly
+      [&value, key, doc, range = range_text(doc)](const std::string& text) {
+        value = parse_number<double>(key, text, "a number", doc, range);
+      });
+}
+
+void ConfigFields::add(std::string_view name, std::string& value, const FieldDoc& doc) {
+  add_field(
+      name, "text", doc, false, [&value] { return value; }, [&value](const std::string& text) { value = text; });
+}
+
+void ConfigFields::add_choice(std::string_view name, const std::vector<std::string>& names,
+                              std::function<std::size_t()> get, std::function<void(std::size_t)> set,
+                              const FieldDoc& doc) {
+  const std::string key = prefix_ + std::string(name);
+  const std::string choices = fmt::format("{}", fmt::join(names, " | "));
+  add_field(
+      name, choices, doc, false, [get, names] { return names[get()]; },
+      [set, names, key, choices](const std::string& text) {
+        const auto found = std::find(names.begin(), names.end(), text);
+        if (found == names.end()) throw InputError::format("option '{}' is '{}', but wants {}", key, text, choices);
+        set(static_cast<std::size_t>(found - names.begin()));
+      });
+}
+
+void ConfigFields::set(const std::string& key, const std::string& value) {
+  for (const ConfigField& field : fields_) {
+    if (field.key == key) return field.set(value);
+  }
+  throw InputError::format("unknown option '{}'; did you mean '{}'? (`edged config` lists all)", key,
+                           nearest_key(fields_, key));
+}
+
+void ConfigFields::set(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError::format("'{}' is no assignment; write key=value", assignment);
+  }
+  set(assignment.substr(0, equals), assignment.substr(equals + 1));
+}
+
+void ConfigFields::load(const std::filesystem::path& file) {
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(file.string());
+  } catch (const YAML::BadFile&) {
+    throw InputError::format("{}: cannot be read; check the path given to --config", file.string());
+  } catch (const YAML::Exception& e) {
+    throw InputError::format("{}:{}: not valid yaml: {}", file.string(), e.mark.line + 1, e.msg);
+  }
+  std::set<std::string> seen;
+  for_each_scalar(root, "", file.string(), [&](const std::string& key, const std::string& value, int line) {
+    if (!seen.insert(key).second) {
+      throw InputError::format("{}:{}: option '{}' is given twice; keep one", file.string(), line, key);
+    }
+    try {
+      set(key, value);
+    } catch (const InputError& e) {
+      throw InputError::format("{}:{}: {}", file.string(), line, e.what());
+    }
+  });
+}
+
+std::string ConfigFields::to_yaml() const {
+  std::string yaml;
+  std::vector<std::string> open;  // groups the last line stands in
+  for (const ConfigField& field : fields_) {
+    std::vector<std::string> groups = split_key(field.key);
+    const std::string name = groups.back();
+    groups.pop_back();
+    const auto [differs, unused] = std::mismatch(groups.begin(), groups.end(), open.begin(), open.end());
+    for (auto group = differs; group != groups.end(); ++group) {
+      yaml += fmt::format("{:{}}{}:\n", "", 2 * (group - groups.begin()), *group);
+    }
+    open = groups;
+    const std::string comment = yaml_comment(field);
+    yaml += fmt::format("{:{}}{}: {}{}{}\n", "", 2 * groups.size(), name, yaml_scalar(field),
+                        comment.empty() ? "" : "  # ", comment);
+  }
+  return yaml;
+}
+
+}  // namespace edged
