@@ -21,8 +21,8 @@ enum class DistortionModel {
 class CameraModel {
  public:
   CameraModel() = default;
-  /// Throws InputError when a focal length is not positive and finite, the size is not positive, or the distortion is not
-  /// monotone over the image (a pixel would have no or two bearings).
+  /// Throws InputError when a focal length is not positive and finite, the size is not positive, the distortion is not
+  /// monotone over the image (a pixel would have no or two bearings), or the model has fewer coefficients than are set.
   CameraModel(int width, int height, double fx, double fy, double cx, double cy,
               DistortionModel distortion = DistortionModel::None, const std::array<double, 5>& coefficients = {});
 
@@ -41,10 +41,12 @@ class CameraModel {
   /// Pixel of a point (x, y) on the unit plane.
   Eigen::Vector2d distort_to_pixel(const Eigen::Vector2d& point) const;
 
-  /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m). May lie outside the image.
+  /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m) or so far off the axis that the
+  /// distortion turns back (it would fold into the image). May lie outside the image.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
 
-  /// Unit-plane point (x, y) of a pixel, by Newton steps to 1e-10.
+  /// Unit-plane point (x, y) of a pixel, by Newton steps to 1e-10. For a pixel outside the image that has no bearing:
+  /// the nearest found.
   Eigen::Vector2d pixel_to_point(const Eigen::Vector2d& pixel) const;
 
   /// True when the pixel is at least border_px inside the image.
@@ -56,10 +58,16 @@ class CameraModel {
   bool operator==(const CameraModel&) const = default;
 
  private:
+  /// Sets max_radius_; throws InputError when it does not reach the corners of the image.
+  void find_monotone_range();
+  /// Throws InputError when a pixel of the border has no bearing (the tangential part is not seen by the radial check).
+  void check_border() const;
+
   int width_ = 0, height_ = 0;
   double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
   DistortionModel distortion_ = DistortionModel::None;
   std::array<double, 5> k_{};
+  double max_radius_ = 0;  // on the unit plane: up to here the distortion grows with the radius
 };
 
 std::string to_string(DistortionModel model);

@@ -20,7 +20,7 @@ struct View {
 struct TriangulatedPoint {
   Eigen::Vector3d p_W;
   double parallax = 0.0;      ///< largest angle between any two of its rays [rad]
-  double rms_residual = 0.0;  ///< on the unit plane
+  double rms_residual = 0.0;  ///< per coordinate, on the unit plane
 };
 
 /// Least-squares point of two or more views: linear start, then Gauss-Newton on the unit-plane residual. Nothing when

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/camera/camera_model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+constexpr int kMaxNewtonSteps = 30;
+constexpr double kNewtonTolerance = 1e-13;    // on the unit plane, relative to 1 + the radius
+constexpr double kRoundTripTolerance = 1e-6;  // [px], of the pixels tried on construction
+
+/// What a distortion does to a point of the unit plane, and its derivative.
+struct Distorted {
+  Vector2d point;
+  Matrix2d d_point;
+};
+
+/// math.md (C2).
+Distorted distort_radtan(const std::array<double, 5>& k, const Vector2d& p) {
+  const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
+  const double radial = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double d_radial = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]);  // with respect to r^2
+  const Vector2d tangential(2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x),
+                            k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y);
+  Distorted out{radial * p + tangential, 2.0 * d_radial * p * p.transpose()};
+  out.d_point.diagonal().array() += radial;
+  out.d_point(0, 0) += 2.0 * k[2] * y + 6.0 * k[3] * x;
+  out.d_point(0, 1) += 2.0 * k[2] * x + 2.0 * k[3] * y;
+  out.d_point(1, 0) += 2.0 * k[2] * x + 2.0 * k[3] * y;
+  out.d_point(1, 1) += 6.0 * k[2] * y + 2.0 * k[3] * x;
+  return out;
+}
+
+/// theta_d(theta) of math.md (C3).
+double equidistant_angle(const std::array<double, 5>& k, double theta) {
+  const double t2 = theta * theta;
+  return theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+}
+
+double equidistant_slope(const std::array<double, 5>& k, double theta) {
+  const double t2 = theta * theta;
+  return 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
+}
+
+double radtan_radius(const std::array<double, 5>& k, double r) {
+  const double r2 = r * r;
+  return r * (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4])));
+}
+
+double radtan_slope(const std::array<double, 5>& k, double r) {
+  const double r2 = r * r;
+  return 1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]));
+}
+
+/// Newton on both coordinates, the step halved while it does not come closer (C4).
+Vector2d undistort_radtan(const std::array<double, 5>& k, const Vector2d& distorted) {
+  Vector2d p = distorted;
+  Distorted at = distort_radtan(k, p);
+  double error = (at.point - distorted).norm();
+  for (int i = 0; i < kMaxNewtonSteps && error > 0.0; ++i) {
+    const Vector2d step = at.d_point.inverse() * (distorted - at.point);
+    if (!step.allFinite()) break;
+    double share = 1.0;
+    Distorted next = distort_radtan(k, p + step);
+    while ((next.point - distorted).norm() > error && share > 1e-3) {
+      share *= 0.5;
+      next = distort_radtan(k, p + share * step);
+    }
+    const double next_error = (next.point - distorted).norm();
+    if (next_error >= error) break;  // at the last digit
+    p += share * step;
+    at = next;
+    error = next_error;
+    if (error < kNewtonTolerance * (1.0 + p.norm())) break;
+  }
+  return p;
+}
+
+/// Newton on the angle, kept below max_theta (C4).
+Vector2d undistort_equidistant(const std::array<double, 5>& k, const Vector2d& distorted, double max_theta) {
+  const double theta_d = distorted.norm();
+  if (theta_d < 1e-12) return distorted;
+  double theta = std::min(theta_d, max_theta);
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
+    const double step = (theta_d - equidistant_angle(k, theta)) / equidistant_slope(k, theta);
+    const double next = std::clamp(theta + step, 0.5 * theta, std::min(2.0 * theta, max_theta));
+    const bool converged = std::abs(next - theta) < kNewtonTolerance;
+    theta = next;
+    if (converged) break;
+  }
+  return std::tan(theta) / theta_d * distorted;
+}
+
+}  // namespace
+
+CameraModel::CameraModel(int width, int height, double fx, double fy, double cx, double cy, DistortionModel distortion,
+                         const std::array<double, 5>& coefficients)
+    : width_(width), height_(height), fx_(fx), fy_(fy), cx_(cx), cy_(cy), distortion_(distortion), k_(coefficients) {
+  if (width <= 0 || height <= 0) {
+    throw InputError::format("image size {} x {} px: both must be positive", width, height);
+  }
+  if (!(std::isfinite(fx) && std::isfinite(fy) && fx > 0.0 && fy > 0.0)) {
+    throw InputError::format("focal lengths fx {} fy {} px: both must be positive and finite", fx, fy);
+  }
+  if (!(std::isfinite(cx) && std::isfinite(cy))) {
+    throw InputError::format("principal point cx {} cy {} px: both must be finite", cx, cy);
+  }
+  for (std::size_t i = 0; i < k_.size(); ++i) {
+    if (!std::isfinite(k_[i]))
+      throw InputError::format("distortion coefficient {} is {}: must be finite", i + 1, k_[i]);
+  }
+  const bool unused_set = distortion == DistortionModel::None
+                              ? std::any_of(k_.begin(), k_.end(), [](double k) { return k != 0.0; })
+                              : distortion == DistortionModel::Equidistant && k_[4] != 0.0;
+  if (unused_set) {
+    throw InputError::format("distortion '{}' with coefficients {} {} {} {} {}: it has {}", to_string(distortion),
+                             k_[0], k_[1], k_[2], k_[3], k_[4],
+                             distortion == DistortionModel::None ? "none" : "only four");
+  }
+  find_monotone_range();
+  check_border();
+}
+
+void CameraModel::find_monotone_range() {
+  max_radius_ = std::numeric_limits<double>::infinity();
+  if (distortion_ == DistortionModel::None) return;
+
+  double corner_radius = 0.0;  // on the distorted unit plane
+  for (const double x : {0.0, width_ - 1.0}) {
+    for (const double y : {0.0, height_ - 1.0}) {
+      corner_radius = std::max(corner_radius, std::hypot((x - cx_) / fx_, (y - cy_) / fy_));
+    }
+  }
+  const bool equidistant = distortion_ == DistortionModel::Equidistant;
+  constexpr double kStep = 0.05 * std::numbers::pi / 180.0;
+  constexpr double kMaxTheta = 89.0 * std::numbers::pi / 180.0;  // the unit plane ends before 90 degrees
+  double reached = 0.0;
+  double theta = 0.0;
+  for (; theta <= kMaxTheta; theta += kStep) {
+    const double r = std::tan(theta);
+    if ((equidistant ? equidistant_slope(k_, theta) : radtan_slope(k_, r)) <= 0.0) break;
+    reached = equidistant ? equidistant_angle(k_, theta) : radtan_radius(k_, r);
+    max_radius_ = r;
+  }
+  if (reached < corner_radius) {
+    throw InputError::format(
+        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it turns back {:.1f} degrees off "
+        "the "
+        "axis at a distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the "
+        "distortion model and the image size",
+        to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta * 180.0 / std::numbers::pi, reached,
+        corner_radius);
+  }
+  if (theta > kMaxTheta && !equidistant) max_radius_ = std::numeric_limits<double>::infinity();
+}
+
+void CameraModel::check_border() const {
+  constexpr int kPerSide = 16;
+  for (int i = 0; i <= kPerSide; ++i) {
+    const double x = (width_ - 1.0) * i / kPerSide;
+    const double y = (height_ - 1.0) * i / kPerSide;
+    for (const Vector2d& pixel :
+         {Vector2d(x, 0.0), Vector2d(x, height_ - 1.0), Vector2d(0.0, y), Vector2d(width_ - 1.0, y)}) {
+      const double error = (distort_to_pixel(pixel_to_point(pixel)) - pixel).norm();
+      if (error < kRoundTripTolerance) continue;
+      throw InputError::format(
+          "distortion '{}' {} {} {} {} {} has no inverse at pixel ({:.0f}, {:.0f}) (off by {:.2g} px); check the order "
+          "of "
+          "the coefficients and the distortion model",
+          to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], pixel.x(), pixel.y(), error);
+    }
+  }
+}
+
+Vector2d CameraModel::distort_to_pixel(const Vector2d& point) const {
+  Vector2d d = point;
+  if (distortion_ == DistortionModel::RadTan) {
+    d = distort_radtan(k_, point).point;
+  } else if (distortion_ == DistortionModel::Equidistant) {
+    const double r = point.norm();
+    if (r > 1e-12) d = equidistant_angle(k_, std::atan(r)) / r * point;
+  }
+  return {fx_ * d.x() + cx_, fy_ * d.y() + cy_};
+}
+
+std::optional<Vector2d> CameraModel::project(const Eigen::Vector3d& p_C) const {
+  if (!(p_C.z() > 1e-6)) return std::nullopt;
+  const Vector2d point = p_C.head<2>() / p_C.z();
+  if (point.squaredNorm() > max_radius_ * max_radius_) return std::nullopt;
+  return distort_to_pixel(point);
+}
+
+Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
+  const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
+  switch (distortion_) {
+    case DistortionModel::RadTan:
+      return undistort_radtan(k_, distorted);
+    case DistortionModel::Equidistant:
+      return undistort_equidistant(k_, distorted, std::atan(max_radius_));
+    case DistortionModel::None:
+      break;
+  }
+  return distorted;
+}
+
+std::string to_string(DistortionModel model) {
+  switch (model) {
+    case DistortionModel::None:
+      return "none";
+    case DistortionModel::RadTan:
+      return "radtan";
+    case DistortionModel::Equidistant:
+      return "equidistant";
+  }
+  return "unknown";
+}
+
+}  // namespace edged

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/camera/two_view.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace edged {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kMinDepth = 1e-6;  // [m]
+constexpr int kMaxIterations = 20;
+
+double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// A view made ready: world to camera, and the ray of its point.
+struct Ray {
+  Matrix3d R_C_W;
+  Vector3d centre_W;
+  Vector2d point;
+  Vector3d direction_W;  // unit length
+};
+
+std::vector<Ray> make_rays(std::span<const View> views) {
+  std::vector<Ray> rays;
+  rays.reserve(views.size());
+  for (const View& view : views) {
+    const Matrix3d R_W_C = view.T_W_C.R();
+    rays.push_back(
+        {R_W_C.transpose(), view.T_W_C.translation(), view.point, (R_W_C * view.point.homogeneous()).normalized()});
+  }
+  return rays;
+}
+
+double largest_angle(const std::vector<Ray>& rays) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t j = i + 1; j < rays.size(); ++j) {
+      largest = std::max(largest, angle_between(rays[i].direction_W, rays[j].direction_W));
+    }
+  }
+  return largest;
+}
+
+/// The point nearest to all rays (C6).
+std::optional<Vector3d> nearest_point(const std::vector<Ray>& rays) {
+  Matrix3d H = Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+  for (const Ray& ray : rays) {
+    const Matrix3d across = Matrix3d::Identity() - ray.direction_W * ray.direction_W.transpose();
+    H += across;
+    b += across * ray.centre_W;
+  }
+  const Eigen::LDLT<Matrix3d> factor(H);
+  const Vector3d p_W = factor.solve(b);
+  if (factor.info() != Eigen::Success || !p_W.allFinite()) return std::nullopt;
+  return p_W;
+}
+
+/// Half the squared unit-plane residuals with gradient and Gauss-Newton matrix (C7).
+struct Linearised {
+  double squared_sum = 0.0;
+  Matrix3d H = Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+};
+
+/// Nothing when the point is not in front of every view.
+std::optional<Linearised> linearise(const std::vector<Ray>& rays, const Vector3d& p_W) {
+  Linearised sum;
+  for (const Ray& ray : rays) {
+    const Vector3d p_C = ray.R_C_W * (p_W - ray.centre_W);
+    if (!(p_C.z() > kMinDepth)) return std::nullopt;
+    const double inverse_z = 1.0 / p_C.z();
+    const Vector2d seen = p_C.head<2>() * inverse_z;
+    const Vector2d residual = seen - ray.point;
+    const Eigen::Matrix<double, 2, 3> J = inverse_z * (ray.R_C_W.topRows<2>() - seen * ray.R_C_W.bottomRows<1>());
+    sum.squared_sum += residual.squaredNorm();
+    sum.H += J.transpose() * J;
+    sum.b -= J.transpose() * residual;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<TriangulatedPoint> triangulate(std::span<const View> views, double min_parallax) {
+  if (views.size() < 2) return std::nullopt;
+  const std::vector<Ray> rays = make_rays(views);
+  const double parallax = largest_angle(rays);
+  if (!(parallax >= min_parallax)) return std::nullopt;
+  std::optional<Vector3d> start = nearest_point(rays);
+  if (!start) return std::nullopt;
+
+  Vector3d p_W = *start;
+  std::optional<Linearised> at = linearise(rays, p_W);
+  if (!at) return std::nullopt;
+  double damping = 0.0;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    Matrix3d H = at->H;
+    H.diagonal() *= 1.0 + damping;
+    const Vector3d step = H.ldlt().solve(at->b);
+    if (!step.allFinite()) return std::nullopt;
+    const std::optional<Linearised> next = linearise(rays, p_W + step);
+    if (!next || next->squared_sum > at->squared_sum) {
+      if (step.norm() < 1e-9 * p_W.norm()) break;
+      damping = damping == 0.0 ? 1e-3 : 10.0 * damping;
+      continue;
+    }
+    p_W += step;
+    const bool converged = at->squared_sum - next->squared_sum <= 1e-12 * at->squared_sum;
+    at = next;
+    damping *= 0.1;
+    if (converged) break;
+  }
+  const double rms = std::sqrt(at->squared_sum / (2.0 * static_cast<double>(views.size())));
+  return TriangulatedPoint{p_W, parallax, rms};
+}
+
+double ray_angle(const Vector2d& point_1, const Matrix3d& R_1_2, const Vector2d& point_2) {
+  return angle_between(point_1.homogeneous(), R_1_2 * point_2.homogeneous());
+}
+
+}  // namespace edged
