@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may come late
+
+double path_length(const std::vector<PosePair>& pairs) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    length += (pairs[i].truth.translation() - pairs[i - 1].truth.translation()).norm();
+  }
+  return length;
+}
+
+double angle_deg(const Eigen::Quaterniond& q) { return kDegrees * so3::log(q).norm(); }
+
+/// Yaw of the rotation that turns the estimate into the truth, seen in the world.
+double yaw_error_deg(const SE3& truth, const SE3& estimate) {
+  const Eigen::Matrix3d R = (truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix();
+  return kDegrees * std::abs(std::atan2(R(1, 0), R(0, 0)));
+}
+
+std::vector<PosePair> aligned(std::vector<PosePair> pairs, const Similarity& alignment) {
+  for (PosePair& pair : pairs) pair.estimate = alignment * pair.estimate;
+  return pairs;
+}
+
+/// NaN when the positions do not fix it.
+double sim3_scale(const std::vector<PosePair>& pairs) {
+  try {
+    return align(pairs, AlignmentKind::Sim3).scale;
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+Statistics statistics(std::vector<double> errors) {
+  Statistics s;
+  s.count = errors.size();
+  if (errors.empty()) return s;
+  const double n = static_cast<double>(errors.size());
+  std::sort(errors.begin(), errors.end());
+  s.min = errors.front();
+  s.max = errors.back();
+  const std::size_t middle = errors.size() / 2;
+  s.median = errors.size() % 2 == 1 ? errors[middle] : 0.5 * (errors[middle - 1] + errors[middle]);
+  s.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / n;
+  double variance = 0.0;
+  for (const double e : errors) {
+    s.sse += e * e;
+    variance += (e - s.mean) * (e - s.mean) / n;
+  }
+  s.rmse = std::sqrt(s.sse / n);
+  s.std = std::sqrt(variance);
+  return s;
+}
+
+Protocol protocol(std::string_view name) {
+  if (name == "P1") return {"P1", AlignmentKind::SE3, {3.0, 8.0}};
+  if (name == "P2") return {"P2", AlignmentKind::SE3, {0.0, 5.0}};
+  if (name == "P3") return {"P3", AlignmentKind::SE3, {}};
+  if (name == "P4") return {"P4", AlignmentKind::Sim3, {}};
+  throw InputError::format("unknown protocol '{}'; there are P1, P2, P3, P4", name);
+}
+
+RelativeError relative_error(const std::vector<PosePair>& pairs, double delta_s) {
+  const Duration delta = duration_from_seconds(delta_s);
+  const Duration latest = duration_from_seconds(delta_s * (1.0 + kDeltaTolerance));
+  std::vector<double> translation, rotation;
+  std::size_t j = 0;
+  for (const PosePair& from : pairs) {
+    while (j < pairs.size() && pairs[j].t - from.t < delta) ++j;
+    if (j == pairs.size()) break;
+    if (pairs[j].t - from.t > latest) continue;
+    const SE3 true_motion = from.truth.inverse() * pairs[j].truth;
+    const SE3 error = true_motion.inverse() * (from.estimate.inverse() * pairs[j].estimate);
+    translation.push_back(error.translation().norm());
+    rotation.push_back(angle_deg(error.rotation()));
+  }
+  return {delta_s, statistics(std::move(translation)), statistics(std::move(rotation))};
+}
+
+Evaluation evaluate(const Association& association, const Protocol& protocol, const std::vector<double>& deltas_s) {
+  if (association.pairs.empty()) {
+    throw InputError::format(
+        "no estimated pose has ground truth ({} outside its time span, {} in its gaps); do the "
+        "stamps share one clock?",
+        association.outside, association.in_gaps);
+  }
+  Evaluation result;
+  result.protocol = protocol;
+  result.pairs = association.pairs.size();
+  result.outside = association.outside;
+  result.in_gaps = association.in_gaps;
+  result.duration_s = to_seconds(association.pairs.back().t - association.pairs.front().t);
+  result.path_length_m = path_length(association.pairs);
+  result.alignment = align(within(association.pairs, protocol.window), protocol.alignment);
+  result.scale = sim3_scale(association.pairs);
+
+  const std::vector<PosePair> pairs = aligned(association.pairs, result.alignment);
+  std::vector<double> position, rotation, yaw;
+  for (const PosePair& pair : pairs) {
+    position.push_back((pair.truth.translation() - pair.estimate.translation()).norm());
+    rotation.push_back(angle_deg(pair.truth.rotation().conjugate() * pair.estimate.rotation()));
+    yaw.push_back(yaw_error_deg(pair.truth, pair.estimate));
+  }
+  result.ate_m = statistics(std::move(position));
+  result.rotation_deg = statistics(std::move(rotation));
+  result.yaw_deg = statistics(std::move(yaw));
+  const double per_metre = result.path_length_m > 0.0 ? 1.0 / result.path_length_m : 0.0;
+  result.mpe_percent = 100.0 * result.ate_m.mean * per_metre;
+  result.rotation_deg_per_m = result.rotation_deg.mean * per_metre;
+  result.yaw_deg_per_m = result.yaw_deg.mean * per_metre;
+  for (const double delta_s : deltas_s) result.relative.push_back(relative_error(pairs, delta_s));
+  return result;
+}
+
+}  // namespace edged

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/metrics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "edged/core/check.hpp"
+#include "edged/eval/test_trajectories.hpp"
+
+namespace edged {
+namespace {
+
+const SE3 kTilted(so3::exp({0.4, -0.7, 1.9}), Eigen::Vector3d(3, -5, 2));
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+TEST(Statistics, OfAFewNumbers) {
+  const Statistics s = statistics({4.0, 1.0, 3.0, 2.0});
+  EXPECT_EQ(s.count, 4u);
+  EXPECT_EQ(s.mean, 2.5);
+  EXPECT_EQ(s.median, 2.5);
+  EXPECT_EQ(s.min, 1.0);
+  EXPECT_EQ(s.max, 4.0);
+  EXPECT_EQ(s.sse, 30.0);
+  EXPECT_DOUBLE_EQ(s.rmse, std::sqrt(7.5));
+  EXPECT_DOUBLE_EQ(s.std, std::sqrt(1.25));
+  EXPECT_EQ(statistics({5.0, 1.0, 3.0}).median, 3.0);
+  EXPECT_EQ(statistics({}).count, 0u);
+}
+
+TEST(Evaluation, OfAMovedEstimateIsZeroUnderSE3) {
+  const Trajectory estimate = winding_motion();
+  const Evaluation result = evaluate(associate(moved(kTilted, estimate), estimate), protocol("P3"));
+  EXPECT_LT(result.ate_m.max, 1e-12);
+  EXPECT_LT(result.rotation_deg.max, 1e-6);
+  EXPECT_LT(result.relative[0].translation_m.max, 1e-12);
+  EXPECT_NEAR(result.duration_s, 20.0, 1e-12);
+  EXPECT_NEAR(result.scale, 1.0, 1e-12);
+}
+
+TEST(Evaluation, PrintsTheScaleEvenWhereItIsNotApplied) {
+  const Trajectory truth = winding_motion();
+  const Association association = associate(truth, scaled(0.8, truth));
+  EXPECT_NEAR(evaluate(association, protocol("P3")).scale, 1.25, 1e-12);
+  EXPECT_GT(evaluate(association, protocol("P3")).ate_m.rmse, 0.1);
+  EXPECT_LT(evaluate(association, protocol("P4")).ate_m.rmse, 1e-12);
+}
+
+TEST(Evaluation, AlignsOnItsWindowOnly) {
+  // Right until 110 s, then off by one metre: a window before the step must leave the step whole.
+  const Trajectory truth = winding_motion();
+  Trajectory estimate = moved(kTilted, truth);
+  for (StampedPose& pose : estimate) {
+    if (pose.t > timestamp_from_seconds(110.0)) pose.T.translation() += kTilted.rotation() * Eigen::Vector3d(0, 0, 1);
+  }
+  for (const char* name : {"P1", "P2"}) {
+    const Evaluation result = evaluate(associate(truth, estimate), protocol(name));
+    EXPECT_NEAR(result.ate_m.max, 1.0, 1e-10) << name;
+    EXPECT_NEAR(result.ate_m.min, 0.0, 1e-10) << name;
+    EXPECT_NEAR(result.ate_m.mean, 500.0 / 1001.0, 1e-10) << name;
+    EXPECT_NEAR(result.mpe_percent, 100.0 * result.ate_m.mean / result.path_length_m, 1e-12) << name;
+  }
+  EXPECT_LT(evaluate(associate(truth, estimate), protocol("P3")).ate_m.rmse, 0.6);
+}
+
+TEST(Evaluation, MeasuresYawAndRotationPerMetre) {
+  const Trajectory truth = winding_motion();
+  Trajectory estimate = truth;
+  for (StampedPose& pose : estimate) pose.T.rotation() = so3::exp({0, 0, 0.1}) * pose.T.rotation();
+  const Evaluation result = evaluate(associate(truth, estimate), {"none", AlignmentKind::None, {}});
+  EXPECT_NEAR(result.yaw_deg.mean, 0.1 * kDegrees, 1e-9);
+  EXPECT_NEAR(result.rotation_deg.mean, 0.1 * kDegrees, 1e-9);
+  EXPECT_NEAR(result.yaw_deg_per_m, 0.1 * kDegrees / result.path_length_m, 1e-9);
+  EXPECT_EQ(result.ate_m.max, 0.0);
+}
+
+TEST(RelativeError, OfASteadyDriftIsTheDriftPerDelta) {
+  Trajectory truth, estimate;
+  for (int i = 0; i <= 200; ++i) {
+    const double t = 0.1 * i;
+    truth.push_back({timestamp_from_seconds(t), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(t, 0, 0))});
+    estimate.push_back({timestamp_from_seconds(t), SE3(so3::exp({0, 0, 0.01 * t}), Eigen::Vector3d(1.1 * t, 0, 0))});
+  }
+  const RelativeError after_2_s = relative_error(associate(truth, estimate).pairs, 2.0);
+  EXPECT_EQ(after_2_s.translation_m.count, 181u);
+  EXPECT_NEAR(after_2_s.rotation_deg.mean, 0.02 * kDegrees, 1e-9);
+  EXPECT_NEAR(after_2_s.translation_m.min, 0.2, 1e-9);  // at t = 0, before the yaw turns the step away
+}
+
+TEST(RelativeError, SkipsPairsThatAGapTearsApart) {
+  Trajectory trajectory = winding_motion(10.0, 10.0);
+  trajectory.erase(trajectory.begin() + 40, trajectory.begin() + 60);
+  const Association association = associate(trajectory, trajectory, duration_from_seconds(5.0));
+  EXPECT_LT(relative_error(association.pairs, 1.0).translation_m.count, 71u);
+  EXPECT_LT(relative_error(association.pairs, 1.0).translation_m.max, 1e-12);
+  EXPECT_EQ(relative_error(association.pairs, 50.0).translation_m.count, 0u);
+}
+
+TEST(Protocol, NamesAreThoseOfTheLiterature) {
+  EXPECT_EQ(protocol("P1").window, (TimeWindow{3.0, 8.0}));
+  EXPECT_EQ(protocol("P2").window, (TimeWindow{0.0, 5.0}));
+  EXPECT_EQ(protocol("P4").alignment, AlignmentKind::Sim3);
+  EXPECT_THROW(protocol("P5"), InputError);
+}
+
+TEST(Evaluation, OfTrajectoriesThatDoNotOverlapSaysSo) {
+  const Trajectory truth = winding_motion();
+  Trajectory later = truth;
+  for (StampedPose& pose : later) pose.t += duration_from_seconds(1000.0);
+  EXPECT_THROW(evaluate(associate(truth, later), protocol("P3")), InputError);
+}
+
+}  // namespace
+}  // namespace edged
