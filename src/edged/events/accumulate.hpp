@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The event frame: motion-compensated events summed into an image of fixed scaling, ready for detection and tracking.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <span>
+
+#include "edged/core/config.hpp"
+#include "edged/events/warp.hpp"
+
+namespace edged {
+
+struct EventFrameConfig {
+  WarpInterpolation interpolation = WarpInterpolation::Piecewise;
+  double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
+  double blur_sigma_px = 0.8;      ///< Gaussian on the sum, before the scaling; 0: none
+
+  void visit(ConfigFields& fields);
+};
+
+/// Draws event frames of one camera, reusing its buffers. Polarity is ignored. The scaling does not depend on the
+/// content, so that brightness is constant from frame to frame.
+class EventFrameRenderer {
+ public:
+  EventFrameRenderer(UndistortTable table, const EventFrameConfig& config);
+
+  /// The sum of the bilinear weights of the warped events, CV_32FC1, undistorted, size of the table. Valid until the
+  /// next call. depth: z-depth of the scene [m].
+  cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth);
+
+  /// accumulate, then blur and scale to CV_8UC1; a new image each time.
+  cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth);
+
+  /// The undistorted camera of the images.
+  const CameraModel& camera() const { return table_.ideal(); }
+
+ private:
+  UndistortTable table_;
+  EventFrameConfig config_;
+  cv::Mat padded_;  ///< CV_32FC1, one pixel of border for the weights of events just outside
+  cv::Mat blurred_;
+};
+
+/// One event frame, for a single use.
+cv::Mat draw_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
+                         const UndistortTable& table, const EventFrameConfig& config);
+
+}  // namespace edged
