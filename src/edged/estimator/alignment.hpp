@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Visual-inertial alignment: starts the estimator in mid-motion, from corner tracks and IMU alone.
+//
+// 1. The gyro bias is the one whose rotations make the corner rays of each pair of views coplanar with some baseline
+//    (the coplanarity of Kneip and Lynen, "Direct optimization of frame-to-frame rotation", ICCV 2013, here with the
+//    rotations tied together by the gyro).
+// 2. With rotations known, landmark positions, the first velocity and gravity are linear in the rays (Martinelli,
+//    "Closed-form solution of visual-inertial structure from motion", IJCV 2014); landmarks are eliminated one by one,
+//    and the length of gravity is imposed exactly. The scale is metric from the start.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/types.hpp"
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+
+/// One view of the start-up buffer.
+struct InitFrame {
+  Timestamp t;
+  std::vector<ImuSample> imu;  ///< from the frame before to t; of the first frame unused
+  std::vector<CameraObservations> observations;
+};
+
+struct Alignment {
+  std::vector<NavState> states;  ///< one a frame; W z-up, origin and yaw at the first body pose
+  double gravity_error = 0.0;    ///< |g| found without imposing it, relative to 9.81: a measure of trust
+};
+
+/// Gyro bias [rad/s] that best explains the image rotation; nothing with too few common corners.
+std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, const Rig& rig,
+                                               const ImuNoise& noise);
+
+/// States of all frames. Nothing when the linear system is not determined (too few tracks, no translation).
+std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
+
+/// Median angle between the first and last ray of the corners common to both ends of the buffer, rotation taken out with
+/// the gyro [rad]; zero with fewer than 10 of them.
+double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
+
+}  // namespace edged

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/estimator.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "edged/core/check.hpp"
+#include "edged/estimator/marginalization.hpp"
+#include "edged/estimator/solver.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
+constexpr double kFree = std::numeric_limits<double>::infinity();
+constexpr int kStartIterations = 25;
+constexpr double kMaxStartRms = 2.0;  // [sigma] of the start-up window's sights: more is a wrong start
+
+MotionBlock motion_block(const NavState& state) {
+  MotionBlock block;
+  Eigen::Map<Eigen::Matrix<double, 9, 1>>(block.data()) << state.v_W, state.bias_gyro, state.bias_accel;
+  return block;
+}
+
+void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) {
+  // The first sample of a packet repeats the last one of the packet before.
+  to.insert(to.end(), more.begin() + (to.empty() || more.empty() ? 0 : 1), more.end());
+}
+
+WindowState to_window_state(const NavState& nav, Preintegration imu, bool keyframe) {
+  WindowState state;
+  state.t = nav.t;
+  state.pose = to_block(nav.T_W_B);
+  state.motion = motion_block(nav);
+  state.imu = std::move(imu);
+  state.keyframe = keyframe;
+  return state;
+}
+
+/// The prior (always) and every other factor with a block that leaves.
+std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
+  std::vector<Factor> factors = window.factors();
+  const bool has_prior = !window.prior.empty();
+  std::size_t index = 0;
+  std::erase_if(factors, [&](const Factor& factor) {
+    if (index++ == 0 && has_prior) return false;
+    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
+                        [&](const BlockKey& key) { return leaving.contains(key); });
+  });
+  return factors;
+}
+
+/// Root mean square of the landmarks' residuals in sigmas.
+double visual_rms(Window& window) {
+  double sum = 0.0;
+  int n = 0;
+  for (const auto& [id, feature] : window.features) {
+    if (!feature.anchor) continue;
+    const Eigen::Vector3d p_W = window.position(feature);
+    for (const auto& [state, seen] : feature.seen) {
+      if (state == *feature.anchor) continue;
+      const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * p_W;
+      sum += std::min((p_C.hnormalized() - seen.point).squaredNorm() / (seen.sigma * seen.sigma), 25.0);
+      ++n;
+    }
+  }
+  return n == 0 ? kFree : std::sqrt(sum / (2.0 * n));
+}
+
+}  // namespace
+
+void EstimatorConfig::visit(ConfigFields& fields) {
+  fields.add("recent_states", recent_states, {"", 2, 20, "newest states that keep velocity and biases"});
+  fields.add("keyframes", keyframes, {"", 2, 30, "older keyframes in the window; more are slower and more accurate"});
+  fields.add("iterations", iterations, {"", 1, 50, "solver iterations a packet"});
+  fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "visual residuals beyond this are weighted down"});
+  fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from its first guess"});
+  fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
+  fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
+  fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the views of a start in motion"});
+  fields.add("init_views", init_views, {"", 5, 30, "views a start in motion is made from"});
+  fields.add("init_parallax_deg", init_parallax_deg, {"deg", 0.1, 30, "parallax a start in motion waits for"});
+  fields.group("landmarks", landmarks);
+  fields.group("standstill", standstill);
+}
+
+Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
+    : noise_(noise), rig_(rig), config_(config), window_(rig, config.cauchy_scale), standstill_(config.standstill) {}
+
+EstimatorResult Estimator::add(const EstimatorInput& input) {
+  EstimatorResult result;
+  standstill_.add(input.imu, input.observations, input.events_quiet);
+  result.standstill = standstill_.still();
+  if (!initialized_) {
+    result.waiting_for = try_to_start(input);
+    return result;
+  }
+  append(input);
+  triangulate_features(window_, config_.landmarks);
+  optimize(result, config_.iterations);
+  slide();
+  return result;
+}
+
+Eigen::Vector3d Estimator::gyro_bias() const {
+  return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero();
+}
+
+std::optional<double> Estimator::depth(FeatureId id) const {
+  const auto found = window_.features.find(id);
+  if (found == window_.features.end() || !found->second.anchor) return std::nullopt;
+  const StateId newest = window_.states.rbegin()->first;
+  const double z = (window_.T_W_C(newest, found->second.camera).inverse() * window_.position(found->second)).z();
+  return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
+}
+
+std::optional<double> Estimator::median_depth(const std::string& camera) const {
+  std::vector<double> depths;
+  for (const auto& [id, feature] : window_.features) {
+    if (window_.cameras[feature.camera].name != camera || !feature.anchor) continue;
+    if (const auto z = depth(id)) depths.push_back(*z);
+  }
+  if (depths.size() < 5) return std::nullopt;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+std::string Estimator::try_to_start(const EstimatorInput& input) {
+  append_imu(pending_imu_, input.imu);
+  const bool due = buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s);
+  if (due) {
+    buffer_.push_back({input.t, std::move(pending_imu_), input.observations});
+    pending_imu_.clear();
+    if (buffer_.size() > static_cast<std::size_t>(config_.init_views)) buffer_.erase(buffer_.begin());
+  }
+  if (standstill_.still()) {
+    start_at_rest(input);
+    return "";
+  }
+  const std::string not_rest = "rest (" + standstill_.reason() + ")";
+  if (buffer_.size() < static_cast<std::size_t>(config_.init_views)) {
+    return fmt::format("{} or {} of {} views in motion", not_rest, buffer_.size(), config_.init_views);
+  }
+  const double parallax = median_parallax(buffer_, rig_, noise_) / kDeg;
+  if (parallax < config_.init_parallax_deg) {
+    return fmt::format("{} or parallax {:.2f} of {:.2f} deg", not_rest, parallax, config_.init_parallax_deg);
+  }
+  if (!due) return "the next view";
+  if (!start_in_motion()) return fmt::format("motion that fits the IMU (parallax {:.2f} deg)", parallax);
+  return "";
+}
+
+void Estimator::start_at_rest(const EstimatorInput& input) {
+  NavState state;
+  state.t = input.t;
+  state.T_W_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill_.mean_accel_B(), Eigen::Vector3d::UnitZ()),
+                    Eigen::Vector3d::Zero());
+  state.bias_gyro = standstill_.mean_gyro_B();
+  const StateId id = window_.add_state(to_window_state(state, {}, true));
+  window_.add_observations(id, input.observations);
+  const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
+  window_.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
+  // At rest the tilt is as well known as the accelerometer bias: gravity's direction is what was measured.
+  LinearPrior tilt;
+  tilt.blocks = {pose};
+  tilt.x0 = {{window_.states.at(id).pose.begin(), window_.states.at(id).pose.end()}};
+  tilt.J = Eigen::MatrixXd::Zero(2, 6);
+  tilt.J.block<2, 3>(0, 3) = state.T_W_B.R().topRows<2>() / (config_.accel_bias_sigma / 9.81);
+  tilt.r = Eigen::VectorXd::Zero(2);
+  window_.soft_priors.push_back(tilt);
+  window_.soft_priors.push_back(motion_prior(
+      motion, motion_block(state), {config_.zero_velocity_sigma, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+  initialized_ = true;
+  buffer_.clear();
+  spdlog::info("started at rest at {:.3f} s", to_seconds(input.t));
+}
+
+bool Estimator::start_in_motion() {
+  const std::optional<Alignment> alignment = align(buffer_, rig_, noise_);
+  if (!alignment) return false;
+  Window window(rig_, config_.cauchy_scale);
+  for (std::size_t i = 0; i < buffer_.size(); ++i) {
+    const NavState& nav = alignment->states[i];
+    Preintegration imu =
+        i == 0 ? Preintegration{} : Preintegration(buffer_[i].imu, nav.bias_gyro, nav.bias_accel, noise_);
+    const StateId id = window.add_state(to_window_state(nav, std::move(imu), true));
+    window.add_observations(id, buffer_[i].observations);
+  }
+  const auto& [first, state] = *window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
+  MotionBlock mean = state.motion;
+  window.soft_priors.push_back(motion_prior({BlockKind::Motion, first}, mean,
+                                            {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+  std::swap(window_, window);
+  EstimatorResult unused;
+  for (int round = 0; round < 3; ++round) {
+    triangulate_features(window_, config_.landmarks);
+    optimize(unused, kStartIterations);
+  }
+  const double rms = visual_rms(window_);
+  spdlog::info("start in motion: {} landmarks, rms {:.2f} sigma, gravity error {:.2f}, speed {:.2f} m/s", unused.landmarks,
+               rms, alignment->gravity_error, window_.newest().nav().v_W.norm());
+  if (rms > kMaxStartRms || unused.landmarks < 10) {
+    std::swap(window_, window);
+    return false;
+  }
+  initialized_ = true;
+  buffer_.clear();
+  while (static_cast<int>(std::count_if(window_.states.begin(), window_.states.end(), [](const auto& s) {
+           return s.second.has_motion;
+         })) > config_.recent_states) {
+    drop_oldest_motion();
+  }
+  slide();
+  return true;
+}
+
+void Estimator::append(const EstimatorInput& input) {
+  const NavState before = newest();
+  Preintegration imu(input.imu, before.bias_gyro, before.bias_accel, noise_);
+  NavState state = propagate(before, imu);
+  state.t = input.t;
+  const StateId id = window_.add_state(to_window_state(state, std::move(imu), input.keyframe));
+  window_.add_observations(id, input.observations);
+  if (standstill_.still()) {
+    window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
+                                               {config_.zero_velocity_sigma, kFree, kFree}));
+  }
+}
+
+void Estimator::optimize(EstimatorResult& result, int iterations) {
+  solve(window_, iterations);
+  result.outliers = remove_outliers(window_, config_.landmarks);
+  const StateId newest = window_.states.rbegin()->first;
+  result.landmarks = result.landmarks_seen = 0;
+  for (const auto& [id, feature] : window_.features) {
+    if (!feature.anchor) continue;
+    ++result.landmarks;
+    if (feature.seen.contains(newest)) ++result.landmarks_seen;
+  }
+}
+
+void Estimator::slide() {
+  const auto with_motion = std::count_if(window_.states.begin(), window_.states.end(),
+                                         [](const auto& s) { return s.second.has_motion; });
+  if (with_motion > config_.recent_states) drop_oldest_motion();
+  while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) drop_oldest_keyframe();
+  // Tracks that ended before they became landmarks.
+  const StateId newest = window_.states.rbegin()->first;
+  std::erase_if(window_.features, [&](const auto& entry) {
+    const Feature& feature = entry.second;
+    return feature.seen.empty() || (!feature.anchor && !feature.seen.contains(newest));
+  });
+}
+
+void Estimator::drop_oldest_motion() {
+  const auto oldest = std::find_if(window_.states.begin(), window_.states.end(),
+                                   [](const auto& s) { return s.second.has_motion; });
+  const StateId id = oldest->first;
+  std::set<BlockKey> leaving = {{BlockKind::Motion, id}};
+  if (!oldest->second.keyframe) {
+    leaving.insert({BlockKind::Pose, id});
+    // Its sights go with it: kept, they would tie all its landmarks into the prior.
+    for (auto& [feature_id, feature] : window_.features) feature.seen.erase(id);
+  }
+  window_.prior = marginalize(window_, factors_touching(window_, leaving), leaving);
+  oldest->second.has_motion = false;
+  if (!oldest->second.keyframe) window_.states.erase(oldest);
+  window_.drop_orphaned_priors();
+}
+
+void Estimator::drop_oldest_keyframe() {
+  const StateId id = window_.states.begin()->first;
+  // The youngest keyframe takes over the landmarks that it still sees; its sight and later ones are kept for that.
+  StateId heir = id;
+  for (const auto& [state, content] : window_.states) {
+    if (content.keyframe) heir = state;
+  }
+  std::set<BlockKey> leaving = {{BlockKind::Pose, id}};
+  std::map<FeatureId, bool> inherited;
+  for (auto& [feature_id, feature] : window_.features) {
+    if (feature.anchor != id) continue;
+    leaving.insert({BlockKind::InverseDepth, feature_id});
+    inherited[feature_id] = heir != id && feature.seen.contains(heir);
+  }
+  std::vector<Factor> touching = factors_touching(window_, leaving);
+  std::erase_if(touching, [&](const Factor& factor) {
+    const BlockKey& depth = factor.blocks.back();
+    return depth.kind == BlockKind::InverseDepth && inherited.at(depth.id) && factor.blocks[1].id >= heir;
+  });
+  window_.prior = marginalize(window_, touching, leaving);
+  for (auto it = window_.features.begin(); it != window_.features.end();) {
+    const auto found = inherited.find(it->first);
+    bool keep = true;
+    if (found != inherited.end()) {
+      keep = found->second && move_anchor(window_, it->second, heir, config_.landmarks);
+      std::erase_if(it->second.seen, [&](const auto& sight) { return sight.first < heir; });
+    }
+    it->second.seen.erase(id);
+    it = keep ? std::next(it) : window_.features.erase(it);
+  }
+  window_.states.erase(id);
+  window_.drop_orphaned_priors();
+}
+
+}  // namespace edged

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The sliding-window visual-inertial estimator: start-up, window, marginalisation.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/core/timing.hpp"
+#include "edged/estimator/alignment.hpp"
+#include "edged/estimator/landmarks.hpp"
+#include "edged/estimator/standstill.hpp"
+#include "edged/estimator/window.hpp"
+
+namespace edged {
+
+struct EstimatorConfig {
+  int recent_states = 4;           ///< newest states, with velocity and biases
+  int keyframes = 7;               ///< older keyframes, pose only
+  int iterations = 4;              ///< of the solver, a packet
+  double cauchy_scale = 1.0;       ///< robust loss of visual residuals
+  double gyro_bias_sigma = 0.02;   ///< prior at start-up
+  double accel_bias_sigma = 0.15;
+  double zero_velocity_sigma = 0.01;
+  double init_spacing_s = 0.08;    ///< between the views of the start-up buffer
+  int init_views = 12;
+  double init_parallax_deg = 2.5;
+  LandmarkConfig landmarks;
+  StandstillConfig standstill;
+  void visit(ConfigFields& fields);
+};
+
+/// One packet as the estimator sees it.
+struct EstimatorInput {
+  Timestamp t;
+  std::vector<ImuSample> imu;  ///< from the previous input's t to t, both ends included
+  std::vector<CameraObservations> observations;
+  bool keyframe = false;
+  bool events_quiet = false;   ///< the event camera sees nothing move
+};
+
+struct EstimatorResult {
+  std::string waiting_for;          ///< while not initialised: what is missing, with numbers
+  std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
+  int landmarks = 0;                ///< in the cost
+  int landmarks_seen = 0;           ///< of them, seen by the newest state
+  bool standstill = false;
+};
+
+class Estimator {
+ public:
+  Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config);
+
+  /// Inputs in time order.
+  EstimatorResult add(const EstimatorInput& input);
+
+  bool initialized() const { return initialized_; }
+  /// The newest state; meaningful once initialised.
+  NavState newest() const { return window_.newest().nav(); }
+  /// Gyro bias known so far (zero at first) [rad/s].
+  Eigen::Vector3d gyro_bias() const;
+
+  /// z-depth of a landmark in its own camera at the newest state [m].
+  std::optional<double> depth(FeatureId id) const;
+  /// Median z-depth of the landmarks in a camera at the newest state [m].
+  std::optional<double> median_depth(const std::string& camera) const;
+
+  const Window& window() const { return window_; }
+
+ private:
+  std::string try_to_start(const EstimatorInput& input);
+  void start_at_rest(const EstimatorInput& input);
+  bool start_in_motion();
+  void append(const EstimatorInput& input);
+  void optimize(EstimatorResult& result, int iterations);
+  void slide();
+  void drop_oldest_keyframe();
+  void drop_oldest_motion();
+
+  ImuNoise noise_;
+  Rig rig_;
+  EstimatorConfig config_;
+  Window window_;
+  StandstillDetector standstill_;
+  bool initialized_ = false;
+  std::vector<InitFrame> buffer_;        ///< start-up views
+  std::vector<ImuSample> pending_imu_;   ///< since the last start-up view
+};
+
+}  // namespace edged

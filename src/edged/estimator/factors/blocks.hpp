@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The parameter blocks of the window, and how a factor's derivatives reach them.
+#pragma once
+
+#include <ceres/manifold.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "edged/core/lie.hpp"
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// A pose block: position, then quaternion x y z w. Tangent (6): p' = p + d_p, q' = q * Exp(d_phi).
+using PoseBlock = std::array<double, 7>;
+/// A motion block: velocity, gyro bias, accelerometer bias.
+using MotionBlock = std::array<double, 9>;
+
+enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth };
+
+/// Names one parameter block: a state's pose or motion, or a feature's inverse depth.
+struct BlockKey {
+  BlockKind kind;
+  std::uint64_t id;  ///< state number or FeatureId
+  auto operator<=>(const BlockKey&) const = default;
+};
+
+constexpr int block_size(BlockKind kind) {
+  return kind == BlockKind::Pose ? 7 : kind == BlockKind::Motion ? 9 : 1;
+}
+constexpr int tangent_size(BlockKind kind) {
+  return kind == BlockKind::Pose ? 6 : kind == BlockKind::Motion ? 9 : 1;
+}
+
+inline PoseBlock to_block(const SE3& T) {
+  const auto& p = T.translation();
+  const auto& q = T.rotation();
+  return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+}
+inline SE3 pose_of(const double* block) {
+  return {Eigen::Quaterniond(block[6], block[3], block[4], block[5]), Eigen::Vector3d(block[0], block[1], block[2])};
+}
+
+/// x minus x0 in the tangent space of the block: what takes x0 to x. `difference` holds tangent_size(kind) numbers.
+inline void tangent_difference(BlockKind kind, const double* x, const double* x0, double* difference) {
+  if (kind != BlockKind::Pose) {
+    for (int i = 0; i < block_size(kind); ++i) difference[i] = x[i] - x0[i];
+    return;
+  }
+  const SE3 T = pose_of(x), T0 = pose_of(x0);
+  Eigen::Map<Vector6d> d(difference);
+  d << T.translation() - T0.translation(), so3::log(T0.rotation().conjugate() * T.rotation());
+}
+
+/// The pose manifold for Ceres. Factors write their derivative with respect to the tangent into the first six of the
+/// seven columns and zero into the last, so that PlusJacobian, [I_6; 0], picks out just those.
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+};
+
+}  // namespace edged

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Every factor's analytic Jacobian against central differences over its tangent spaces.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "edged/estimator/factors/imu_factor.hpp"
+#include "edged/estimator/factors/linear_prior.hpp"
+#include "edged/estimator/factors/reprojection_factor.hpp"
+
+namespace edged {
+namespace {
+
+using Blocks = std::vector<std::vector<double>>;
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::vector<double> plus(BlockKind kind, const std::vector<double>& x, const Eigen::VectorXd& d) {
+  std::vector<double> out = x;
+  if (kind == BlockKind::Pose) {
+    PoseManifold().Plus(x.data(), d.data(), out.data());
+  } else {
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] += d[static_cast<Eigen::Index>(i)];
+  }
+  return out;
+}
+
+Eigen::VectorXd evaluate(const ceres::CostFunction& cost, const Blocks& blocks) {
+  std::vector<const double*> data;
+  for (const auto& b : blocks) data.push_back(b.data());
+  Eigen::VectorXd r(cost.num_residuals());
+  EXPECT_TRUE(cost.Evaluate(data.data(), r.data(), nullptr));
+  return r;
+}
+
+/// Largest difference between the analytic and the numeric Jacobian, relative to the largest entry of the block.
+void check_jacobians(const ceres::CostFunction& cost, const std::vector<BlockKind>& kinds, const Blocks& blocks) {
+  std::vector<const double*> data;
+  std::vector<RowMajorMatrix> J;
+  std::vector<double*> J_data;
+  for (const auto& b : blocks) data.push_back(b.data()), J.emplace_back(cost.num_residuals(), b.size());
+  for (auto& j : J) J_data.push_back(j.data());
+  Eigen::VectorXd r(cost.num_residuals());
+  ASSERT_TRUE(cost.Evaluate(data.data(), r.data(), J_data.data()));
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const int n = tangent_size(kinds[b]);
+    Eigen::MatrixXd numeric(cost.num_residuals(), n);
+    for (int k = 0; k < n; ++k) {
+      Eigen::VectorXd d = Eigen::VectorXd::Zero(n);
+      Blocks moved = blocks;
+      const double step = 1e-6;
+      d[k] = step;
+      moved[b] = plus(kinds[b], blocks[b], d);
+      const Eigen::VectorXd up = evaluate(cost, moved);
+      moved[b] = plus(kinds[b], blocks[b], -d);
+      numeric.col(k) = (up - evaluate(cost, moved)) / (2 * step);
+    }
+    const double scale = std::max(1.0, numeric.cwiseAbs().maxCoeff());
+    EXPECT_LT((J[b].leftCols(n) - numeric).cwiseAbs().maxCoeff() / scale, 1e-6) << "block " << b;
+    if (kinds[b] == BlockKind::Pose) {
+      EXPECT_EQ(J[b].col(6).cwiseAbs().maxCoeff(), 0.0);
+    }
+  }
+}
+
+std::vector<double> pose(const Eigen::Vector3d& phi, const Eigen::Vector3d& p) {
+  const PoseBlock block = to_block(SE3(so3::exp(phi), p));
+  return {block.begin(), block.end()};
+}
+
+Preintegration some_motion() {
+  std::vector<ImuSample> samples;
+  for (int i = 0; i <= 40; ++i) {
+    const double t = 0.005 * i;
+    samples.push_back({timestamp_from_seconds(t), {0.8 + t, -0.5, 0.3 * t}, {0.4, 9.6 - t, 1.5 + 2 * t}});
+  }
+  return {samples, {0.01, -0.02, 0.03}, {0.1, 0.05, -0.1}, ImuNoise{}};
+}
+
+TEST(ImuFactor, JacobiansMatchCentralDifferences) {
+  const Preintegration imu = some_motion();
+  const ImuFactor factor(imu);
+  check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion, BlockKind::Pose, BlockKind::Motion},
+                  {pose({0.3, -0.8, 0.2}, {1, 2, 3}),
+                   {0.4, -0.3, 0.2, 0.02, -0.01, 0.025, 0.12, 0.02, -0.05},
+                   pose({0.45, -0.85, 0.25}, {1.1, 1.9, 3.05}),
+                   {0.5, -0.2, 0.3, 0.021, -0.012, 0.026, 0.13, 0.03, -0.06}});
+}
+
+TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
+  const Preintegration imu = some_motion();
+  NavState start;
+  start.T_W_B = SE3(so3::exp({0.3, -0.8, 0.2}), {1, 2, 3});
+  start.v_W = {0.4, -0.3, 0.2};
+  start.bias_gyro = imu.bias_gyro();
+  start.bias_accel = imu.bias_accel();
+  const NavState end = propagate(start, imu);
+  const auto motion = [](const NavState& s) {
+    return std::vector<double>{s.v_W.x(),       s.v_W.y(),       s.v_W.z(),        s.bias_gyro.x(), s.bias_gyro.y(),
+                               s.bias_gyro.z(), s.bias_accel.x(), s.bias_accel.y(), s.bias_accel.z()};
+  };
+  const auto block = [](const SE3& T) {
+    const PoseBlock b = to_block(T);
+    return std::vector<double>(b.begin(), b.end());
+  };
+  const Eigen::VectorXd r = evaluate(ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end)});
+  EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
+}
+
+TEST(ReprojectionFactor, JacobiansMatchCentralDifferences) {
+  const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
+  for (const double rho : {0.02, 0.5, 2.0}) {
+    const ReprojectionFactor factor(T_B_C, {0.2, -0.1}, {0.25, -0.05}, 5e-3);
+    check_jacobians(factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::InverseDepth},
+                    {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), {rho}});
+  }
+}
+
+TEST(ReprojectionFactor, IsZeroForAPointWhereItWasSeen) {
+  const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
+  const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
+  const Eigen::Vector3d p_W = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
+  const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_W;
+  const ReprojectionFactor factor(T_B_C, {0.2, -0.1}, p_C1.hnormalized(), 5e-3);
+  EXPECT_LT(evaluate(factor, {pose_0, pose_1, {0.5}}).norm(), 1e-9);
+}
+
+TEST(ReprojectionFactor, RefusesAPointBehindTheCamera) {
+  const ReprojectionFactor factor(SE3(), {0.0, 0.0}, {0.0, 0.0}, 5e-3);
+  const auto here = pose({0, 0, 0}, {0, 0, 0}), turned = pose({0, 3.1, 0}, {0, 0, 0});
+  const double rho = 1.0;
+  const double* blocks[] = {here.data(), turned.data(), &rho};
+  double r[2];
+  EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
+}
+
+TEST(LinearPriorFactor, JacobiansMatchCentralDifferencesAwayFromItsLinearisationPoint) {
+  std::mt19937_64 random(7);
+  const auto number = [&] { return static_cast<double>(random() >> 11) * 0x1p-53 - 0.5; };
+  LinearPrior prior;
+  prior.blocks = {{BlockKind::Pose, 0}, {BlockKind::Motion, 0}};
+  prior.x0 = {pose({0.1, 0.2, 0.3}, {1, 2, 3}), std::vector<double>(9, 0.1)};
+  prior.J = Eigen::MatrixXd::NullaryExpr(12, 15, [&] { return number(); });
+  prior.r = Eigen::VectorXd::NullaryExpr(12, [&] { return number(); });
+  const LinearPriorFactor factor(prior);
+  check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion},
+                  {pose({0.15, 0.1, 0.4}, {1.1, 2, 2.9}), std::vector<double>(9, 0.2)});
+}
+
+TEST(GaugePrior, SeesYawAndPositionButNotTilt) {
+  const auto at = pose({0.4, -0.3, 0.8}, {1, 2, 3});
+  PoseBlock block;
+  std::copy(at.begin(), at.end(), block.begin());
+  const LinearPrior prior = gauge_prior({BlockKind::Pose, 0}, block, 1e-2, 1e-2);
+  const LinearPriorFactor factor(prior);
+  const auto turned_about = [&](const Eigen::Vector3d& axis_W) {
+    const PoseBlock b = to_block(SE3(so3::exp(1e-3 * axis_W) * pose_of(at.data()).rotation(), {1, 2, 3}));
+    return evaluate(factor, {{b.begin(), b.end()}}).norm();
+  };
+  EXPECT_NEAR(turned_about(Eigen::Vector3d::UnitZ()), 0.1, 1e-6);
+  EXPECT_NEAR(turned_about(Eigen::Vector3d::UnitX()), 0.0, 1e-4);
+}
+
+}  // namespace
+}  // namespace edged

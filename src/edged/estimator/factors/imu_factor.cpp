@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/factors/imu_factor.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "edged/estimator/factors/blocks.hpp"
+
+namespace edged {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using PoseJacobian = Eigen::Matrix<double, 15, 7, Eigen::RowMajor>;
+using MotionJacobian = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
+
+// Rows of the residual.
+constexpr int kPhi = 0, kV = 3, kP = 6, kBg = 9, kBa = 12;
+// Columns of a pose tangent and of a motion block.
+constexpr int kPosePos = 0, kPosePhi = 3, kMotionV = 0, kMotionBg = 3, kMotionBa = 6;
+
+struct Motion {
+  explicit Motion(const double* b) : v(b), bg(b + 3), ba(b + 6) {}
+  Eigen::Map<const Vector3d> v, bg, ba;
+};
+
+}  // namespace
+
+ImuFactor::ImuFactor(const Preintegration& imu) : imu_(imu) {
+  Matrix15d covariance = Matrix15d::Zero();
+  covariance.topLeftCorner<9, 9>() = imu.covariance();
+  // A floor far below any real noise keeps the factorisation sound for very short intervals.
+  covariance.topLeftCorner<9, 9>().diagonal().array() += 1e-14;
+  const double dt = std::max(imu.dt(), 1e-6);
+  covariance.diagonal().segment<3>(kBg).setConstant(imu.noise().gyro_walk * imu.noise().gyro_walk * dt);
+  covariance.diagonal().segment<3>(kBa).setConstant(imu.noise().accel_walk * imu.noise().accel_walk * dt);
+  const Eigen::LLT<Matrix15d> llt(covariance);
+  // covariance = L L^T, so L^-1 whitens.
+  sqrt_information_ = llt.matrixL().solve(Matrix15d::Identity());
+}
+
+bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
+  const SE3 T_0 = pose_of(blocks[0]), T_1 = pose_of(blocks[2]);
+  const Motion m_0(blocks[1]), m_1(blocks[3]);
+  const double dt = imu_.dt();
+  const Matrix3d R_0_inv = T_0.R().transpose();
+  const Vector3d dR_error = so3::log(imu_.dR(m_0.bg).conjugate() * (T_0.rotation().conjugate() * T_1.rotation()));
+  const Vector3d v_change_B0 = R_0_inv * (m_1.v - m_0.v - kGravity_W * dt);
+  const Vector3d p_change_B0 =
+      R_0_inv * (T_1.translation() - T_0.translation() - m_0.v * dt - 0.5 * kGravity_W * dt * dt);
+
+  Eigen::Map<Eigen::Matrix<double, 15, 1>> r(residuals);
+  r.segment<3>(kPhi) = dR_error;
+  r.segment<3>(kV) = v_change_B0 - imu_.dv(m_0.bg, m_0.ba);
+  r.segment<3>(kP) = p_change_B0 - imu_.dp(m_0.bg, m_0.ba);
+  r.segment<3>(kBg) = m_1.bg - m_0.bg;
+  r.segment<3>(kBa) = m_1.ba - m_0.ba;
+  r = sqrt_information_ * r;
+  if (jacobians == nullptr) return true;
+
+  const Matrix3d J_r_inv = so3::right_jacobian_inverse(dR_error);
+  if (jacobians[0] != nullptr) {
+    PoseJacobian J = PoseJacobian::Zero();
+    J.block<3, 3>(kPhi, kPosePhi) = -J_r_inv * (T_1.R().transpose() * T_0.R());
+    J.block<3, 3>(kV, kPosePhi) = skew(v_change_B0);
+    J.block<3, 3>(kP, kPosePhi) = skew(p_change_B0);
+    J.block<3, 3>(kP, kPosePos) = -R_0_inv;
+    Eigen::Map<PoseJacobian>(jacobians[0]).noalias() = sqrt_information_ * J;
+  }
+  if (jacobians[1] != nullptr) {
+    MotionJacobian J = MotionJacobian::Zero();
+    const Vector3d correction = imu_.d_dR_d_bg() * (m_0.bg - imu_.bias_gyro());
+    J.block<3, 3>(kPhi, kMotionBg) = -J_r_inv * so3::exp(-dR_error).toRotationMatrix() *
+                                     so3::right_jacobian(correction) * imu_.d_dR_d_bg();
+    J.block<3, 3>(kV, kMotionV) = -R_0_inv;
+    J.block<3, 3>(kV, kMotionBg) = -imu_.d_dv_d_bg();
+    J.block<3, 3>(kV, kMotionBa) = -imu_.d_dv_d_ba();
+    J.block<3, 3>(kP, kMotionV) = -R_0_inv * dt;
+    J.block<3, 3>(kP, kMotionBg) = -imu_.d_dp_d_bg();
+    J.block<3, 3>(kP, kMotionBa) = -imu_.d_dp_d_ba();
+    J.block<3, 3>(kBg, kMotionBg) = -Matrix3d::Identity();
+    J.block<3, 3>(kBa, kMotionBa) = -Matrix3d::Identity();
+    Eigen::Map<MotionJacobian>(jacobians[1]).noalias() = sqrt_information_ * J;
+  }
+  if (jacobians[2] != nullptr) {
+    PoseJacobian J = PoseJacobian::Zero();
+    J.block<3, 3>(kPhi, kPosePhi) = J_r_inv;
+    J.block<3, 3>(kP, kPosePos) = R_0_inv;
+    Eigen::Map<PoseJacobian>(jacobians[2]).noalias() = sqrt_information_ * J;
+  }
+  if (jacobians[3] != nullptr) {
+    MotionJacobian J = MotionJacobian::Zero();
+    J.block<3, 3>(kV, kMotionV) = R_0_inv;
+    J.block<3, 3>(kBg, kMotionBg) = Matrix3d::Identity();
+    J.block<3, 3>(kBa, kMotionBa) = Matrix3d::Identity();
+    Eigen::Map<MotionJacobian>(jacobians[3]).noalias() = sqrt_information_ * J;
+  }
+  return true;
+}
+
+}  // namespace edged

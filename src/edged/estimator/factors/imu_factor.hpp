@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The inertial factor between two consecutive states.
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+
+/// Blocks: pose 0, motion 0, pose 1, motion 1. Residual (15), whitened: rotation, velocity, position (Forster et al.
+/// 2017, Eq. 45), then the change of gyro and accelerometer bias against their random walks.
+class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
+ public:
+  /// The preintegration must outlive the factor.
+  explicit ImuFactor(const Preintegration& imu);
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+ private:
+  const Preintegration& imu_;
+  Matrix15d sqrt_information_;
+};
+
+}  // namespace edged

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/factors/linear_prior.hpp"
+
+#include <cmath>
+
+namespace edged {
+
+LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma) {
+  LinearPrior prior;
+  prior.blocks = {pose};
+  prior.x0 = {{at.begin(), at.end()}};
+  prior.J = Eigen::MatrixXd::Zero(4, 6);
+  prior.J.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / position_sigma);
+  // A turn about W's z by psi is the right perturbation R^T e_z psi.
+  prior.J.block<1, 3>(3, 3) = pose_of(at.data()).R().row(2) / yaw_sigma;
+  prior.r = Eigen::VectorXd::Zero(4);
+  return prior;
+}
+
+LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas) {
+  LinearPrior prior;
+  prior.blocks = {motion};
+  prior.x0 = {{mean.begin(), mean.end()}};
+  prior.J = Eigen::MatrixXd::Zero(9, 9);
+  for (int i = 0; i < 9; ++i) prior.J(i, i) = std::isinf(sigmas[i / 3]) ? 0.0 : 1.0 / sigmas[i / 3];
+  prior.r = Eigen::VectorXd::Zero(9);
+  return prior;
+}
+
+LinearPriorFactor::LinearPriorFactor(const LinearPrior& prior) : prior_(prior) {
+  set_num_residuals(static_cast<int>(prior.r.size()));
+  for (const BlockKey& key : prior.blocks) mutable_parameter_block_sizes()->push_back(block_size(key.kind));
+}
+
+bool LinearPriorFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
+  Eigen::VectorXd difference(prior_.J.cols());
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < prior_.blocks.size(); ++i) {
+    const BlockKind kind = prior_.blocks[i].kind;
+    tangent_difference(kind, blocks[i], prior_.x0[i].data(), difference.data() + column);
+    if (jacobians != nullptr && jacobians[i] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(
+          jacobians[i], prior_.J.rows(), block_size(kind));
+      J.leftCols(tangent_size(kind)) = prior_.J.middleCols(column, tangent_size(kind));
+      if (kind == BlockKind::Pose) {
+        J.col(6).setZero();
+        // d Log(q0^-1 q Exp(d)) / d d: the inverse right Jacobian at the difference.
+        const Eigen::Vector3d phi = difference.segment<3>(column + 3);
+        J.middleCols<3>(3) = prior_.J.middleCols(column + 3, 3) * so3::right_jacobian_inverse(phi);
+      }
+    }
+    column += tangent_size(kind);
+  }
+  Eigen::Map<Eigen::VectorXd>(residuals, prior_.r.size()).noalias() = prior_.J * difference + prior_.r;
+  return true;
+}
+
+}  // namespace edged

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A Gaussian prior over any blocks, held in square-root form at a fixed linearisation point: what marginalisation leaves
+// behind, and every hand-set prior (gauge, biases, zero velocity).
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "edged/estimator/factors/blocks.hpp"
+
+namespace edged {
+
+/// residual(x) = J * (x - x0) + r, with the difference in the tangent space, blocks stacked in order.
+struct LinearPrior {
+  std::vector<BlockKey> blocks;
+  std::vector<std::vector<double>> x0;  ///< one linearisation point a block
+  Eigen::MatrixXd J;                    ///< rows x sum of tangent sizes
+  Eigen::VectorXd r;
+
+  bool empty() const { return blocks.empty(); }
+};
+
+/// Position and yaw (rotation about the world's z) of one pose held at its present value.
+LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma);
+
+/// A motion block near `mean`; sigmas for velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]. An infinite sigma
+/// leaves that part free.
+LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas);
+
+class LinearPriorFactor final : public ceres::CostFunction {
+ public:
+  /// The prior must outlive the factor.
+  explicit LinearPriorFactor(const LinearPrior& prior);
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+ private:
+  const LinearPrior& prior_;
+};
+
+}  // namespace edged

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/landmarks.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "edged/camera/two_view.hpp"
+
+namespace edged {
+namespace {
+
+/// The oldest keyframe that sees the feature.
+std::optional<StateId> oldest_keyframe(const Window& window, const Feature& feature) {
+  for (const auto& [state, observation] : feature.seen) {
+    if (window.states.at(state).keyframe) return state;
+  }
+  return std::nullopt;
+}
+
+bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
+  return inverse_depth > 1.0 / config.max_depth_m && inverse_depth < 1.0 / config.min_depth_m;
+}
+
+bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig& config) {
+  const std::optional<StateId> anchor = oldest_keyframe(window, feature);
+  if (!anchor || feature.seen.size() < 3) return false;
+  std::vector<View> views;
+  double sigma = 0.0;
+  for (const auto& [state, observation] : feature.seen) {
+    views.push_back({window.T_W_C(state, feature.camera), observation.point});
+    sigma = observation.sigma;
+  }
+  const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
+  if (!point || point->rms_residual > config.max_residual_sigma * sigma) return false;
+  const double depth = (window.T_W_C(*anchor, feature.camera).inverse() * point->p_W).z();
+  if (!depth_in_bounds(1.0 / depth, config)) return false;
+  feature.anchor = anchor;
+  feature.inverse_depth = 1.0 / depth;
+  return true;
+}
+
+/// Residual of one sight of a landmark in standard deviations; infinite when it is behind the camera.
+double residual_sigmas(const Window& window, const Feature& feature, StateId state) {
+  const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * window.position(feature);
+  if (p_C.z() <= 0.0) return std::numeric_limits<double>::infinity();
+  const FeatureObservation& seen = feature.seen.at(state);
+  return (p_C.hnormalized() - seen.point).norm() / seen.sigma;
+}
+
+}  // namespace
+
+void LandmarkConfig::visit(ConfigFields& fields) {
+  fields.add("min_parallax_deg", min_parallax_deg, {"deg", 0.05, 10, "rays of a corner must differ by this to place it"});
+  fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
+  fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
+  fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
+  fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
+}
+
+void triangulate_features(Window& window, const LandmarkConfig& config) {
+  std::vector<int> landmarks(window.cameras.size(), 0);
+  std::vector<Feature*> candidates;
+  for (auto& [id, feature] : window.features) {
+    if (feature.anchor) {
+      ++landmarks[feature.camera];
+    } else if (feature.seen.contains(window.states.rbegin()->first)) {
+      candidates.push_back(&feature);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Feature* a, const Feature* b) { return a->seen.size() > b->seen.size(); });
+  for (Feature* feature : candidates) {
+    if (landmarks[feature->camera] >= config.max_per_camera) continue;
+    if (triangulate_feature(window, *feature, config)) ++landmarks[feature->camera];
+  }
+}
+
+std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {
+  const StateId newest = window.states.rbegin()->first;
+  std::vector<FeatureId> wrong;
+  for (auto it = window.features.begin(); it != window.features.end();) {
+    Feature& feature = it->second;
+    if (!feature.anchor) {
+      ++it;
+      continue;
+    }
+    bool dropped = !depth_in_bounds(feature.inverse_depth, config);
+    if (!dropped) {
+      std::erase_if(feature.seen, [&](const auto& sight) {
+        if (sight.first == *feature.anchor) return false;
+        const bool bad = residual_sigmas(window, feature, sight.first) > config.max_residual_sigma;
+        if (bad && sight.first == newest) wrong.push_back(it->first);
+        return bad;
+      });
+      dropped = feature.seen.size() < 2;
+    }
+    if (dropped) {
+      if (feature.seen.contains(newest)) wrong.push_back(it->first);
+      it = window.features.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return wrong;
+}
+
+bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config) {
+  const double depth = (window.T_W_C(to, feature.camera).inverse() * window.position(feature)).z();
+  feature.anchor.reset();
+  if (!depth_in_bounds(1.0 / depth, config)) return false;
+  feature.anchor = to;
+  feature.inverse_depth = 1.0 / depth;
+  return true;
+}
+
+}  // namespace edged

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The life of landmarks: triangulated from tracks, judged after each solve, moved to a younger anchor.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "edged/core/config.hpp"
+#include "edged/estimator/window.hpp"
+
+namespace edged {
+
+struct LandmarkConfig {
+  double min_parallax_deg = 0.6;   ///< a corner becomes a landmark once its rays differ by this
+  double min_depth_m = 0.1;
+  double max_depth_m = 60.0;
+  double max_residual_sigma = 4.0; ///< a sight that fits worse is taken out
+  int max_per_camera = 70;         ///< landmarks in the cost, longest seen first
+  void visit(ConfigFields& fields);
+};
+
+/// Turns tracks that have enough parallax into landmarks, within the budget of each camera.
+void triangulate_features(Window& window, const LandmarkConfig& config);
+
+/// Takes out sights and landmarks that do not fit the solved window. Returns the features whose newest sight was taken
+/// out: their tracks are wrong and should end.
+std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
+
+/// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and the
+/// feature is a plain track again, when it would lie out of the depth bounds there.
+bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config);
+
+}  // namespace edged

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The sliding window: states, features and the prior that stands for what has left; its factors, as one list that is
+// solved and marginalised alike.
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/types.hpp"
+#include "edged/estimator/factors/blocks.hpp"
+#include "edged/estimator/factors/linear_prior.hpp"
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+
+using StateId = std::uint64_t;
+
+/// One instant of the window. Recent states carry velocity and biases; older ones are keyframes with a pose only.
+struct WindowState {
+  Timestamp t;
+  PoseBlock pose{};
+  MotionBlock motion{};
+  bool has_motion = true;
+  bool keyframe = false;
+  Preintegration imu;  ///< from the state before this one; unused once that one has lost its motion
+
+  SE3 T_W_B() const { return pose_of(pose.data()); }
+  NavState nav() const;
+};
+
+/// A tracked corner and, once triangulated, the landmark behind it.
+struct Feature {
+  std::size_t camera = 0;                           ///< index into Window::cameras
+  std::map<StateId, FeatureObservation> seen;       ///< in the window
+  std::optional<StateId> anchor;                    ///< set when it is a landmark
+  double inverse_depth = 0.0;                       ///< [1/m] along z of the anchor camera
+};
+
+/// One term of the cost.
+struct Factor {
+  std::unique_ptr<ceres::CostFunction> cost;
+  ceres::LossFunction* loss = nullptr;  ///< owned by the window
+  std::vector<BlockKey> blocks;
+};
+
+class Window {
+ public:
+  Window(const Rig& rig, double cauchy_scale);
+
+  // --- contents -------------------------------------------------------------------------------------------------------
+  std::map<StateId, WindowState> states;      ///< ids grow with time
+  std::map<FeatureId, Feature> features;
+  LinearPrior prior;
+  std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
+  std::vector<RigCamera> cameras;
+
+  /// Appends a state; ids are given in order of time.
+  StateId add_state(WindowState state);
+  void add_observations(StateId id, const std::vector<CameraObservations>& observations);
+
+  const WindowState& newest() const { return states.rbegin()->second; }
+  SE3 T_W_C(StateId state, std::size_t camera) const { return states.at(state).T_W_B() * cameras[camera].T_B_C; }
+  /// The landmark's position in the world; the feature must have an anchor.
+  Eigen::Vector3d position(const Feature& feature) const;
+
+  /// Storage of a block, null when it is no longer in the window.
+  double* block(BlockKey key);
+  /// First-estimate linearisation point of a block: its place in the prior, else its present value.
+  const double* linearisation_point(BlockKey key);
+
+  /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
+  void drop_orphaned_priors();
+
+  /// The terms of the present window, each once, the prior first. They borrow from the window: use them before it changes.
+  std::vector<Factor> factors();
+
+ private:
+  void add_visual_factors(std::vector<Factor>& out);
+
+  StateId next_state_ = 0;
+  std::unique_ptr<ceres::LossFunction> visual_loss_;
+};
+
+}  // namespace edged
