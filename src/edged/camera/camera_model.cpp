@@ -42,64 +42,67 @@ Distorted distort_radtan(const std::array<double, 5>& k, const Vector2d& p) {
   return out;
 }
 
-/// theta_d(theta) of math.md (C3).
-double equidistant_angle(const std::array<double, 5>& k, double theta) {
-  const double t2 = theta * theta;
-  return theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
-}
+/// A value and its derivative.
+struct Sloped {
+  double value;
+  double slope;
+};
 
-double equidistant_slope(const std::array<double, 5>& k, double theta) {
-  const double t2 = theta * theta;
-  return 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
-}
-
-double radtan_radius(const std::array<double, 5>& k, double r) {
+/// Distorted radius of a radius on the unit plane, (C2) without its tangential part.
+Sloped radtan_radius(const std::array<double, 5>& k, double r) {
   const double r2 = r * r;
-  return r * (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4])));
+  return {r * (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))),
+          1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]))};
 }
 
-double radtan_slope(const std::array<double, 5>& k, double r) {
-  const double r2 = r * r;
-  return 1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]));
+/// theta_d(theta) (C3).
+Sloped equidistant_angle(const std::array<double, 5>& k, double theta) {
+  const double t2 = theta * theta;
+  return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
+          1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
 }
 
-/// Newton on both coordinates, the step halved while it does not come closer (C4).
-Vector2d undistort_radtan(const std::array<double, 5>& k, const Vector2d& distorted) {
-  Vector2d p = distorted;
-  Distorted at = distort_radtan(k, p);
-  double error = (at.point - distorted).norm();
-  for (int i = 0; i < kMaxNewtonSteps && error > 0.0; ++i) {
+/// The x in [0, upper] with function(x) = target for a function that grows from 0 on that range; upper when the target
+/// is beyond it. Newton steps, replaced by bisection when they leave the bracket: past the range the function may turn
+/// back and have further solutions, which a plain Newton iteration finds.
+template <typename Function>
+double invert_growing(const Function& function, double target, double upper) {
+  double low = 0.0, high = upper;
+  double x = std::min(target, upper);
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
+    const Sloped at = function(x);
+    (at.value < target ? low : high) = x;
+    double next = x + (target - at.value) / at.slope;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const bool converged = std::abs(next - x) <= kNewtonTolerance * (1.0 + x);
+    x = next;
+    if (converged) break;
+  }
+  return x;
+}
+
+/// The radial part first, then Newton steps on both coordinates (C4).
+Vector2d undistort_radtan(const std::array<double, 5>& k, const Vector2d& distorted, double max_radius) {
+  const double target = distorted.norm();
+  if (target == 0.0 && k[2] == 0.0 && k[3] == 0.0) return distorted;
+  const double radius = invert_growing([&k](double r) { return radtan_radius(k, r); }, target, max_radius);
+  Vector2d p = target > 0.0 ? Vector2d(radius / target * distorted) : Vector2d::Zero();
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
+    const Distorted at = distort_radtan(k, p);
     const Vector2d step = at.d_point.inverse() * (distorted - at.point);
-    if (!step.allFinite()) break;
-    double share = 1.0;
-    Distorted next = distort_radtan(k, p + step);
-    while ((next.point - distorted).norm() > error && share > 1e-3) {
-      share *= 0.5;
-      next = distort_radtan(k, p + share * step);
-    }
-    const double next_error = (next.point - distorted).norm();
-    if (next_error >= error) break;  // at the last digit
-    p += share * step;
-    at = next;
-    error = next_error;
-    if (error < kNewtonTolerance * (1.0 + p.norm())) break;
+    if (!(step.norm() < 0.5 * (1.0 + p.norm()))) break;  // no bearing near: leave the radial one
+    p += step;
+    if (step.norm() <= kNewtonTolerance * (1.0 + p.norm())) break;
   }
   return p;
 }
 
-/// Newton on the angle, kept below max_theta (C4).
-Vector2d undistort_equidistant(const std::array<double, 5>& k, const Vector2d& distorted, double max_theta) {
-  const double theta_d = distorted.norm();
-  if (theta_d < 1e-12) return distorted;
-  double theta = std::min(theta_d, max_theta);
-  for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const double step = (theta_d - equidistant_angle(k, theta)) / equidistant_slope(k, theta);
-    const double next = std::clamp(theta + step, 0.5 * theta, std::min(2.0 * theta, max_theta));
-    const bool converged = std::abs(next - theta) < kNewtonTolerance;
-    theta = next;
-    if (converged) break;
-  }
-  return std::tan(theta) / theta_d * distorted;
+Vector2d undistort_equidistant(const std::array<double, 5>& k, const Vector2d& distorted, double max_radius) {
+  const double target = distorted.norm();
+  if (target == 0.0) return distorted;
+  const double theta =
+      invert_growing([&k](double angle) { return equidistant_angle(k, angle); }, target, std::atan(max_radius));
+  return std::tan(theta) / target * distorted;
 }
 
 }  // namespace
@@ -148,21 +151,21 @@ void CameraModel::find_monotone_range() {
   double reached = 0.0;
   double theta = 0.0;
   for (; theta <= kMaxTheta; theta += kStep) {
-    const double r = std::tan(theta);
-    if ((equidistant ? equidistant_slope(k_, theta) : radtan_slope(k_, r)) <= 0.0) break;
-    reached = equidistant ? equidistant_angle(k_, theta) : radtan_radius(k_, r);
-    max_radius_ = r;
+    const double radius = std::tan(theta);
+    const Sloped at = equidistant ? equidistant_angle(k_, theta) : radtan_radius(k_, radius);
+    if (at.slope <= 0.0) break;
+    reached = at.value;
+    max_radius_ = radius;
   }
   if (reached < corner_radius) {
     throw InputError::format(
-        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it turns back {:.1f} degrees off "
+        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it ends {:.1f} degrees off "
         "the "
         "axis at a distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the "
         "distortion model and the image size",
         to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta * 180.0 / std::numbers::pi, reached,
         corner_radius);
   }
-  if (theta > kMaxTheta && !equidistant) max_radius_ = std::numeric_limits<double>::infinity();
 }
 
 void CameraModel::check_border() const {
@@ -189,7 +192,7 @@ Vector2d CameraModel::distort_to_pixel(const Vector2d& point) const {
     d = distort_radtan(k_, point).point;
   } else if (distortion_ == DistortionModel::Equidistant) {
     const double r = point.norm();
-    if (r > 1e-12) d = equidistant_angle(k_, std::atan(r)) / r * point;
+    if (r > 0.0) d = equidistant_angle(k_, std::atan(r)).value / r * point;
   }
   return {fx_ * d.x() + cx_, fy_ * d.y() + cy_};
 }
@@ -205,9 +208,9 @@ Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
   const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
   switch (distortion_) {
     case DistortionModel::RadTan:
-      return undistort_radtan(k_, distorted);
+      return undistort_radtan(k_, distorted, max_radius_);
     case DistortionModel::Equidistant:
-      return undistort_equidistant(k_, distorted, std::atan(max_radius_));
+      return undistort_equidistant(k_, distorted, max_radius_);
     case DistortionModel::None:
       break;
   }

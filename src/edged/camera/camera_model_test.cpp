@@ -1,2 +1,207 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
+#include "edged/camera/camera_model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+struct NamedCamera {
+  std::string name;
+  CameraModel model;
+};
+
+std::vector<NamedCamera> all_cameras() {
+  return {
+      {"pinhole", CameraModel(320, 240, 250, 260, 158.5, 121.25)},
+      {"davis240c", CameraModel(240, 180, 199.3714, 199.7079, 133.7544, 113.9922, DistortionModel::RadTan,
+                                {-0.382899, 0.189336, -0.0010025, -0.00056378, 0.0})},
+      {"euroc_cam0", CameraModel(752, 480, 458.654, 457.296, 367.215, 248.375, DistortionModel::RadTan,
+                                 {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0})},
+      {"k3_and_pincushion",
+       CameraModel(640, 480, 500, 505, 310, 250, DistortionModel::RadTan, {0.12, 0.05, 0.004, -0.006, 0.03})},
+      {"mvsec_left", CameraModel(346, 260, 226.38018, 226.15003, 173.64708, 133.73271, DistortionModel::Equidistant,
+                                 {-0.048031, 0.011331, -0.055378, 0.021501, 0.0})},
+      {"fisheye_150_degrees",
+       CameraModel(640, 480, 300, 301, 322, 239, DistortionModel::Equidistant, {0.01, -0.004, 0.002, -0.0003, 0.0})},
+  };
+}
+
+/// The message of the InputError that making the camera throws, "" when it does not.
+template <typename Make>
+std::string refusal(Make make) {
+  try {
+    make();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+class EveryCamera : public testing::TestWithParam<NamedCamera> {};
+
+TEST_P(EveryCamera, TakesEveryPixelToABearingAndBack) {
+  const CameraModel& camera = GetParam().model;
+  double worst = 0.0;
+  for (int y = 0; y < camera.height(); ++y) {
+    for (int x = 0; x < camera.width(); ++x) {
+      const Vector2d pixel(x, y);
+      const Vector2d point = camera.pixel_to_point(pixel);
+      worst = std::max(worst, (camera.distort_to_pixel(point) - pixel).norm());
+      const auto projected = camera.project(3.7 * point.homogeneous());
+      ASSERT_TRUE(projected) << pixel.transpose();
+      worst = std::max(worst, (*projected - pixel).norm());
+    }
+  }
+  EXPECT_LT(worst, 1e-8);
+}
+
+TEST_P(EveryCamera, TakesEveryBearingToAPixelAndBack) {
+  const CameraModel& camera = GetParam().model;
+  const double reach = 0.9 * camera.pixel_to_point({0.0, 0.5 * camera.height()}).norm();
+  for (double angle = 0.0; angle < 6.28; angle += 0.1) {
+    for (double r = 0.0; r <= reach; r += 0.05 * reach) {
+      const Vector2d point(r * std::cos(angle), r * std::sin(angle));
+      EXPECT_LT((camera.pixel_to_point(camera.distort_to_pixel(point)) - point).norm(), 1e-10 * (1.0 + r * r));
+    }
+  }
+}
+
+TEST_P(EveryCamera, AgreesWithOpenCvOnProjection) {
+  const CameraModel& camera = GetParam().model;
+  const auto& k = camera.coefficients();
+  const cv::Matx33d K(camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(), 0, 0, 1);
+  std::vector<cv::Point3d> points;
+  for (int y = 0; y < camera.height(); y += 20) {
+    for (int x = 0; x < camera.width(); x += 20) {
+      const Vector2d point = camera.pixel_to_point(Vector2d(x, y));
+      points.emplace_back(point.x(), point.y(), 1.0);
+    }
+  }
+  std::vector<cv::Point2d> pixels;
+  const cv::Vec3d zero(0, 0, 0);
+  if (camera.distortion() == DistortionModel::Equidistant) {
+    cv::fisheye::projectPoints(points, pixels, zero, zero, K, cv::Vec4d(k[0], k[1], k[2], k[3]));
+  } else {
+    cv::projectPoints(points, zero, zero, K, std::vector<double>(k.begin(), k.end()), pixels);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto ours = camera.project({points[i].x, points[i].y, points[i].z});
+    ASSERT_TRUE(ours);
+    EXPECT_NEAR(ours->x(), pixels[i].x, 1e-9);
+    EXPECT_NEAR(ours->y(), pixels[i].y, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, EveryCamera, testing::ValuesIn(all_cameras()),
+                         [](const auto& parameter) { return parameter.param.name; });
+
+TEST(CameraModel, ProjectsNothingBehindOrInTheCamera) {
+  const CameraModel camera(320, 240, 250, 260, 160, 120);
+  EXPECT_FALSE(camera.project({0.1, 0.1, -1.0}));
+  EXPECT_FALSE(camera.project({0.1, 0.1, 0.0}));
+  EXPECT_FALSE(camera.project({0.1, 0.1, std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_TRUE(camera.project({0.1, 0.1, 0.01}));
+}
+
+TEST(CameraModel, DoesNotFoldFarPointsBackIntoTheImage) {
+  // The polynomial turns back at r^2 = 1 / 0.9: a point far to the side would land near the centre.
+  const CameraModel camera(240, 180, 300, 300, 120, 90, DistortionModel::RadTan, {-0.3, 0.0, 0.0, 0.0, 0.0});
+  const Vector2d far_point(1.75, 0.0);
+  EXPECT_TRUE(camera.contains(camera.distort_to_pixel(far_point)));
+  EXPECT_FALSE(camera.project(far_point.homogeneous()));
+  EXPECT_TRUE(camera.project({1.0, 0.0, 1.0}));
+}
+
+TEST(CameraModel, UndistortsToTheBearingThisSideOfTheFold) {
+  // The corners have a second solution, beyond the radius at which the polynomial turns back.
+  const CameraModel camera(346, 260, 180, 180, 160, 140, DistortionModel::RadTan, {0.8, -0.5, 0.0, 0.0, 0.0});
+  for (int y = 0; y < camera.height(); ++y) {
+    EXPECT_LT(camera.pixel_to_point(Vector2d(0, y)).norm(), 1.0) << y;
+    EXPECT_TRUE(camera.project(camera.pixel_to_point(Vector2d(0, y)).homogeneous())) << y;
+  }
+}
+
+TEST(CameraModel, ContainsCountsTheBorder) {
+  const CameraModel camera(320, 240, 250, 260, 160, 120);
+  EXPECT_TRUE(camera.contains({0.0, 239.0}));
+  EXPECT_FALSE(camera.contains({-0.001, 100.0}));
+  EXPECT_FALSE(camera.contains({319.001, 100.0}));
+  EXPECT_FALSE(camera.contains({4.9, 100.0}, 5.0));
+}
+
+TEST(CameraModel, RefusesFocalLengthsThatAreNotPositive) {
+  EXPECT_THAT(refusal([] { CameraModel(240, 180, -199.5, 200, 120, 90); }), HasSubstr("-199.5"));
+  EXPECT_THAT(refusal([] { CameraModel(240, 180, 200, 0, 120, 90); }), HasSubstr("fy 0"));
+  EXPECT_THAT(refusal([] { CameraModel(240, 180, 200, std::nan(""), 120, 90); }), HasSubstr("nan"));
+  EXPECT_THAT(refusal([] { CameraModel(240, 0, 200, 200, 120, 90); }), HasSubstr("240 x 0"));
+}
+
+TEST(CameraModel, RefusesDistortionThatTurnsBackInsideTheImage) {
+  // The sets of strong coefficients below broke the new camera matrix of the reference implementation.
+  const std::string radtan = refusal([] {
+    CameraModel(346, 260, 150, 150, 173, 130, DistortionModel::RadTan, {-0.45, 0, 0, 0, 0});
+  });
+  EXPECT_THAT(radtan, HasSubstr("-0.45"));
+  EXPECT_THAT(radtan, HasSubstr("not monotone"));
+  EXPECT_THAT(refusal([] {
+                CameraModel(346, 260, 226, 226, 173, 133, DistortionModel::Equidistant, {-0.5, 0, 0, 0, 0});
+              }),
+              HasSubstr("not monotone"));
+}
+
+TEST(CameraModel, RefusesTangentialDistortionWithoutAnInverse) {
+  const std::string message = refusal([] {
+    CameraModel(346, 260, 150, 150, 173, 130, DistortionModel::RadTan, {0, 0, 0.5, 0, 0});
+  });
+  EXPECT_THAT(message, HasSubstr("no inverse"));
+  EXPECT_THAT(message, HasSubstr("0.5"));
+}
+
+TEST(CameraModel, RefusesCoefficientsThatTheModelDoesNotHave) {
+  EXPECT_THAT(refusal([] {
+                CameraModel(240, 180, 200, 200, 120, 90, DistortionModel::None, {-0.3, 0, 0, 0, 0});
+              }),
+              HasSubstr("-0.3"));
+  EXPECT_THAT(refusal([] {
+                CameraModel(240, 180, 200, 200, 120, 90, DistortionModel::Equidistant, {0, 0, 0, 0, 0.7});
+              }),
+              HasSubstr("only four"));
+  EXPECT_THAT(refusal([] {
+                CameraModel(240, 180, 200, 200, 120, 90, DistortionModel::RadTan, {0, std::nan(""), 0, 0, 0});
+              }),
+              HasSubstr("coefficient 2 is nan"));
+}
+
+TEST(Rig, FindsCamerasByNameAndListsThemOtherwise) {
+  Rig rig;
+  rig.name = "davis";
+  rig.cameras.resize(2);
+  rig.cameras[0].name = "events";
+  rig.cameras[0].modality = Modality::Events;
+  rig.cameras[1].name = "frames";
+  EXPECT_EQ(&rig.camera("frames"), &rig.cameras[1]);
+  EXPECT_EQ(rig.find(Modality::Events), &rig.cameras[0]);
+  EXPECT_THAT(refusal([&] { static_cast<void>(rig.camera("dvs")); }),
+              testing::AllOf(HasSubstr("dvs"), HasSubstr("events, frames")));
+  rig.cameras.pop_back();
+  EXPECT_EQ(rig.find(Modality::Frames), nullptr);
+}
+
+}  // namespace
+}  // namespace edged

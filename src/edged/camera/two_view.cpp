@@ -39,13 +39,13 @@ std::vector<Ray> make_rays(std::span<const View> views) {
 }
 
 double largest_angle(const std::vector<Ray>& rays) {
-  double largest = 0.0;
+  double chord2 = 0.0;  // between unit vectors: grows with the angle and keeps its digits where it is small
   for (std::size_t i = 0; i < rays.size(); ++i) {
     for (std::size_t j = i + 1; j < rays.size(); ++j) {
-      largest = std::max(largest, angle_between(rays[i].direction_W, rays[j].direction_W));
+      chord2 = std::max(chord2, (rays[i].direction_W - rays[j].direction_W).squaredNorm());
     }
   }
-  return largest;
+  return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(chord2)));
 }
 
 /// The point nearest to all rays (C6).
