@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Corner detection on a grid.
+#include "edged/frontend/detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <tuple>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kReferenceWidth_px = 240.0;
+constexpr int kCandidatesPerCell = 4;  // spares for a cell whose best corner lies too close to a neighbour's
+constexpr int kHarrisHalf = 3;         // 7x7 block, as ORB
+constexpr double kHarrisK = 0.04;
+constexpr int kFastRadius = 3;
+constexpr int kShiTomasiBlock = 5;
+constexpr int kRefinementHalf = 3;
+
+struct Candidate {
+  int cell = 0;
+  int x = 0, y = 0;
+  double response = 0.0;
+};
+
+// Strongest first; ties by position, so that the order never depends on the sort.
+bool stronger(const Candidate& a, const Candidate& b) {
+  return std::tuple(-a.response, a.y, a.x) < std::tuple(-b.response, b.y, b.x);
+}
+
+class Grid {
+ public:
+  Grid(const cv::Size& size, double cell_px)
+      : columns_(std::max(1, static_cast<int>(std::lround(size.width / cell_px)))),
+        rows_(std::max(1, static_cast<int>(std::lround(size.height / cell_px)))),
+        size_(size),
+        taken_(static_cast<std::size_t>(columns_ * rows_), false) {}
+
+  int count() const { return columns_ * rows_; }
+  bool taken(int cell) const { return taken_[static_cast<std::size_t>(cell)]; }
+  void take(int cell) { taken_[static_cast<std::size_t>(cell)] = true; }
+
+  /// Every pixel belongs to exactly one cell; cells differ by at most one pixel in size.
+  cv::Rect rectangle(int cell) const {
+    const int column = cell % columns_, row = cell / columns_;
+    const int x0 = first(column, columns_, size_.width), y0 = first(row, rows_, size_.height);
+    return {x0, y0, first(column + 1, columns_, size_.width) - x0, first(row + 1, rows_, size_.height) - y0};
+  }
+
+  int cell_at(int x, int y) const {
+    return index(y, rows_, size_.height) * columns_ + index(x, columns_, size_.width);
+  }
+
+ private:
+  static int first(int i, int cells, int length) { return (i * length + cells - 1) / cells; }
+  static int index(int position, int cells, int length) { return position * cells / length; }
+
+  int columns_, rows_;
+  cv::Size size_;
+  std::vector<bool> taken_;
+};
+
+// Harris score of a 7x7 block of central differences.
+double harris_response(const cv::Mat& image, int x, int y) {
+  double xx = 0, yy = 0, xy = 0;
+  for (int v = y - kHarrisHalf; v <= y + kHarrisHalf; ++v) {
+    const auto* above = image.ptr<uchar>(v - 1);
+    const auto* row = image.ptr<uchar>(v);
+    const auto* below = image.ptr<uchar>(v + 1);
+    for (int u = x - kHarrisHalf; u <= x + kHarrisHalf; ++u) {
+      const int gx = row[u + 1] - row[u - 1], gy = below[u] - above[u];
+      xx += gx * gx, yy += gy * gy, xy += gx * gy;
+    }
+  }
+  return xx * yy - xy * xy - kHarrisK * (xx + yy) * (xx + yy);
+}
+
+std::vector<Candidate> fast_corners(const cv::Mat& image, const cv::Rect& cell, int threshold) {
+  const cv::Rect area(cell.x - kFastRadius, cell.y - kFastRadius, cell.width + 2 * kFastRadius,
+                      cell.height + 2 * kFastRadius);
+  // No suppression of neighbours: event frames have few grey levels, and FAST drops both of two equal corners.
+  std::vector<cv::KeyPoint> keypoints;
+  cv::FAST(image(area), keypoints, threshold, false);
+  std::vector<Candidate> found;
+  found.reserve(keypoints.size());
+  for (const cv::KeyPoint& k : keypoints) {
+    const int x = cvRound(k.pt.x) + area.x, y = cvRound(k.pt.y) + area.y;
+    found.push_back({0, x, y, harris_response(image, x, y)});
+  }
+  return found;
+}
+
+std::vector<Candidate> shi_tomasi_corners(const cv::Mat& image, const cv::Rect& cell, double min_gradient) {
+  const cv::Rect area(cell.x - 1, cell.y - 1, cell.width + 2, cell.height + 2);
+  cv::Mat response;
+  cv::cornerMinEigenVal(image(area), response, kShiTomasiBlock, 3);
+  // In OpenCV's scale a slope of g grey levels per pixel all over the block gives (2 g / 255)^2.
+  const double floor = std::pow(2.0 * min_gradient / 255.0, 2);
+  std::vector<Candidate> found;
+  for (int y = 1; y + 1 < response.rows; ++y) {
+    for (int x = 1; x + 1 < response.cols; ++x) {
+      const float value = response.at<float>(y, x);
+      if (value < floor) continue;
+      double largest = 0;
+      cv::minMaxLoc(response(cv::Rect(x - 1, y - 1, 3, 3)), nullptr, &largest);
+      if (value >= largest) found.push_back({0, x + area.x, y + area.y, value});
+    }
+  }
+  return found;
+}
+
+std::vector<Candidate> corners_in(const cv::Mat& image, const cv::Rect& cell, const DetectorConfig& config) {
+  if (config.corners == CornerKind::ShiTomasi) return shi_tomasi_corners(image, cell, config.min_gradient);
+  std::vector<Candidate> found = fast_corners(image, cell, config.fast_threshold);
+  if (found.empty()) found = fast_corners(image, cell, config.fast_threshold_low);
+  std::erase_if(found, [](const Candidate& c) { return c.response <= 0.0; });  // on an edge, not at a corner
+  return found;
+}
+
+std::vector<Candidate> candidates(const cv::Mat& image, const Grid& grid, const cv::Rect& inner,
+                                  const DetectorConfig& config) {
+  std::vector<Candidate> all;
+  for (int cell = 0; cell < grid.count(); ++cell) {
+    const cv::Rect visible = grid.rectangle(cell) & inner;
+    if (grid.taken(cell) || visible.empty()) continue;
+    std::vector<Candidate> found = corners_in(image, visible, config);
+    const std::size_t kept = std::min<std::size_t>(found.size(), kCandidatesPerCell);
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept), found.end(), stronger);
+    found.resize(kept);
+    for (Candidate& c : found) c.cell = cell, all.push_back(c);
+  }
+  std::sort(all.begin(), all.end(), stronger);
+  return all;
+}
+
+void refine_positions(const cv::Mat& image, std::vector<Corner>& corners) {
+  if (corners.empty()) return;
+  std::vector<cv::Point2f> points;
+  for (const Corner& c : corners) points.emplace_back(static_cast<float>(c.pixel.x()), static_cast<float>(c.pixel.y()));
+  cv::cornerSubPix(image, points, cv::Size(kRefinementHalf, kRefinementHalf), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.02));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d refined(points[i].x, points[i].y);
+    // Further away it has left for another corner.
+    if ((refined - corners[i].pixel).cwiseAbs().maxCoeff() < kRefinementHalf) corners[i].pixel = refined;
+  }
+}
+
+}  // namespace
+
+void DetectorConfig::visit(ConfigFields& fields) {
+  fields.choice("corners", corners, {{"fast_harris", CornerKind::FastHarris}, {"shi_tomasi", CornerKind::ShiTomasi}},
+                {.effect = "what counts as a corner: FAST ranked by Harris (as ORB), or the smaller eigenvalue"});
+  fields.add("max_features", max_features,
+             {.unit = "1", .min = 8, .max = 2000, .effect = "most live tracks per camera; one per cell"});
+  fields.add("cell_px", cell_px,
+             {.unit = "px", .min = 6, .max = 120, .effect = "side of a grid cell in an image 240 px wide; grows with the width"});
+  fields.add("separation_px", separation_px,
+             {.unit = "px", .min = 0, .max = 60, .effect = "no new corner nearer to a track, at 240 px width; grows with the width"});
+  fields.add("border_px", border_px, {.unit = "px", .min = 5, .max = 60, .effect = "no corner nearer to the rim of the image"});
+  fields.add("fast_threshold", fast_threshold,
+             {.unit = "grey", .min = 2, .max = 200, .effect = "contrast of FAST corners, tried first in every cell"});
+  fields.add("fast_threshold_low", fast_threshold_low,
+             {.unit = "grey", .min = 1, .max = 200, .effect = "contrast of FAST corners in cells where the first one finds none"});
+  fields.add("min_gradient", min_gradient,
+             {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest slope of a Shi-Tomasi corner in its weak direction"});
+  fields.add("subpixel", subpixel, {.effect = "move new corners to their sub-pixel saddle point"});
+}
+
+std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied, int limit,
+                                   const DetectorConfig& config) {
+  EDGED_CHECK(image.empty() || image.type() == CV_8UC1, "image type {}", image.type());
+  const int border = std::max(config.border_px, kHarrisHalf + 2);
+  const cv::Rect inner(border, border, image.cols - 2 * border, image.rows - 2 * border);
+  if (limit <= 0 || inner.width <= 0 || inner.height <= 0) return {};
+
+  const double scale = image.cols / kReferenceWidth_px;
+  Grid grid(image.size(), config.cell_px * scale);
+  cv::Mat near_track = cv::Mat::zeros(image.size(), CV_8UC1);
+  const auto occupy = [&](const cv::Point& p) {
+    cv::circle(near_track, p, cvRound(config.separation_px * scale), cv::Scalar(255), cv::FILLED);
+    grid.take(grid.cell_at(p.x, p.y));
+  };
+  for (const Eigen::Vector2d& pixel : occupied) {
+    const cv::Point p(cvRound(pixel.x()), cvRound(pixel.y()));
+    if (p.inside(cv::Rect(cv::Point(), image.size()))) occupy(p);
+  }
+
+  std::vector<Corner> corners;
+  for (const Candidate& c : candidates(image, grid, inner, config)) {
+    if (static_cast<int>(corners.size()) == limit) break;
+    if (grid.taken(c.cell) || near_track.at<uchar>(c.y, c.x) != 0) continue;
+    corners.push_back({Eigen::Vector2d(c.x, c.y), c.response});
+    occupy({c.x, c.y});
+  }
+  if (config.subpixel) refine_positions(image, corners);
+  return corners;
+}
+
+}  // namespace edged

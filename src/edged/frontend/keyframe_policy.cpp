@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// When an instant becomes a keyframe.
+#include "edged/frontend/keyframe_policy.hpp"
+
+#include <numbers>
+
+#include "edged/core/check.hpp"
+#include "edged/frontend/median.hpp"
+
+namespace edged {
+
+void KeyframeConfig::visit(ConfigFields& fields) {
+  fields.add("min_tracked_share", min_tracked_share,
+             {.unit = "1", .min = 0, .max = 1, .effect = "keyframe when fewer of the last one's tracks are alive"});
+  fields.add("parallax_deg", parallax_deg,
+             {.unit = "deg", .min = 0.01, .max = 45, .effect = "keyframe when the median parallax since the last one is larger"});
+  fields.add("rotation_deg", rotation_deg,
+             {.unit = "deg", .min = 0.1, .max = 180, .effect = "keyframe when the camera has turned more since the last one"});
+  fields.add("min_interval_s", min_interval_s, {.unit = "s", .min = 0, .max = 10, .effect = "never two keyframes nearer in time"});
+  fields.add("max_interval_s", max_interval_s,
+             {.unit = "s", .min = 0.01, .max = 100, .effect = "keyframe after this time, unless the camera stands still"});
+  fields.add("still_parallax_deg", still_parallax_deg,
+             {.unit = "deg", .min = 0, .max = 10, .effect = "below this parallax time alone makes no keyframe"});
+}
+
+KeyframeTracks& KeyframeTracks::operator+=(const KeyframeTracks& other) {
+  at_keyframe += other.at_keyframe;
+  parallax_rad.insert(parallax_rad.end(), other.parallax_rad.begin(), other.parallax_rad.end());
+  return *this;
+}
+
+KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  if (!since.any) return KeyframeReason::First;
+  const double age_s = to_seconds(since.time);
+  if (age_s < config.min_interval_s) return KeyframeReason::None;
+  if (since.tracks.alive() < config.min_tracked_share * since.tracks.at_keyframe) return KeyframeReason::FewTracks;
+  const double parallax = median(since.tracks.parallax_rad);
+  if (parallax > config.parallax_deg * kDegree) return KeyframeReason::Parallax;
+  if (since.rotation_rad > config.rotation_deg * kDegree) return KeyframeReason::Rotation;
+  // At standstill keyframes in time would push those with a baseline out of the window.
+  if (age_s > config.max_interval_s && parallax > config.still_parallax_deg * kDegree) return KeyframeReason::Time;
+  return KeyframeReason::None;
+}
+
+std::string to_string(KeyframeReason reason) {
+  switch (reason) {
+    case KeyframeReason::None: return "none";
+    case KeyframeReason::First: return "first";
+    case KeyframeReason::FewTracks: return "few tracks";
+    case KeyframeReason::Parallax: return "parallax";
+    case KeyframeReason::Rotation: return "rotation";
+    case KeyframeReason::Time: return "time";
+  }
+  EDGED_CHECK(false, "reason {}", static_cast<int>(reason));
+}
+
+}  // namespace edged

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// When an instant becomes a keyframe: a pure function of what happened since the last one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edged/core/config.hpp"
+#include "edged/core/time.hpp"
+
+namespace edged {
+
+struct KeyframeConfig {
+  double min_tracked_share = 0.6;
+  double parallax_deg = 1.5;
+  double rotation_deg = 10.0;
+  double min_interval_s = 0.05;
+  double max_interval_s = 0.5;
+  double still_parallax_deg = 0.2;
+
+  void visit(ConfigFields& fields);
+};
+
+/// What became of the last keyframe's corners, in one camera or, added up, in all.
+struct KeyframeTracks {
+  int at_keyframe = 0;               ///< tracks the keyframe had
+  std::vector<double> parallax_rad;  ///< of each that is still alive, with the rotation taken out
+
+  int alive() const { return static_cast<int>(parallax_rad.size()); }
+  KeyframeTracks& operator+=(const KeyframeTracks& other);
+};
+
+struct SinceKeyframe {
+  bool any = false;  ///< false: there is no keyframe yet
+  Duration time{0};
+  double rotation_rad = 0.0;  ///< angle between the camera's attitude then and now
+  KeyframeTracks tracks;
+};
+
+enum class KeyframeReason { None, First, FewTracks, Parallax, Rotation, Time };
+
+/// Why the present instant should become a keyframe, or None. The first rule that holds is named, in the order of the
+/// enumeration; before min_interval_s only First can hold.
+KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config);
+
+std::string to_string(KeyframeReason reason);
+
+}  // namespace edged

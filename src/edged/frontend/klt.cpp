@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Pyramidal Lucas-Kanade on OpenCV.
+#include "edged/frontend/klt.hpp"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kPatchSide = 11;
+// OpenCV's eigenvalue is that of the mean squared gradient [grey/px]^2 over 1024 (Scharr gain 32, scale 2^-20).
+constexpr double kEigenvalueScale = 1.0 / 1024.0;
+
+}  // namespace
+
+void KltConfig::visit(ConfigFields& fields) {
+  fields.add("window_px", window_px, {.unit = "px", .min = 5, .max = 61, .effect = "side of the compared window, odd"});
+  fields.add("levels", levels, {.unit = "1", .min = 1, .max = 6, .effect = "half-size levels searched, full size included"});
+  fields.add("iterations", iterations, {.unit = "1", .min = 1, .max = 100, .effect = "most steps per level"});
+  fields.add("epsilon_px", epsilon_px, {.unit = "px", .min = 0.001, .max = 1, .effect = "a step this short ends a level"});
+  fields.add("min_gradient", min_gradient,
+             {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest RMS slope of a window in its weak direction"});
+}
+
+void ImagePyramid::build(const cv::Mat& image, const KltConfig& config) {
+  EDGED_CHECK(image.type() == CV_8UC1 && !image.empty(), "type {}, {}x{}", image.type(), image.cols, image.rows);
+  cv::buildOpticalFlowPyramid(image, levels_, cv::Size(config.window_px, config.window_px), config.levels - 1, true,
+                              cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
+}
+
+Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<cv::Point2f>& points,
+            const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config) {
+  EDGED_CHECK(points.size() == seeds.size(), "{} points, {} seeds", points.size(), seeds.size());
+  Flow flow{seeds, {}};
+  if (points.empty()) return flow;
+  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, config.iterations, config.epsilon_px);
+  const double min_eigenvalue = config.min_gradient * config.min_gradient * kEigenvalueScale;
+  cv::calcOpticalFlowPyrLK(from.levels(), to.levels(), points, flow.points, flow.found, cv::noArray(),
+                           cv::Size(config.window_px, config.window_px), top_level, stop,
+                           cv::OPTFLOW_USE_INITIAL_FLOW, min_eigenvalue);
+  return flow;
+}
+
+double patch_correlation(const cv::Mat& image_a, const cv::Point2f& a, const cv::Mat& image_b, const cv::Point2f& b) {
+  const cv::Size size(kPatchSide, kPatchSide);
+  cv::Mat patch_a, patch_b;
+  cv::getRectSubPix(image_a, size, a, patch_a, CV_32F);
+  cv::getRectSubPix(image_b, size, b, patch_b, CV_32F);
+  const int n = kPatchSide * kPatchSide;
+  const float* pa = patch_a.ptr<float>();
+  const float* pb = patch_b.ptr<float>();
+  double sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
+  for (int i = 0; i < n; ++i) {
+    const double va = pa[i], vb = pb[i];
+    sum_a += va, sum_b += vb, sum_aa += va * va, sum_bb += vb * vb, sum_ab += va * vb;
+  }
+  const double variance_a = sum_aa - sum_a * sum_a / n, variance_b = sum_bb - sum_b * sum_b / n;
+  if (variance_a < 1e-6 * n || variance_b < 1e-6 * n) return 0.0;
+  return (sum_ab - sum_a * sum_b / n) / std::sqrt(variance_a * variance_b);
+}
+
+}  // namespace edged

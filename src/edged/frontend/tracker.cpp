@@ -1,0 +1,305 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Follows corners through the images of one camera.
+#include "edged/frontend/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "edged/camera/two_view.hpp"
+#include "edged/core/check.hpp"
+#include "edged/frontend/median.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kBackwardTopLevel = 1;  // the way back starts at its goal
+constexpr int kKeyframeTopLevel = 0;  // so does the way from the keyframe
+constexpr double kKeyframeStep_px = 2.0;
+
+cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
+Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
+
+float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+template <typename T>
+std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_t>& indices) {
+  std::vector<T> selected;
+  selected.reserve(indices.size());
+  for (const std::size_t i : indices) selected.push_back(values[i]);
+  return selected;
+}
+
+}  // namespace
+
+void TrackerConfig::visit(ConfigFields& fields) {
+  fields.group("detector", detector);
+  fields.group("klt", klt);
+  fields.group("outliers", outliers);
+  fields.choice("templates", templates, {{"previous", TemplatePolicy::Previous}, {"keyframe", TemplatePolicy::Keyframe}},
+                {.effect = "match to the previous image only, or then also to the last keyframe"});
+  fields.add("forward_backward_px", forward_backward_px,
+             {.unit = "px", .min = 0.01, .max = 100, .effect = "a track followed back must return this near to its start"});
+  fields.add("min_correlation", min_correlation,
+             {.unit = "1", .min = -1, .max = 1, .effect = "least correlation of a track's patch with the one before"});
+  fields.add("border_px", border_px, {.unit = "px", .min = 0, .max = 60, .effect = "tracks nearer to the rim end"});
+  fields.add("merge_px", merge_px, {.unit = "px", .min = 0, .max = 60, .effect = "the younger of two tracks this near ends"});
+  fields.add("retry_share", retry_share,
+             {.unit = "1", .min = 0, .max = 1, .effect = "when more of the predicted seeds fail, the old positions are tried"});
+  fields.add("refill_share", refill_share,
+             {.unit = "1", .min = 0, .max = 1, .effect = "fewer live tracks than this share of max_features ask for corners"});
+  fields.add("sigma_px", sigma_px,
+             {.unit = "px", .min = 0.01, .max = 20, .effect = "standard deviation of an observation told to the estimator"});
+}
+
+FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
+    : name_(std::move(camera_name)), camera_(camera), config_(config) {
+  EDGED_CHECK(camera.width() > 0 && camera.height() > 0, "camera {} has no size", name_);
+  if (config.klt.window_px % 2 == 0) {
+    throw InputError::format("klt.window_px = {} must be odd, e.g. {}", config.klt.window_px, config.klt.window_px + 1);
+  }
+}
+
+TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t, const std::optional<TrackPrediction>& prediction) {
+  TrackSummary summary;
+  summary.before = static_cast<int>(tracks_.size());
+  now_ = t;
+  if (image.empty()) {
+    reset();
+    return summary;
+  }
+  check_image(image);
+  current_.build(image, config_.klt);
+  if (!tracks_.empty()) {
+    Matches matches = match_all(prediction, summary);
+    match_keyframe(matches);
+    merge(matches);
+    apply(matches, summary);
+  }
+  swap_pyramids();
+  return summary;
+}
+
+OutlierResult FeatureTracker::reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur) {
+  std::vector<Correspondence> pairs;
+  std::vector<std::size_t> owners;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Track& track = tracks_[i];
+    if (reference == Reference::Keyframe ? !track.in_keyframe : track.age == 0) continue;
+    pairs.push_back({reference == Reference::Keyframe ? track.keyframe_point : track.previous_point, track.point});
+    owners.push_back(i);
+  }
+  OutlierResult result = find_inliers(pairs, R_ref_cur, camera_.mean_focal(), config_.outliers);
+  std::vector<FeatureId> outliers;
+  for (std::size_t k = 0; k < owners.size(); ++k) {
+    if (!result.inlier[k]) outliers.push_back(tracks_[owners[k]].id);
+  }
+  remove(outliers);
+  return result;
+}
+
+int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id) {
+  if (image.empty()) return 0;
+  check_image(image);
+  std::vector<Eigen::Vector2d> occupied;
+  for (const Track& track : tracks_) occupied.push_back(track.pixel);
+  const int limit = config_.detector.max_features - static_cast<int>(tracks_.size());
+  const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector);
+  for (const Corner& corner : corners) {
+    Track track;
+    track.id = next_id++;
+    track.pixel = track.previous_pixel = corner.pixel;
+    track.point = track.previous_point = camera_.pixel_to_point(corner.pixel);
+    track.first_seen = now_;
+    tracks_.push_back(track);
+  }
+  return static_cast<int>(corners.size());
+}
+
+bool FeatureTracker::needs_corners() const {
+  return static_cast<double>(tracks_.size()) < config_.refill_share * config_.detector.max_features;
+}
+
+void FeatureTracker::mark_keyframe() {
+  for (Track& track : tracks_) {
+    track.keyframe_pixel = track.pixel;
+    track.keyframe_point = track.point;
+    track.in_keyframe = true;
+  }
+  keyframe_tracks_ = static_cast<int>(tracks_.size());
+  if (config_.templates == TemplatePolicy::Keyframe) {
+    keyframe_ = previous_;  // shares the pixels; swap_pyramids sees to it that they are not written over
+  }
+}
+
+KeyframeTracks FeatureTracker::since_keyframe(const Eigen::Matrix3d& R_kf_cur) const {
+  KeyframeTracks result{keyframe_tracks_, {}};
+  for (const Track& track : tracks_) {
+    if (track.in_keyframe) result.parallax_rad.push_back(ray_angle(track.keyframe_point, R_kf_cur, track.point));
+  }
+  return result;
+}
+
+void FeatureTracker::remove(std::span<const FeatureId> ids) {
+  std::erase_if(tracks_, [&](const Track& track) { return std::find(ids.begin(), ids.end(), track.id) != ids.end(); });
+}
+
+void FeatureTracker::reset() {
+  tracks_.clear();
+  previous_.clear();
+  keyframe_.clear();
+  keyframe_tracks_ = 0;
+}
+
+CameraObservations FeatureTracker::observations() const {
+  CameraObservations result{name_, {}};
+  result.features.reserve(tracks_.size());
+  const double sigma = config_.sigma_px / camera_.mean_focal();
+  for (const Track& track : tracks_) result.features.push_back({track.id, track.point, sigma});
+  return result;
+}
+
+void FeatureTracker::check_image(const cv::Mat& image) const {
+  if (image.type() != CV_8UC1 || image.cols != camera_.width() || image.rows != camera_.height()) {
+    throw InputError::format("an image of camera {} is {}x{} with {} channels, its calibration wants {}x{} grey: {}", name_,
+                             image.cols, image.rows, image.channels(), camera_.width(), camera_.height(),
+                             "use the calibration of this camera");
+  }
+}
+
+std::vector<cv::Point2f> FeatureTracker::predict(const TrackPrediction& prediction) const {
+  std::vector<cv::Point2f> seeds;
+  seeds.reserve(tracks_.size());
+  for (const Track& track : tracks_) {
+    const std::optional<double> own = prediction.depth ? prediction.depth(track.id) : std::nullopt;
+    const Eigen::Vector3d p_prev = own.value_or(prediction.scene_depth) * track.point.homogeneous();
+    const std::optional<Eigen::Vector2d> pixel = camera_.project(prediction.T_cur_prev * p_prev);
+    // Far outside stands for behind the camera; match() ends such tracks at the border.
+    seeds.push_back(pixel ? to_cv(*pixel) : cv::Point2f(-1e6F, -1e6F));
+  }
+  return seeds;
+}
+
+FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
+                                              const std::vector<cv::Point2f>& seeds) const {
+  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border)};
+  std::vector<std::size_t> alive;
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
+  }
+  const Flow forward = follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1,
+                              config_.klt);
+  std::vector<std::size_t> reached;
+  for (std::size_t k = 0; k < alive.size(); ++k) {
+    matches.points[alive[k]] = forward.points[k];
+    const bool inside = camera_.contains(to_eigen(forward.points[k]), config_.border_px);
+    matches.fates[alive[k]] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
+    if (matches.fates[alive[k]] == Fate::Kept) reached.push_back(alive[k]);
+  }
+  const std::vector<cv::Point2f> starts = select(from, reached);
+  const Flow backward = follow(current_, previous_, select(matches.points, reached), starts, kBackwardTopLevel,
+                               config_.klt);
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    const std::size_t i = reached[k];
+    if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {
+      matches.fates[i] = Fate::Backward;
+    } else if (patch_correlation(previous_.image(), from[i], current_.image(), matches.points[i]) <
+               config_.min_correlation) {
+      matches.fates[i] = Fate::Appearance;
+    }
+  }
+  return matches;
+}
+
+FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPrediction>& prediction,
+                                                  TrackSummary& summary) const {
+  std::vector<cv::Point2f> from;
+  for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
+  if (!prediction) return match(from, from);
+
+  const std::vector<cv::Point2f> seeds = predict(*prediction);
+  Matches matches = match(from, seeds);
+  std::vector<double> dx, dy;
+  std::vector<std::size_t> failed;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (matches.fates[i] != Fate::Kept) {
+      failed.push_back(i);
+      continue;
+    }
+    dx.push_back(matches.points[i].x - seeds[i].x);
+    dy.push_back(matches.points[i].y - seeds[i].y);
+  }
+  summary.median_innovation_px = {median(dx), median(dy)};
+  if (static_cast<double>(failed.size()) <= config_.retry_share * static_cast<double>(from.size())) return matches;
+
+  summary.prediction_failed = true;
+  const std::vector<cv::Point2f> again = select(from, failed);
+  const Matches second = match(again, again);
+  for (std::size_t k = 0; k < failed.size(); ++k) {
+    matches.points[failed[k]] = second.points[k];
+    matches.fates[failed[k]] = second.fates[k];
+  }
+  return matches;
+}
+
+void FeatureTracker::match_keyframe(Matches& matches) const {
+  if (keyframe_.empty()) return;
+  std::vector<std::size_t> known;
+  std::vector<cv::Point2f> then;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (matches.fates[i] != Fate::Kept || !tracks_[i].in_keyframe) continue;
+    known.push_back(i);
+    then.push_back(to_cv(tracks_[i].keyframe_pixel));
+  }
+  const Flow flow = follow(keyframe_, current_, then, select(matches.points, known), kKeyframeTopLevel, config_.klt);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    cv::Point2f& point = matches.points[known[k]];
+    if (!flow.found[k] || distance(flow.points[k], point) > kKeyframeStep_px) continue;
+    if (!camera_.contains(to_eigen(flow.points[k]), config_.border_px)) continue;
+    if (patch_correlation(keyframe_.image(), then[k], current_.image(), flow.points[k]) < config_.min_correlation) continue;
+    point = flow.points[k];
+  }
+}
+
+void FeatureTracker::merge(Matches& matches) const {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (matches.fates[i] != Fate::Kept) continue;
+    for (std::size_t j = i + 1; j < tracks_.size(); ++j) {  // j is younger
+      if (matches.fates[j] != Fate::Kept) continue;
+      if (distance(matches.points[i], matches.points[j]) < config_.merge_px) matches.fates[j] = Fate::Merged;
+    }
+  }
+}
+
+void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
+  std::vector<Track> alive;
+  alive.reserve(tracks_.size());
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    switch (matches.fates[i]) {
+      case Fate::Kept: break;
+      case Fate::Flow: ++summary.lost_flow; continue;
+      case Fate::Backward: ++summary.lost_backward; continue;
+      case Fate::Appearance: ++summary.lost_appearance; continue;
+      case Fate::Border: ++summary.lost_border; continue;
+      case Fate::Merged: ++summary.merged; continue;
+    }
+    Track track = tracks_[i];
+    track.previous_pixel = track.pixel;
+    track.previous_point = track.point;
+    track.pixel = to_eigen(matches.points[i]);
+    track.point = camera_.pixel_to_point(track.pixel);
+    ++track.age;
+    alive.push_back(track);
+  }
+  tracks_ = std::move(alive);
+  summary.tracked = static_cast<int>(tracks_.size());
+}
+
+void FeatureTracker::swap_pyramids() {
+  std::swap(previous_, current_);
+  const bool shared = !keyframe_.empty() && !current_.empty() && current_.image().data == keyframe_.image().data;
+  if (shared) current_.clear();
+}
+
+}  // namespace edged

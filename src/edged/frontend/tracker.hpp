@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Follows corners through the images of one camera: the same class for event frames and for standard frames.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "edged/camera/camera_model.hpp"
+#include "edged/core/types.hpp"
+#include "edged/frontend/detector.hpp"
+#include "edged/frontend/keyframe_policy.hpp"
+#include "edged/frontend/klt.hpp"
+#include "edged/frontend/outliers.hpp"
+
+namespace edged {
+
+enum class TemplatePolicy {
+  Previous,  ///< each image is matched to the one before it
+  Keyframe,  ///< then moved onto the patch of the last keyframe, where it still looks alike: less drift, more time
+};
+
+struct TrackerConfig {
+  DetectorConfig detector;
+  KltConfig klt;
+  OutlierConfig outliers;
+  TemplatePolicy templates = TemplatePolicy::Previous;
+  double forward_backward_px = 1.0;
+  double min_correlation = 0.7;
+  double border_px = 4.0;
+  double merge_px = 3.0;
+  double retry_share = 0.5;
+  double refill_share = 0.5;
+  double sigma_px = 1.0;
+
+  void visit(ConfigFields& fields);
+};
+
+struct Track {
+  FeatureId id = 0;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();           ///< in the newest image
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();           ///< the same on the unit plane
+  Eigen::Vector2d previous_pixel = Eigen::Vector2d::Zero();  ///< in the image before
+  Eigen::Vector2d previous_point = Eigen::Vector2d::Zero();
+  Eigen::Vector2d keyframe_pixel = Eigen::Vector2d::Zero();  ///< at the last keyframe; only when in_keyframe
+  Eigen::Vector2d keyframe_point = Eigen::Vector2d::Zero();
+  bool in_keyframe = false;  ///< existed at the last keyframe
+  int age = 0;               ///< images it has been followed through
+  Timestamp first_seen;
+};
+
+/// Where the corners are expected in the next image.
+struct TrackPrediction {
+  SE3 T_cur_prev;            ///< previous camera frame to the new one
+  double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
+  std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
+};
+
+/// What happened to the tracks in one image.
+struct TrackSummary {
+  int before = 0;
+  int tracked = 0;
+  int lost_flow = 0;        ///< no texture or out of sight
+  int lost_backward = 0;    ///< following back did not return to the start
+  int lost_appearance = 0;  ///< the patch has become another
+  int lost_border = 0;
+  int merged = 0;                ///< ran into an older track
+  bool prediction_failed = false;  ///< most seeds failed and the search was repeated from the old positions
+  Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - predicted; zero without prediction
+};
+
+/// A cycle is track, reject_outliers, then at a keyframe (or when needs_corners) detect, and mark_keyframe at a keyframe.
+/// Deterministic; one object per camera, not thread safe.
+class FeatureTracker {
+ public:
+  /// camera: model of the images given to track (the ideal pinhole for undistorted event frames).
+  FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config);
+
+  /// Follows all tracks into image (CV_8UC1, size of the camera). An empty image ends all tracks. Throws InputError when the
+  /// size or type does not fit.
+  TrackSummary track(const cv::Mat& image, Timestamp t, const std::optional<TrackPrediction>& prediction);
+
+  enum class Reference { Keyframe, Previous };
+
+  /// Drops the tracks that contradict one rigid motion since the reference. R_ref_cur: rotation from the gyro, camera now to
+  /// camera then; nothing when it cannot be trusted. Tracks younger than the reference are kept.
+  OutlierResult reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur);
+
+  /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from next_id.
+  /// Returns how many.
+  int detect(const cv::Mat& image, FeatureId& next_id);
+
+  /// True when fewer tracks are alive than refill_share of max_features.
+  bool needs_corners() const;
+
+  /// From now on the newest image is the keyframe that parallax and outliers are measured against.
+  void mark_keyframe();
+
+  /// R_kf_cur: camera now to camera at the last keyframe.
+  KeyframeTracks since_keyframe(const Eigen::Matrix3d& R_kf_cur) const;
+
+  /// Ends the tracks that another part has found to be wrong. Unknown ids are ignored.
+  void remove(std::span<const FeatureId> ids);
+
+  /// Ends all tracks and forgets the last image.
+  void reset();
+
+  /// In the order of the tracks' ids; sigma = sigma_px / mean focal length.
+  CameraObservations observations() const;
+
+  const std::vector<Track>& tracks() const { return tracks_; }
+  const CameraModel& camera() const { return camera_; }
+
+ private:
+  enum class Fate { Kept, Flow, Backward, Appearance, Border, Merged };
+  struct Matches {
+    std::vector<cv::Point2f> points;
+    std::vector<Fate> fates;
+  };
+
+  void check_image(const cv::Mat& image) const;
+  std::vector<cv::Point2f> predict(const TrackPrediction& prediction) const;
+  Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds) const;
+  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
+  void match_keyframe(Matches& matches) const;
+  void merge(Matches& matches) const;
+  void apply(const Matches& matches, TrackSummary& summary);
+  void swap_pyramids();
+
+  std::string name_;
+  CameraModel camera_;
+  TrackerConfig config_;
+  std::vector<Track> tracks_;  // by id, so oldest first
+  Timestamp now_;
+  int keyframe_tracks_ = 0;
+  ImagePyramid previous_, current_, keyframe_;  // current_ is the newest only while track runs
+};
+
+}  // namespace edged
