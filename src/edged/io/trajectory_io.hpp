@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,17 +13,21 @@
 
 namespace edged {
 
-/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments. Stamps are exact to the nanosecond, exponents included. Repeated stamps
-/// keep the first pose (logged). Throws InputError naming file and line.
-Trajectory read_tum(const std::filesystem::path& file);
+/// Told of each line that is left out, by its number and what is wrong with it.
+using DamageHandler = std::function<void(std::size_t line, const std::string& detail)>;
 
-/// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored.
-Trajectory read_euroc_csv(const std::filesystem::path& file);
+/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments. Stamps are exact to the nanosecond, exponents included, and rise
+/// strictly in what is returned. A bad line (unreadable, not finite, no unit quaternion, stamp not after the one above)
+/// goes to on_damage; without it, InputError naming file and line, but a repeated stamp only keeps the first pose (logged).
+Trajectory read_tum(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
-/// KITTI: 12 numbers of [R | t], row by row; the line index counts as seconds.
-Trajectory read_kitti(const std::filesystem::path& file);
+/// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Damage as read_tum.
+Trajectory read_euroc_csv(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
-/// Any of the three, told apart by the number of columns and the size of the stamps.
+/// KITTI: 12 numbers of [R | t], row by row; the index of the pose counts as seconds. Damage as read_tum.
+Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
+
+/// Any of the three, told apart by the number of columns and by the stamps (whole numbers: EuRoC).
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 enum class TrajectoryFormat { Tum, EurocCsv };
@@ -33,6 +38,7 @@ class TrajectoryWriter {
   /// comments: each becomes a line that starts with "# ". Throws InputError when the file cannot be made.
   TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format, const std::vector<std::string>& comments);
   void add(const StampedPose& pose);
+  void flush() { out_.flush(); }
 
  private:
   std::ofstream out_;

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
+#include "edged/io/text_dataset.hpp"
+#include "edged/io/trajectory_io.hpp"
+
+namespace edged {
+namespace fs = std::filesystem;
+namespace {
+
+/// `t ax ay az gx gy gz`: acceleration first.
+std::optional<ImuSample> parse_imu(std::string_view line) {
+  FieldReader fields(line);
+  const auto t = parse_seconds(fields.next());
+  if (!t) return std::nullopt;
+  Eigen::Matrix<double, 6, 1> v;
+  for (double& x : v) {
+    const auto number = parse_number(fields.next());
+    if (!number) return std::nullopt;
+    x = *number;
+  }
+  if (!fields.rest().empty()) return std::nullopt;
+  return ImuSample{*t, v.tail<3>(), v.head<3>()};
+}
+
+StampedLines<FrameEntry>::Spec image_list(const fs::path& folder) {
+  return {folder / "images.txt", "frames", "t path", LastLine::MayLackEnd,
+          [folder](std::string_view line) -> std::optional<FrameEntry> {
+            FieldReader fields(line);
+            const auto t = parse_seconds(fields.next());
+            if (!t || fields.rest().empty()) return std::nullopt;
+            return FrameEntry{*t, folder / fields.rest()};
+          }};
+}
+
+std::optional<GroundTruth> read_ground_truth(const fs::path& file, const std::string& camera, Repairs& repairs) {
+  LineDamage damage(file.string(), "groundtruth", repairs);
+  const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
+  GroundTruth truth{read_tum(file, count), camera};
+  if (truth.trajectory.empty()) return std::nullopt;
+  return truth;
+}
+
+cv::Size sensor_size(const fs::path& folder, const Rig* rig, const std::optional<Calibration>& own) {
+  for (const Rig* r : {rig, own ? &own->rig : nullptr})
+    if (r)
+      if (const RigCamera* camera = r->find(Modality::Events)) return {camera->model.width(), camera->model.height()};
+  return ecd_image_size(folder).value_or(cv::Size(kEcdWidth, kEcdHeight));
+}
+
+/// The lens of a sequence can differ from that of the rig: the data set used several.
+void warn_of_other_lens(const fs::path& folder, const Rig& rig) {
+  constexpr double kTolerance = 0.02;
+  const fs::path file = folder / "calib.txt";
+  const RigCamera* camera = rig.find(Modality::Events);
+  if (!camera || !fs::exists(file)) return;
+  const double focal = load_calibration(file).rig.cameras.front().model.mean_focal();
+  if (std::abs(focal / camera->model.mean_focal() - 1.0) <= kTolerance) return;
+  spdlog::warn("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file.string(), focal,
+               rig.name, camera->model.mean_focal());
+}
+
+}  // namespace
+
+bool is_ecd_folder(const fs::path& folder) {
+  return fs::exists(folder / "events.txt") || fs::exists(folder / "images.txt") || fs::exists(folder / "imu.txt");
+}
+
+std::optional<cv::Size> ecd_image_size(const fs::path& folder) {
+  constexpr int kTries = 20;
+  if (!fs::exists(folder / "images.txt")) return std::nullopt;
+  const auto spec = image_list(folder);
+  LineReader lines(spec.file);
+  for (int i = 0; i < kTries; ++i) {
+    const auto line = lines.next();
+    if (!line) break;
+    const auto entry = spec.parse(line->text);
+    if (!entry || !fs::is_regular_file(entry->image)) continue;
+    const cv::Mat image = cv::imread(entry->image.string(), cv::IMREAD_GRAYSCALE);
+    if (!image.empty()) return image.size();
+  }
+  return std::nullopt;
+}
+
+Recording open_ecd(const fs::path& folder, const Rig* rig) {
+  Recording recording;
+  if (fs::exists(folder / "calibration.yaml")) recording.calibration = load_calibration(folder / "calibration.yaml");
+  if (rig) warn_of_other_lens(folder, *rig);
+
+  TextLayout layout;
+  layout.info.name = fs::absolute(folder / ".").parent_path().filename().string();
+  layout.info.format = "ecd";
+  const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
+  layout.info.pose_frame = no_event_camera ? "frames" : "events";
+  layout.parse_stamp = parse_seconds;
+  if (fs::exists(folder / "events.txt")) {
+    const cv::Size size = sensor_size(folder, rig, recording.calibration);
+    layout.events = EventFile{folder / "events.txt", "events", size.width, size.height};
+  }
+  if (fs::exists(folder / "images.txt")) layout.frames = FrameFile{"frames", image_list(folder)};
+  if (fs::exists(folder / "imu.txt"))
+    layout.imu = {folder / "imu.txt", "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_imu};
+  if (const fs::path truth = folder / "groundtruth.txt"; fs::exists(truth))
+    layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
+      return read_ground_truth(truth, camera, repairs);
+    };
+  recording.dataset = std::make_unique<TextDataset>(std::move(layout));
+  return recording;
+}
+
+}  // namespace edged

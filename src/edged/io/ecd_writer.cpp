@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Writing of Event-Camera Dataset folders.
+#include "edged/io/ecd_writer.hpp"
+
+#include <spdlog/fmt/compile.h>
+
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+
+#include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kFlushBytes = 1 << 20;
+constexpr std::size_t kProgressEvery = 256;  // measurements
+
+/// A text file that comes into being with its first line.
+class LazyFile {
+ public:
+  explicit LazyFile(fs::path file) : file_(std::move(file)) {}
+
+  template <typename Format, typename... Args>
+  void add(const Format& format, const Args&... args) {
+    fmt::format_to(std::back_inserter(text_), format, args...);
+    if (text_.size() >= kFlushBytes) flush();
+  }
+
+  void flush() {
+    if (text_.size() == 0) return;
+    if (!out_.is_open()) out_.open(file_, std::ios::binary);
+    out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    out_.flush();
+    if (!out_) throw InputError::format("{}: cannot be written: is the disk full?", file_.string());
+    text_.clear();
+  }
+
+ private:
+  fs::path file_;
+  std::ofstream out_;
+  fmt::memory_buffer text_;
+};
+
+class EcdWriter {
+ public:
+  explicit EcdWriter(const fs::path& folder)
+      : folder_(folder), events_(folder / "events.txt"), images_(folder / "images.txt"), imu_(folder / "imu.txt") {}
+
+  Timestamp operator()(const EventBatch& batch) {
+    keep_to_one(event_camera_, batch.camera);
+    for (const Event& e : batch.events) {
+      const std::int64_t ns = to_ns(e.t);
+      if (ns < 0) {
+        events_.add(FMT_COMPILE("{} {} {} {:d}\n"), format_seconds(e.t), e.x, e.y, e.positive);
+      } else {
+        events_.add(FMT_COMPILE("{}.{:09} {} {} {:d}\n"), ns / 1'000'000'000, ns % 1'000'000'000, e.x, e.y, e.positive);
+      }
+    }
+    counts.events += batch.events.size();
+    return batch.events.empty() ? Timestamp::min() : batch.events.back().t;
+  }
+
+  Timestamp operator()(const Frame& frame) {
+    keep_to_one(frame_camera_, frame.camera);
+    if (counts.frames == 0) fs::create_directories(folder_ / "images");
+    const std::string name = fmt::format("images/frame_{:08}.png", counts.frames++);
+    const fs::path file = folder_ / name;
+    if (!cv::imwrite(file.string(), frame.image))
+      throw InputError::format("{}: cannot be written: is the disk full?", file.string());
+    images_.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
+    return frame.t;
+  }
+
+  Timestamp operator()(const ImuSample& s) {
+    imu_.add(FMT_COMPILE("{} {} {} {} {} {} {}\n"), format_seconds(s.t), s.accel_B.x(), s.accel_B.y(), s.accel_B.z(),
+             s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z());
+    ++counts.imu;
+    return s.t;
+  }
+
+  void write_ground_truth(const Trajectory& trajectory) {
+    LazyFile out(folder_ / "groundtruth.txt");
+    for (const StampedPose& pose : trajectory) {
+      const Eigen::Vector3d& p = pose.T.translation();
+      const Eigen::Quaterniond& q = pose.T.rotation();
+      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
+              q.w());
+    }
+    out.flush();
+    counts.poses = trajectory.size();
+  }
+
+  void flush() {
+    events_.flush();
+    images_.flush();
+    imu_.flush();
+  }
+
+  EcdWriteCounts counts;
+
+ private:
+  /// The format has no room for a second camera of a kind.
+  void keep_to_one(std::string& known, const std::string& camera) {
+    if (known.empty()) known = camera;
+    if (known != camera)
+      throw InputError::format("{}: the Event-Camera Dataset format holds one camera of a kind, not both {} and {}",
+                               folder_.string(), known, camera);
+  }
+
+  fs::path folder_;
+  LazyFile events_, images_, imu_;
+  std::string event_camera_, frame_camera_;
+};
+
+/// With the camera names that the reader of the format gives.
+Calibration with_format_names(Calibration calibration) {
+  bool events = false, frames = false;
+  for (RigCamera& camera : calibration.rig.cameras) {
+    bool& named = camera.modality == Modality::Events ? events : frames;
+    if (!std::exchange(named, true)) camera.name = camera.modality == Modality::Events ? "events" : "frames";
+  }
+  return calibration;
+}
+
+void write_calibration(const Calibration& calibration, const fs::path& folder) {
+  const Calibration named = with_format_names(calibration);
+  const RigCamera* events = named.rig.find(Modality::Events);
+  const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
+  if (m.distortion() != DistortionModel::Equidistant) {
+    const auto& k = m.coefficients();
+    std::ofstream(folder / "calib.txt") << fmt::format("{} {} {} {} {} {} {} {} {}\n", m.fx(), m.fy(), m.cx(), m.cy(), k[0],
+                                                       k[1], k[2], k[3], k[4]);
+  }
+  if (named.has_extrinsics) std::ofstream(folder / "calibration.yaml") << to_yaml(named);
+}
+
+/// T_W_C of the event camera (without one: of the first camera) on its clock.
+Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Calibration>& calibration) {
+  if (!calibration || !calibration->has_extrinsics) {
+    if (truth.frame == "body")
+      throw InputError("groundtruth.txt holds the pose of the camera, the ground truth is of the body: a calibration with "
+                       "extrinsics is needed to write it");
+    return truth.trajectory;
+  }
+  const Rig& rig = calibration->rig;
+  const RigCamera* events = rig.find(Modality::Events);
+  const RigCamera& to = events ? *events : rig.cameras.front();
+  if (truth.frame == to.name) return truth.trajectory;
+  const RigCamera body;  // identity and no offset
+  const RigCamera& from = truth.frame == "body" ? body : rig.camera(truth.frame);
+  const SE3 T_X_C = from.T_B_C.inverse() * to.T_B_C;
+  Trajectory out = truth.trajectory;
+  for (StampedPose& pose : out) pose = {pose.t + from.time_offset - to.time_offset, pose.T * T_X_C};
+  return out;
+}
+
+}  // namespace
+
+EcdWriteCounts write_ecd(Dataset& dataset, const fs::path& folder, const EcdWriteOptions& options) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
+  if (is_ecd_folder(folder)) throw InputError::format("{}: holds a recording already: give another folder", folder.string());
+
+  EcdWriter writer(folder);
+  if (options.calibration) write_calibration(*options.calibration, folder);
+  if (const auto truth = dataset.ground_truth())
+    writer.write_ground_truth(camera_ground_truth(*truth, options.calibration));
+  for (std::size_t i = 1; const auto measurement = dataset.next(); ++i) {
+    const Timestamp t = std::visit(writer, *measurement);
+    if (options.progress && i % kProgressEvery == 0) options.progress(t);
+  }
+  writer.flush();
+  return writer.counts;
+}
+
+}  // namespace edged

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Parsing and ordering of events.txt.
+#include "edged/io/event_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kLateness = std::chrono::milliseconds(1);  // events this late are still sorted in
+constexpr std::size_t kMaxHeld = 200'000;                     // events kept back for sorting
+constexpr std::uint64_t kMaxSeconds = 9'223'372'035;          // of a 64-bit count of nanoseconds
+constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,         10'000,
+                                                  100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+
+unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsigned>('0'); }
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/// A whole number below 100000 that is followed by a blank; null otherwise. The '\n' ends every loop.
+const char* parse_pixel(const char* p, std::uint16_t& value) {
+  while (is_blank(*p)) ++p;
+  const char* const start = p;
+  std::uint32_t v = 0;
+  for (unsigned d; (d = digit(*p)) < 10 && p - start < 5; ++p) v = v * 10 + d;
+  if (p == start || !is_blank(*p) || v > 65535) return nullptr;
+  value = static_cast<std::uint16_t>(v);
+  return p;
+}
+
+std::optional<std::uint16_t> whole_number(std::string_view field) {
+  const auto value = parse_number(field);
+  if (!value || *value < 0 || *value > 65535 || *value != std::floor(*value)) return std::nullopt;
+  return static_cast<std::uint16_t>(*value);
+}
+
+}  // namespace
+
+const char* parse_event_line(const char* p, Event& event) {
+  while (is_blank(*p)) ++p;
+  const char* start = p;
+  std::uint64_t seconds = 0;
+  for (unsigned d; (d = digit(*p)) < 10 && p - start < 11; ++p) seconds = seconds * 10 + d;
+  if (p == start || seconds > kMaxSeconds) return nullptr;
+  std::uint64_t ns = 0;
+  if (*p == '.') {
+    start = ++p;
+    for (unsigned d; (d = digit(*p)) < 10 && p - start < 9; ++p) ns = ns * 10 + d;
+    ns *= kPow10[static_cast<std::size_t>(9 - (p - start))];
+    if (digit(*p) < 10 && digit(*p) >= 5) ++ns;
+    while (digit(*p) < 10) ++p;
+  }
+  if (!is_blank(*p)) return nullptr;
+  event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds * kPow10[9] + ns));
+
+  if (!(p = parse_pixel(p, event.x)) || !(p = parse_pixel(p, event.y))) return nullptr;
+  while (is_blank(*p)) ++p;
+  if (digit(*p) > 1) return nullptr;
+  event.positive = *p++ == '1';
+  while (is_blank(*p) || *p == '\r') ++p;
+  return *p == '\n' ? p + 1 : nullptr;
+}
+
+bool parse_event_fields(std::string_view line, Event& event) {
+  FieldReader fields(line);
+  const auto t = parse_seconds(fields.next());
+  const auto x = whole_number(fields.next()), y = whole_number(fields.next()), p = whole_number(fields.next());
+  if (!t || !x || !y || !p || *p > 1 || !fields.rest().empty()) return false;
+  event = {*t, *x, *y, *p == 1};
+  return true;
+}
+
+EventTextStream::EventTextStream(const std::filesystem::path& file, int width, int height, Repairs& repairs)
+    : blocks_(file), damage_(file.string(), "events", repairs), width_(width), height_(height) {
+  EDGED_CHECK(width > 0 && height > 0, "sensor {} x {}", width, height);
+}
+
+const Event* EventTextStream::peek() {
+  while (begin_ == ready_ && refill()) {
+  }
+  return begin_ < ready_ ? &events_[begin_] : nullptr;
+}
+
+std::vector<Event> EventTextStream::take_before(Timestamp end, std::size_t max_count) {
+  std::vector<Event> taken;
+  while (taken.size() < max_count && peek() && events_[begin_].t < end) {
+    const auto first = events_.begin() + static_cast<std::ptrdiff_t>(begin_);
+    const std::size_t room = std::min(ready_ - begin_, max_count - taken.size());
+    const auto last = std::lower_bound(first, first + static_cast<std::ptrdiff_t>(room), end,
+                                       [](const Event& e, Timestamp t) { return e.t < t; });
+    taken.insert(taken.end(), first, last);
+    begin_ += static_cast<std::size_t>(last - first);
+    taken_ = taken.back().t;
+  }
+  return taken;
+}
+
+bool EventTextStream::refill() {
+  if (at_end_) return false;
+  events_.erase(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(begin_));
+  begin_ = 0;
+  const std::string_view block = blocks_.next();
+  at_end_ = block.empty();
+  parse_block(block);
+  ready_ = events_.size();
+  if (at_end_) return true;
+  while (ready_ > 0 && events_[ready_ - 1].t >= newest_ - kLateness) --ready_;
+  if (events_.size() - ready_ > kMaxHeld) ready_ = events_.size() - 1;  // stamps that stand still must not fill memory
+  return true;
+}
+
+void EventTextStream::parse_block(std::string_view block) {
+  const char* p = block.data();
+  const char* const end = p + block.size();
+  while (p < end) {
+    ++line_;
+    Event event;
+    const char* next = parse_event_line(p, event);
+    if (!next) [[unlikely]] {
+      next = p + std::string_view(p, static_cast<std::size_t>(end - p)).find('\n') + 1;
+      const std::string_view line(p, static_cast<std::size_t>(next - p) - 1);
+      if (!parse_event_fields(line, event)) {
+        reject_line(line, next < end || !blocks_.unterminated());
+        p = next;
+        continue;
+      }
+    }
+    p = next;
+    if (event.x >= width_ || event.y >= height_) [[unlikely]] {
+      damage_.bad(line_, "pixel outside the sensor",
+                  fmt::format("pixel ({}, {}) outside the {} x {} sensor: is this its calibration?", event.x, event.y,
+                              width_, height_));
+    } else if (event.t >= newest_) [[likely]] {
+      newest_ = event.t;
+      events_.push_back(event);
+    } else {
+      place_late(event);
+    }
+  }
+}
+
+void EventTextStream::place_late(const Event& event) {
+  const auto first = events_.begin() + static_cast<std::ptrdiff_t>(begin_);
+  if (newest_ - event.t < kLateness && event.t >= taken_) {
+    const auto place = std::upper_bound(first, events_.end(), event.t, [](Timestamp t, const Event& e) { return t < e.t; });
+    events_.insert(place, event);
+    damage_.mended(line_, "out of order, sorted in", "stamp up to 1 ms before the line above");
+    return;
+  }
+  // Far behind: either this stamp is wrong, or the one before it was, if this one follows the one before that.
+  const bool newest_is_wrong =
+      first != events_.end() && (events_.end() - first > 1 ? (events_.end() - 2)->t : taken_) <= event.t;
+  damage_.bad(line_, "out of order, dropped", "stamp more than 1 ms out of order");
+  if (!newest_is_wrong) return;
+  events_.back() = event;
+  newest_ = event.t;
+}
+
+void EventTextStream::reject_line(std::string_view line, bool terminated) {
+  FieldReader fields(line);
+  const std::string_view first = fields.next();
+  if (first.empty() || first[0] == '#') return;
+  if (!terminated) return damage_.mended(line_, "last line cut", "the file ends within a line");
+  damage_.bad(line_, "unreadable line", "not `t x y p` with t in seconds, whole pixels and p 0 or 1");
+}
+
+}  // namespace edged

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Events from text lines `t x y p`: the parser and the stream built on it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/io/repairs.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+
+/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1. There must be
+/// a '\n' at or after p. Returns the start of the next line, or null when the line is not of that form.
+const char* parse_event_line(const char* p, Event& event);
+
+/// The same for any layout of numbers (commas, exponents, `96.0`): slow, false when it is no event.
+bool parse_event_fields(std::string_view line, Event& event);
+
+/// The events of a file in time order. Memory stays bounded: a block of text and the events in it.
+/// Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines are left out. All counted.
+class EventTextStream {
+ public:
+  EventTextStream(const std::filesystem::path& file, int width, int height, Repairs& repairs);
+
+  /// The next event, or null at the end.
+  const Event* peek();
+
+  /// The events before `end`, at most max_count of them (a limit for damaged files whose stamps stand still).
+  std::vector<Event> take_before(Timestamp end, std::size_t max_count = 65536);
+
+ private:
+  bool refill();
+  void parse_block(std::string_view block);
+  void place_late(const Event& event);
+  void reject_line(std::string_view line, bool terminated);
+
+  BlockReader blocks_;
+  LineDamage damage_;
+  int width_, height_;
+  std::size_t line_ = 0;
+  std::vector<Event> events_;  ///< sorted
+  std::size_t begin_ = 0;      ///< first event not yet taken
+  std::size_t ready_ = 0;      ///< events before this index can no longer change
+  Timestamp taken_ = Timestamp::min();  ///< stamp of the last event taken
+  Timestamp newest_ = Timestamp::min();
+  bool at_end_ = false;
+};
+
+}  // namespace edged

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The folder formats behind open_recording. Internal to io.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/types.hpp>
+#include <optional>
+
+#include "edged/io/recording.hpp"
+
+namespace edged {
+
+/// Something of an Event-Camera Dataset text folder is there.
+bool is_ecd_folder(const std::filesystem::path& folder);
+Recording open_ecd(const std::filesystem::path& folder, const Rig* rig);
+/// Size of the first readable image of images.txt.
+std::optional<cv::Size> ecd_image_size(const std::filesystem::path& folder);
+inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data set's sensor where nothing else tells
+
+/// The folder itself or its mav0, whichever holds cam0 or imu0.
+std::optional<std::filesystem::path> find_mav0(const std::filesystem::path& folder);
+Recording open_euroc(const std::filesystem::path& mav0);
+
+}  // namespace edged

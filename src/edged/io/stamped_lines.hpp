@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Items with a stamp, one a line, in strictly rising time order whatever the file holds.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "edged/core/time.hpp"
+#include "edged/io/repairs.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+
+/// What a last line without line end means: numbers may have lost digits, a file name is checked anyway.
+enum class LastLine { MustEnd, MayLackEnd };
+
+/// T has a member `Timestamp t`. Unreadable and late lines and repeated stamps are left out and counted.
+template <typename T>
+class StampedLines {
+ public:
+  struct Spec {
+    std::filesystem::path file;
+    std::string subject;  ///< "imu", "frames": begins the kinds of repairs
+    std::string layout;   ///< what a line should be, for messages
+    LastLine last_line = LastLine::MustEnd;
+    std::function<std::optional<T>(std::string_view)> parse;
+  };
+
+  StampedLines(Spec spec, Repairs& repairs)
+      : spec_(std::move(spec)), lines_(spec_.file), damage_(spec_.file.string(), spec_.subject, repairs) {
+    advance();
+  }
+
+  /// The next item, or null at the end.
+  const T* peek() const { return next_ ? &*next_ : nullptr; }
+
+  T pop() {
+    T item = std::move(*next_);
+    taken_ = item.t;
+    advance();
+    return item;
+  }
+
+ private:
+  static constexpr Duration kWrongStamp = std::chrono::milliseconds(100);
+
+  /// One item is held back, so that a single wrong stamp far ahead is dropped instead of everything after it.
+  void advance() {
+    next_.reset();
+    while (auto item = parse_next()) {
+      if (!held_) {
+        held_ = std::move(item);
+      } else if (item->t > held_->t) {
+        next_ = std::exchange(held_, std::move(item));
+        return;
+      } else if (item->t == held_->t) {
+        damage_.mended(line_, "duplicate stamp", "same stamp as the line above; the first is kept");
+      } else {
+        const bool held_is_wrong = held_->t - item->t > kWrongStamp && (!taken_ || item->t > *taken_);
+        damage_.bad(line_, "out of order, dropped", "stamp goes back in time");
+        if (held_is_wrong) held_ = std::move(item);
+      }
+    }
+    next_ = std::exchange(held_, std::nullopt);
+  }
+
+  std::optional<T> parse_next() {
+    while (const auto line = lines_.next()) {
+      line_ = line->number;
+      auto item = spec_.parse(line->text);
+      if (item && (line->terminated || spec_.last_line == LastLine::MayLackEnd)) return item;
+      if (!line->terminated) {
+        damage_.mended(line_, "last line cut", "the file ends within a line, which is left out");
+      } else {
+        damage_.bad(line_, "unreadable line", "not `" + spec_.layout + "` in finite numbers");
+      }
+    }
+    return std::nullopt;
+  }
+
+  Spec spec_;
+  LineReader lines_;
+  LineDamage damage_;
+  std::size_t line_ = 0;
+  std::optional<T> next_, held_;
+  std::optional<Timestamp> taken_;
+};
+
+}  // namespace edged

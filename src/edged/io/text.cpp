@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Blocks, lines, fields, numbers and stamps of text files.
+#include "edged/io/text.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r";
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string_view trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+/// The digits of a decimal number without leading zeros, its value being 0.DIGITS * 10^point.
+struct Decimal {
+  std::string digits;
+  long point = 0;
+  bool negative = false;
+};
+
+std::optional<Decimal> parse_decimal(std::string_view text) {
+  Decimal d;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
+    d.negative = text[0] == '-';
+    text.remove_prefix(1);
+  }
+  bool any = false, fraction = false;
+  std::size_t i = 0;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '.' && !fraction) {
+      fraction = true;
+      continue;
+    }
+    if (!is_digit(text[i])) break;
+    any = true;
+    if (!(d.digits.empty() && text[i] == '0')) d.digits.push_back(text[i]);
+    if (!fraction && !d.digits.empty()) ++d.point;
+    if (fraction && d.digits.empty()) --d.point;
+  }
+  if (!any) return std::nullopt;
+  if (i == text.size()) return d;
+  if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+  std::string_view exponent = text.substr(i + 1);
+  if (!exponent.empty() && exponent[0] == '+') exponent.remove_prefix(1);
+  int value = 0;
+  const auto [end, error] = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
+  if (error != std::errc() || end != exponent.data() + exponent.size()) return std::nullopt;
+  d.point += value;
+  return d;
+}
+
+}  // namespace
+
+BlockReader::BlockReader(const std::filesystem::path& file, std::size_t block_bytes)
+    : name_(file.string()), file_(std::fopen(name_.c_str(), "rb")), buffer_(block_bytes + 1) {
+  if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+}
+
+std::string_view BlockReader::next() {
+  filled_ -= given_;
+  std::memmove(buffer_.data(), buffer_.data() + given_, filled_);
+  given_ = 0;
+  const std::size_t room = buffer_.size() - 1 - filled_;
+  const std::size_t got = at_end_ ? 0 : std::fread(buffer_.data() + filled_, 1, room, file_.get());
+  if (std::ferror(file_.get())) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
+  filled_ += got;
+  at_end_ = at_end_ || got < room;
+
+  const std::string_view all(buffer_.data(), filled_);
+  const std::size_t last_end = all.rfind('\n');
+  if (last_end != std::string_view::npos) {
+    given_ = last_end + 1;
+  } else if (!at_end_) {
+    throw InputError::format("{}: no line end within {} bytes: this is not a text file", name_, buffer_.size() - 1);
+  } else if (filled_ > 0) {
+    buffer_[filled_++] = '\n';
+    given_ = filled_;
+    unterminated_ = true;
+  }
+  return {buffer_.data(), given_};
+}
+
+std::optional<TextLine> LineReader::next() {
+  while (true) {
+    if (block_.empty()) block_ = blocks_.next();
+    if (block_.empty()) return std::nullopt;
+    const std::size_t end = block_.find('\n');
+    const std::string_view text = trim(block_.substr(0, end));
+    block_.remove_prefix(end + 1);
+    ++number_;
+    if (!text.empty() && text[0] != '#') return TextLine{text, number_, !(block_.empty() && blocks_.unterminated())};
+  }
+}
+
+std::string_view FieldReader::next() {
+  rest_ = rest();
+  const std::size_t end = rest_.find_first_of(" \t\r,");
+  const std::string_view field = rest_.substr(0, end);
+  rest_.remove_prefix(field.size());
+  rest_ = rest();
+  if (!rest_.empty() && rest_[0] == ',') rest_.remove_prefix(1);
+  return field;
+}
+
+std::string_view FieldReader::rest() const { return trim(rest_); }
+
+std::optional<double> parse_number(std::string_view field) {
+  if (!field.empty() && field[0] == '+') field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<Timestamp> parse_seconds(std::string_view field) {
+  const std::optional<Decimal> d = parse_decimal(field);
+  if (!d) return std::nullopt;
+  const long whole = d->point + 9;  // digits of the number of nanoseconds
+  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
+  if (whole > 18) return std::nullopt;
+  std::int64_t ns = 0;
+  for (long i = 0; i < whole; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ns = ns * 10 + (k < d->digits.size() ? d->digits[k] - '0' : 0);
+  }
+  const auto next = static_cast<std::size_t>(whole);
+  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
+  return Timestamp(Duration(d->negative ? -ns : ns));
+}
+
+std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
+  std::int64_t ns = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
+  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return Timestamp(Duration(ns));
+}
+
+std::string format_seconds(Timestamp t) {
+  const std::int64_t ns = to_ns(t);
+  const std::uint64_t size = ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+  return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", size / 1'000'000'000, size % 1'000'000'000);
+}
+
+std::optional<Timestamp> last_stamp(const std::filesystem::path& file,
+                                    std::optional<Timestamp> (*parse)(std::string_view)) {
+  constexpr std::streamoff kTail = 8192;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  const std::streamoff size = in.tellg();
+  const std::streamoff from = std::max<std::streamoff>(0, size - kTail);
+  std::string tail(static_cast<std::size_t>(size - from), '\0');
+  in.seekg(from);
+  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+
+  std::string_view rest = tail;
+  rest = rest.substr(0, rest.rfind('\n') + 1);  // a last line that was cut may show a wrong stamp
+  while (!rest.empty()) {
+    rest.remove_suffix(1);
+    const std::size_t start = rest.rfind('\n') + 1;
+    if (start == 0 && from > 0) return std::nullopt;  // the line begins before the tail
+    if (const auto t = parse(FieldReader(rest.substr(start)).next())) return t;
+    rest = rest.substr(0, start);
+  }
+  return std::nullopt;
+}
+
+}  // namespace edged

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Reading large text files in bounded memory, and numbers and stamps without rounding.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edged/core/time.hpp"
+
+namespace edged {
+
+/// A file as blocks of whole lines. Throws InputError when it cannot be read or is not text (no line end in a block).
+class BlockReader {
+ public:
+  explicit BlockReader(const std::filesystem::path& file, std::size_t block_bytes = 256 * 1024);
+
+  /// The next block, which ends with '\n'; empty at the end of the file. Valid until the next call.
+  std::string_view next();
+
+  /// True once the file turned out to end without '\n' (one is added to the last block).
+  bool unterminated() const { return unterminated_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+
+  std::string name_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<char> buffer_;
+  std::size_t filled_ = 0;  ///< bytes in buffer_
+  std::size_t given_ = 0;   ///< of those, the ones already handed out
+  bool at_end_ = false;
+  bool unterminated_ = false;
+};
+
+struct TextLine {
+  std::string_view text;    ///< without its end; valid until the next call
+  std::size_t number = 0;   ///< from 1
+  bool terminated = true;   ///< false: the last line of a file that does not end with '\n'
+};
+
+/// A file line by line; blank lines and those that start with '#' are left out.
+class LineReader {
+ public:
+  explicit LineReader(const std::filesystem::path& file) : blocks_(file, 64 * 1024) {}
+  std::optional<TextLine> next();
+
+ private:
+  BlockReader blocks_;
+  std::string_view block_;
+  std::size_t number_ = 0;
+};
+
+/// Fields of a line, separated by blanks, tabs, carriage returns or single commas.
+class FieldReader {
+ public:
+  explicit FieldReader(std::string_view line) : rest_(line) {}
+  /// The next field; empty when there is none.
+  std::string_view next();
+  /// All that is left, trimmed.
+  std::string_view rest() const;
+
+ private:
+  std::string_view rest_;
+};
+
+/// A finite number that fills the whole field, or nothing.
+std::optional<double> parse_number(std::string_view field);
+
+/// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a number
+/// or does not fit.
+std::optional<Timestamp> parse_seconds(std::string_view field);
+
+/// Whole nanoseconds.
+std::optional<Timestamp> parse_nanoseconds(std::string_view field);
+
+/// Seconds with all nine decimals.
+std::string format_seconds(Timestamp t);
+
+/// Stamp of the last complete line (its first field), read from the end of the file; nothing when there is none.
+std::optional<Timestamp> last_stamp(const std::filesystem::path& file,
+                                    std::optional<Timestamp> (*parse)(std::string_view));
+
+}  // namespace edged

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Merging of sensors by stamp, lazy loading of images.
+#include "edged/io/text_dataset.hpp"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kBatchSpan = std::chrono::milliseconds(5);
+
+template <typename Stream>
+Timestamp next_stamp(std::optional<Stream>& stream) {
+  if (!stream) return Timestamp::max();
+  const auto* item = stream->peek();
+  return item ? item->t : Timestamp::max();
+}
+
+}  // namespace
+
+TextDataset::TextDataset(TextLayout layout) : layout_(std::move(layout)) {
+  open_streams();
+  find_ends();
+}
+
+void TextDataset::open_streams() {
+  const auto note_empty = [&](const std::string& subject, const std::filesystem::path& file) {
+    repairs_.add(subject + ": empty file", file.string() + ": holds nothing readable");
+  };
+  std::string files;
+  const auto opened = [&](auto& stream, const std::string& subject, const std::filesystem::path& file) {
+    files += (files.empty() ? "" : ", ") + file.filename().string();
+    if (stream->peek()) return true;
+    note_empty(subject, file);
+    stream.reset();
+    return false;
+  };
+  DatasetInfo& info = layout_.info;
+  if (const auto& e = layout_.events) {
+    events_.emplace(e->file, e->width, e->height, repairs_);
+    info.has_events = opened(events_, "events", e->file);
+  }
+  if (const auto& f = layout_.frames) {
+    frames_.emplace(f->lines, repairs_);
+    info.has_frames = opened(frames_, "frames", f->lines.file);
+  }
+  if (const auto& i = layout_.imu) {
+    imu_.emplace(*i, repairs_);
+    info.has_imu = opened(imu_, "imu", i->file);
+  }
+  if (!info.has_events && !info.has_frames && !info.has_imu)
+    throw InputError::format("{}: nothing to read: {} hold no readable line", info.name, files);
+}
+
+void TextDataset::find_ends() {
+  DatasetInfo& info = layout_.info;
+  info.begin = std::min({next_stamp(events_), next_stamp(frames_), next_stamp(imu_)});
+  const auto extend = [&info](std::optional<Timestamp> t) {
+    if (t) info.end = std::max(info.end.value_or(*t), *t);
+  };
+  if (events_) extend(last_stamp(layout_.events->file, parse_seconds));
+  if (frames_) extend(last_stamp(layout_.frames->lines.file, layout_.parse_stamp));
+  if (imu_) extend(last_stamp(layout_.imu->file, layout_.parse_stamp));
+}
+
+std::optional<Measurement> TextDataset::next() {
+  while (true) {
+    const Timestamp t_imu = next_stamp(imu_), t_events = next_stamp(events_), t_frame = next_stamp(frames_);
+    if (t_imu == Timestamp::max() && t_events == Timestamp::max() && t_frame == Timestamp::max()) return std::nullopt;
+    if (t_imu <= t_events && t_imu <= t_frame) return imu_->pop();
+    if (t_events <= t_frame) {
+      // Events at the stamp of a frame come before it, those at the stamp of an IMU sample after it.
+      const Timestamp before_frame = t_frame == Timestamp::max() ? t_frame : t_frame + Duration(1);
+      const Timestamp end = std::min({t_imu, before_frame, t_events + kBatchSpan});
+      return EventBatch{layout_.events->camera, events_->take_before(end)};
+    }
+    if (auto frame = load(frames_->pop())) return std::move(*frame);
+  }
+}
+
+std::optional<Frame> TextDataset::load(const FrameEntry& entry) {
+  const auto skip = [&](const std::string& kind) {
+    repairs_.add("frames: " + kind, entry.image.string() + ": " + kind);
+    return std::nullopt;
+  };
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(entry.image, ignored)) return skip("image missing");
+  cv::Mat image;
+  try {
+    image = cv::imread(entry.image.string(), cv::IMREAD_GRAYSCALE);
+  } catch (const cv::Exception&) {
+    image.release();
+  }
+  if (image.empty()) return skip("image unreadable");
+  if (image_width_ == 0) image_width_ = image.cols, image_height_ = image.rows;
+  if (image.cols != image_width_ || image.rows != image_height_) return skip("image of another size");
+  return Frame{entry.t, layout_.frames->camera, image};
+}
+
+std::optional<GroundTruth> TextDataset::ground_truth() const {
+  ground_truth_repairs_ = Repairs();
+  return layout_.ground_truth ? layout_.ground_truth(ground_truth_repairs_) : std::nullopt;
+}
+
+std::map<std::string, std::size_t> TextDataset::repairs() const {
+  std::map<std::string, std::size_t> all = repairs_.counts();
+  for (const auto& [kind, count] : ground_truth_repairs_.counts()) all[kind] += count;
+  return all;
+}
+
+}  // namespace edged

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A recording whose sensors are separate text files: merges them by stamp. The formats only differ in its TextLayout.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "edged/core/dataset.hpp"
+#include "edged/io/event_text.hpp"
+#include "edged/io/stamped_lines.hpp"
+
+namespace edged {
+
+/// One line of a list of images.
+struct FrameEntry {
+  Timestamp t;
+  std::filesystem::path image;
+};
+
+struct EventFile {
+  std::filesystem::path file;
+  std::string camera;
+  int width = 0, height = 0;
+};
+
+struct FrameFile {
+  std::string camera;
+  StampedLines<FrameEntry>::Spec lines;
+};
+
+/// Where the parts of a recording are and how their lines read.
+struct TextLayout {
+  DatasetInfo info;  ///< name, format and pose_frame
+  std::optional<EventFile> events;
+  std::optional<FrameFile> frames;
+  std::optional<StampedLines<ImuSample>::Spec> imu;
+  std::optional<Timestamp> (*parse_stamp)(std::string_view) = nullptr;  ///< of the first field of imu and frames
+  std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;     ///< may be empty
+};
+
+class TextDataset final : public Dataset {
+ public:
+  /// Throws InputError when no sensor has anything readable.
+  explicit TextDataset(TextLayout layout);
+
+  const DatasetInfo& info() const override { return layout_.info; }
+  std::optional<Measurement> next() override;
+  std::optional<GroundTruth> ground_truth() const override;
+  std::map<std::string, std::size_t> repairs() const override;
+
+ private:
+  void open_streams();
+  void find_ends();
+  std::optional<Frame> load(const FrameEntry& entry);
+
+  TextLayout layout_;
+  Repairs repairs_;
+  mutable Repairs ground_truth_repairs_;  ///< of the last reading: not counted twice
+  std::optional<EventTextStream> events_;
+  std::optional<StampedLines<FrameEntry>> frames_;
+  std::optional<StampedLines<ImuSample>> imu_;
+  int image_width_ = 0, image_height_ = 0;  ///< of the first image
+};
+
+}  // namespace edged

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Reading and writing of trajectories.
+#include "edged/io/trajectory_io.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "edged/core/check.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kQuaternionTolerance = 0.05;  // of the norm; printed with few digits it is off by less
+constexpr double kRotationTolerance = 1e-2;
+
+/// What a line says, or what is wrong with it.
+struct ParsedLine {
+  std::optional<StampedPose> pose;
+  std::string wrong;
+};
+
+using ParseLine = ParsedLine (*)(std::string_view line, std::size_t index);
+
+template <std::size_t N>
+bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
+  for (double& x : numbers) {
+    const auto number = parse_number(fields.next());
+    if (!number) return false;
+    x = *number;
+  }
+  return true;
+}
+
+ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quaterniond& q) {
+  if (std::abs(q.norm() - 1.0) > kQuaternionTolerance)
+    return {std::nullopt, fmt::format("the quaternion has norm {:.3f}, not 1", q.norm())};
+  return {StampedPose{t, SE3(q, p)}, ""};
+}
+
+ParsedLine parse_tum(std::string_view line, std::size_t) {
+  FieldReader fields(line);
+  const auto t = parse_seconds(fields.next());
+  std::array<double, 7> v;
+  if (!t || !read_numbers(fields, v) || !fields.rest().empty())
+    return {std::nullopt, "not `t tx ty tz qx qy qz qw` in finite numbers"};
+  return make_pose(*t, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]});
+}
+
+ParsedLine parse_euroc(std::string_view line, std::size_t) {
+  FieldReader fields(line);
+  const auto t = parse_nanoseconds(fields.next());
+  std::array<double, 7> v;
+  if (!t || !read_numbers(fields, v)) return {std::nullopt, "not `t_ns, px, py, pz, qw, qx, qy, qz` in finite numbers"};
+  return make_pose(*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+}
+
+ParsedLine parse_kitti(std::string_view line, std::size_t index) {
+  FieldReader fields(line);
+  std::array<double, 12> v;
+  if (!read_numbers(fields, v) || !fields.rest().empty()) return {std::nullopt, "not the 12 finite numbers of [R | t]"};
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> T(v.data());
+  const Eigen::Matrix3d R = T.leftCols<3>();
+  const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (deviation > kRotationTolerance || R.determinant() < 0)
+    return {std::nullopt, fmt::format("no rotation matrix (deviation {:.2g})", deviation)};
+  return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
+}
+
+Trajectory read_poses(const std::filesystem::path& file, ParseLine parse, const DamageHandler& on_damage) {
+  const auto damaged = [&](std::size_t line, const std::string& detail) {
+    if (!on_damage) throw InputError::format("{}:{}: {}", file.string(), line, detail);
+    on_damage(line, detail);
+  };
+  Trajectory trajectory;
+  std::size_t repeated = 0;
+  LineReader lines(file);
+  while (const auto line = lines.next()) {
+    const ParsedLine parsed = parse(line->text, trajectory.size());
+    if (!parsed.pose) {
+      damaged(line->number, parsed.wrong);
+    } else if (trajectory.empty() || parsed.pose->t > trajectory.back().t) {
+      trajectory.push_back(*parsed.pose);
+    } else if (parsed.pose->t == trajectory.back().t && !on_damage) {
+      ++repeated;
+    } else {
+      damaged(line->number, "the stamp is not after the one above: sort the file by time");
+    }
+  }
+  if (repeated > 0) spdlog::warn("{}: {} repeated stamps, the first pose of each is kept", file.string(), repeated);
+  return trajectory;
+}
+
+}  // namespace
+
+Trajectory read_tum(const std::filesystem::path& file, const DamageHandler& on_damage) {
+  return read_poses(file, parse_tum, on_damage);
+}
+
+Trajectory read_euroc_csv(const std::filesystem::path& file, const DamageHandler& on_damage) {
+  return read_poses(file, parse_euroc, on_damage);
+}
+
+Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage) {
+  return read_poses(file, parse_kitti, on_damage);
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  LineReader lines(file);
+  const auto line = lines.next();
+  if (!line) throw InputError::format("{}: holds no pose", file.string());
+  FieldReader fields(line->text);
+  const std::string_view first = fields.next();
+  std::size_t columns = 1;
+  while (!fields.next().empty()) ++columns;
+  if (columns == 12) return read_kitti(file);
+  const bool whole = parse_nanoseconds(first).has_value() && to_ns(*parse_nanoseconds(first)) > 1'000'000'000'000;
+  if (columns >= 8 && whole) return read_euroc_csv(file);
+  if (columns == 8) return read_tum(file);
+  throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12", file.string(),
+                           line->number, columns);
+}
+
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
+                                   const std::vector<std::string>& comments)
+    : out_(file), format_(format) {
+  if (!out_) throw InputError::format("{}: cannot be written", file.string());
+  for (const std::string& comment : comments) out_ << "# " << comment << '\n';
+  out_ << (format == TrajectoryFormat::Tum ? "# timestamp [s] tx ty tz [m] qx qy qz qw\n"
+                                           : "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z\n");
+}
+
+void TrajectoryWriter::add(const StampedPose& pose) {
+  const Eigen::Vector3d& p = pose.T.translation();
+  const Eigen::Quaterniond& q = pose.T.rotation();
+  if (format_ == TrajectoryFormat::Tum) {
+    out_ << fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  } else {
+    out_ << fmt::format("{},{},{},{},{},{},{},{}\n", to_ns(pose.t), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+  }
+}
+
+void write_tum(const std::filesystem::path& file, const Trajectory& trajectory, const std::vector<std::string>& comments) {
+  TrajectoryWriter writer(file, TrajectoryFormat::Tum, comments);
+  for (const StampedPose& pose : trajectory) writer.add(pose);
+}
+
+void write_euroc_csv(const std::filesystem::path& file, const Trajectory& trajectory,
+                     const std::vector<std::string>& comments) {
+  TrajectoryWriter writer(file, TrajectoryFormat::EurocCsv, comments);
+  for (const StampedPose& pose : trajectory) writer.add(pose);
+}
+
+}  // namespace edged
