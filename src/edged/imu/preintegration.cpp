@@ -38,22 +38,27 @@ struct StepJacobians {
   Matrix3d d_v_d_phi, d_v_d_gyro, d_v_d_accel;
 };
 
-/// (I5). Variances are those of the mean rate and acceleration of the step, per axis. Position follows from velocity:
-/// dp = dt v + dt/2 dv, so its rows are dt/2 times those of the velocity.
+/// A * M, where A takes errors (phi, v, p) from the start of the step to its end, without the zeros and ones of A:
+/// position follows from velocity, dp = dt v + dt/2 dv, so its rows are dt/2 times those that velocity gains.
+Matrix9d advance_errors(const StepJacobians& step, const Matrix9d& M) {
+  const Eigen::Matrix<double, 3, 9> v_gain = step.d_v_d_phi * M.topRows<3>();
+  Matrix9d next;
+  next.topRows<3>() = step.turn_back * M.topRows<3>();
+  next.middleRows<3>(3) = M.middleRows<3>(3) + v_gain;
+  next.bottomRows<3>() = M.bottomRows<3>() + step.dt * M.middleRows<3>(3) + 0.5 * step.dt * v_gain;
+  return next;
+}
+
+/// (I5). Variances are those of the mean rate and acceleration of the step, per axis.
 Matrix9d next_covariance(const Matrix9d& covariance, const StepJacobians& step, double gyro_variance,
                          double accel_variance) {
   const double half_dt = 0.5 * step.dt;
-  Matrix9d A = Matrix9d::Identity();
-  A.block<3, 3>(0, 0) = step.turn_back;
-  A.block<3, 3>(3, 0) = step.d_v_d_phi;
-  A.block<3, 3>(6, 0) = half_dt * step.d_v_d_phi;
-  A.block<3, 3>(6, 3) = step.dt * Matrix3d::Identity();
   Eigen::Matrix<double, 9, 3> G_gyro, G_accel;
   G_gyro << step.d_phi_d_gyro, step.d_v_d_gyro, half_dt * step.d_v_d_gyro;
   G_accel << Matrix3d::Zero(), step.d_v_d_accel, half_dt * step.d_v_d_accel;
-  Matrix9d next = A * covariance * A.transpose();
-  next.noalias() += gyro_variance * G_gyro * G_gyro.transpose();
-  next.noalias() += accel_variance * G_accel * G_accel.transpose();
+  // A (A P)^T = A P A^T, as P is symmetric.
+  Matrix9d next = advance_errors(step, advance_errors(step, covariance).transpose());
+  next += (gyro_variance * G_gyro) * G_gyro.transpose() + (accel_variance * G_accel) * G_accel.transpose();
   return next;
 }
 
