@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "config_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "edged/pipeline/odometry_config.hpp"
+#include "exit_code.hpp"
+
+namespace edged {
+namespace {
+
+struct ConfigOptions {
+  std::string filter;
+  bool yaml = false;
+  bool json = false;
+};
+
+void print_text(const ConfigField& field) {
+  std::string kind = field.type;
+  if (field.range != "any") kind += ", " + field.range;
+  if (!field.unit.empty()) kind += " " + field.unit;
+  fmt::print("{} = {}\n    {}\n    {}\n", field.key, field.default_value, kind, field.effect);
+}
+
+int run_config(const ConfigOptions& options) {
+  OdometryConfig config;
+  const ConfigFields fields = ConfigFields::of(config);
+  if (options.yaml) {
+    fmt::print("{}", fields.to_yaml());
+    return kExitOk;
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ConfigField& field : fields.all()) {
+    if (field.key.find(options.filter) == std::string::npos) continue;
+    if (!options.json) print_text(field);
+    list.push_back({{"key", field.key},
+                    {"type", field.type},
+                    {"unit", field.unit},
+                    {"range", field.range},
+                    {"default", field.default_value},
+                    {"effect", field.effect}});
+  }
+  if (options.json) fmt::print("{}\n", list.dump(2));
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_config_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<ConfigOptions>();
+  CLI::App* config = app.add_subcommand("config", "List every option: key, default, type, range, unit and effect");
+  config->add_option("FILTER", options->filter, "Only options whose key contains this text");
+  CLI::Option* yaml = config->add_flag("--yaml", options->yaml, "Print a complete file for --config instead");
+  config->add_flag("--json", options->json, "Print json instead of text")->excludes(yaml);
+  config->footer("Example:\n  edged config --yaml > mine.yaml   # edit, then: edged run RECORDING --config mine.yaml");
+  config->callback([options, &chosen] { chosen = [options] { return run_config(*options); }; });
+}
+
+}  // namespace edged

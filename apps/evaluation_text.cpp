@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "evaluation_text.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace edged {
+namespace {
+
+nlohmann::ordered_json to_json(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
+          {"min", s.min},   {"max", s.max},   {"sse", s.sse},       {"count", s.count}};
+}
+
+std::string row(const char* name, const Statistics& s, const char* unit) {
+  return fmt::format("  {:<22} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f}  {}\n", name, s.rmse, s.mean,
+                     s.median, s.std, s.min, s.max, unit);
+}
+
+std::string window_text(const TimeWindow& window) {
+  if (window == TimeWindow{}) return "all poses";
+  if (std::isinf(window.end_s)) return fmt::format("seconds {} to the end", window.begin_s);
+  return fmt::format("seconds {} to {}", window.begin_s, window.end_s);
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const Evaluation& e) {
+  nlohmann::ordered_json json = {
+      {"protocol", e.protocol.name},
+      {"alignment", to_string(e.protocol.alignment)},
+      {"window_s", {e.protocol.window.begin_s, e.protocol.window.end_s}},  // json has no infinity: null is "to the end"
+      {"pairs", e.pairs},
+      {"outside_ground_truth", e.outside},
+      {"in_ground_truth_gaps", e.in_gaps},
+      {"duration_s", e.duration_s},
+      {"path_length_m", e.path_length_m},
+      {"scale", e.scale},
+      {"ate_rmse_m", e.ate_m.rmse},
+      {"mpe_percent", e.mpe_percent},
+      {"rotation_deg_per_m", e.rotation_deg_per_m},
+      {"yaw_deg_per_m", e.yaw_deg_per_m},
+      {"ate_m", to_json(e.ate_m)},
+      {"rotation_deg", to_json(e.rotation_deg)},
+      {"yaw_deg", to_json(e.yaw_deg)},
+  };
+  for (const RelativeError& relative : e.relative) {
+    json["rpe"].push_back({{"delta_s", relative.delta_s},
+                           {"translation_m", to_json(relative.translation_m)},
+                           {"rotation_deg", to_json(relative.rotation_deg)}});
+  }
+  return json;
+}
+
+std::string to_table(const Evaluation& e) {
+  std::string table = fmt::format("{} pairs over {:.2f} s and {:.3f} m; {} alignment on {}\n", e.pairs, e.duration_s,
+                                  e.path_length_m, to_string(e.protocol.alignment), window_text(e.protocol.window));
+  if (e.outside + e.in_gaps > 0) {
+    table +=
+        fmt::format("without ground truth: {} poses outside its time span, {} in its gaps\n", e.outside, e.in_gaps);
+  }
+  table += fmt::format("  {:<22} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "rmse", "mean", "median", "std",
+                       "min", "max");
+  table += row("ATE position", e.ate_m, "m");
+  table += row("ATE rotation", e.rotation_deg, "deg");
+  table += row("ATE yaw", e.yaw_deg, "deg");
+  for (const RelativeError& relative : e.relative) {
+    if (relative.translation_m.count == 0) continue;
+    table += row(fmt::format("RPE position, {} s", relative.delta_s).c_str(), relative.translation_m, "m");
+    table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
+  }
+  table += fmt::format("  mean position error    {:.4f} % of the path\n", e.mpe_percent);
+  table +=
+      fmt::format("  mean rotation error    {:.4f} deg/m, yaw {:.4f} deg/m\n", e.rotation_deg_per_m, e.yaw_deg_per_m);
+  table += fmt::format("  scale (Sim3)           {:.6f}{}\n", e.scale,
+                       e.protocol.alignment == AlignmentKind::Sim3 ? " applied" : " estimated, not applied");
+  return table;
+}
+
+}  // namespace edged

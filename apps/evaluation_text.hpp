@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// An evaluation as json and as a table.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "edged/eval/metrics.hpp"
+
+namespace edged {
+
+nlohmann::ordered_json to_json(const Evaluation& evaluation);
+std::string to_table(const Evaluation& evaluation);
+
+}  // namespace edged

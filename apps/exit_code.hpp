@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the program's exit status means; README.md lists the same.
+#pragma once
+
+namespace edged {
+
+enum ExitCode : int {
+  kExitOk = 0,
+  kExitBug = 1,          ///< a bug of ours: a failed check or an unexpected exception
+  kExitUsage = 2,        ///< the command line
+  kExitInput = 3,        ///< recording, calibration or configuration
+  kExitNeverGood = 4,    ///< ran to the end, but there never was a Good pose
+  kExitSignalBase = 128  ///< + the signal's number: 130 after Ctrl-C, 143 after SIGTERM; files are complete
+};
+
+}  // namespace edged

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where log lines go: warnings to stderr at once, everything to run.log as soon as there is a folder for it.
+#pragma once
+
+#include <filesystem>
+
+namespace edged {
+
+/// Call first in main. Keeps the newest lines until attach_log_file.
+void start_logging();
+
+/// From now on everything also goes to the file, the lines kept so far first.
+void attach_log_file(const std::filesystem::path& file);
+
+}  // namespace edged

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The one binary: picks the sub-command, and turns exceptions into one line and an exit code.
+#include <spdlog/fmt/fmt.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <opencv2/core/utility.hpp>
+
+#include "config_command.hpp"
+#include "edged/core/check.hpp"
+#include "eval_command.hpp"
+#include "exit_code.hpp"
+#include "log.hpp"
+#include "run_command.hpp"
+#include "simulate_command.hpp"
+#include "version.hpp"
+
+namespace {
+
+constexpr const char* kFooter =
+    "A first minute:\n"
+    "  edged simulate --out /tmp/flight          make a recording with ground truth\n"
+    "  edged run /tmp/flight                     estimate its trajectory; prints the error\n"
+    "  edged run /tmp/flight --mode events       the same from events and IMU alone\n"
+    "  edged config packets                      what can be tuned in that part\n"
+    "\n"
+    "Exit codes: 0 ok, 1 a bug of ours, 2 wrong command line, 3 bad recording, calibration or option,\n"
+    "  4 ran, but never got a good pose, 130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
+    "`edged COMMAND --help` tells more.";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace edged;
+  cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
+  start_logging();
+
+  CLI::App app{"Edged USLAM: visual-inertial odometry from events, frames and an IMU", "edged"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("edged {}", kVersion));
+  app.footer(kFooter);
+  std::function<int()> chosen;
+  add_run_command(app, chosen);
+  add_simulate_command(app, chosen);
+  add_eval_command(app, chosen);
+  add_config_command(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kExitOk : kExitUsage;
+  }
+
+  try {
+    return chosen();
+  } catch (const InputError& e) {
+    fmt::print(stderr, "edged: {}\n", e.what());
+    return kExitInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "edged: a bug, please report it with this line: {}\n", e.what());
+    return kExitBug;
+  }
+}

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Poses of the body turned into poses of the sensor that a user asks for.
+#pragma once
+
+#include <string>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// The body or one camera, with what turns a body pose into its pose.
+class OutputFrame {
+ public:
+  /// name: "body" or a camera of the rig. Throws InputError that lists the names there are.
+  OutputFrame(const Rig& rig, const std::string& name);
+
+  const std::string& name() const { return name_; }
+
+  /// T_W_B on the IMU clock -> T_W_X on X's own clock: T_W_C = T_W_B * T_B_C, t_cam = t_imu - time_offset.
+  StampedPose operator()(const StampedPose& body) const { return {body.t - time_offset_, body.T * T_B_X_}; }
+  Trajectory operator()(const Trajectory& body) const;
+
+  /// For the comment line of a file: which frame, which clock.
+  std::string describe() const;
+
+ private:
+  std::string name_;
+  SE3 T_B_X_;
+  Duration time_offset_ = Duration(0);
+};
+
+}  // namespace edged

@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_command.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/core/check.hpp"
+#include "edged/pipeline/odometry.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "log.hpp"
+#include "run_folder.hpp"
+#include "run_summary.hpp"
+#include "source.hpp"
+#include "status_line.hpp"
+#include "version.hpp"
+
+namespace edged {
+namespace {
+
+struct RunOptions {
+  SourceOptions source;
+  std::filesystem::path config_file;
+  std::vector<std::string> assignments;
+  std::string mode = "auto";
+  std::string frame = "auto";
+  std::filesystem::path out;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// One run from the first measurement to the files' end.
+class Run {
+ public:
+  Run(const RunOptions& options, Source source, const OdometryConfig& config);
+  RunSummary go();
+
+ private:
+  void take(Measurement measurement);
+  void process_ready_packets();
+  void show_status(Timestamp now, const OdometryOutput& output);
+  RunSummary summarize();
+
+  const RunOptions& options_;
+  Source source_;
+  Mode mode_;
+  OutputFrame frame_;
+  std::filesystem::path folder_;
+  StageTimings program_timings_;
+  Packetizer packetizer_;
+  Odometry odometry_;
+  std::optional<RunWriter> writer_;
+  RunStatistics statistics_;
+  StatusLine status_line_;
+  ResourceMeter meter_;
+};
+
+const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
+
+std::string mode_name(Mode mode) {
+  for (const auto& [name, value] : kModes) {
+    if (value == mode) return name;
+  }
+  EDGED_CHECK(false, "mode {}", static_cast<int>(mode));
+}
+
+/// The mode asked for, or by default the most that the recording holds.
+Mode choose_mode(const std::string& wanted, const DatasetInfo& info) {
+  if (!info.has_imu) throw InputError::format("{}: has no IMU samples, and every mode needs them", info.name);
+  const bool fusible = info.has_events && info.has_frames;
+  const Mode mode = wanted != "auto"  ? kModes.at(wanted)
+                    : fusible         ? Mode::Fused
+                    : info.has_events ? Mode::Events
+                                      : Mode::Frames;
+  if (mode != Mode::Frames && !info.has_events) {
+    throw InputError::format("{}: has no events; use --mode frames", info.name);
+  }
+  if (mode != Mode::Events && !info.has_frames) {
+    throw InputError::format("{}: has no frames; use --mode events", info.name);
+  }
+  return mode;
+}
+
+OdometryConfig load_config(const RunOptions& options) {
+  OdometryConfig config;
+  ConfigFields fields = ConfigFields::of(config);
+  if (!options.config_file.empty()) fields.load(options.config_file);
+  for (const std::string& assignment : options.assignments) fields.set(assignment);
+  return config;
+}
+
+std::filesystem::path run_folder_path(const RunOptions& options, const DatasetInfo& info, Mode mode) {
+  if (!options.out.empty()) return options.out;
+  return std::filesystem::path("runs") / (info.name + "-" + mode_name(mode));
+}
+
+std::string config_text(OdometryConfig config, const DatasetInfo& info, Mode mode) {
+  return fmt::format(
+             "# every option of this run; give it to --config to repeat it\n# recording {}, mode {}, edged {}\n",
+             info.name, mode_name(mode), kVersion) +
+         ConfigFields::of(config).to_yaml();
+}
+
+Run::Run(const RunOptions& options, Source source, const OdometryConfig& config)
+    : options_(options),
+      source_(std::move(source)),
+      mode_(choose_mode(options.mode, source_.dataset->info())),
+      frame_(source_.calibration.rig, options.frame == "auto" ? source_.dataset->info().pose_frame : options.frame),
+      folder_(run_folder_path(options, source_.dataset->info(), mode_)),
+      packetizer_(source_.calibration.rig, mode_, config.packets),
+      odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config),
+      status_line_(options.quiet) {
+  const DatasetInfo& info = source_.dataset->info();
+  make_run_folder(folder_);
+  write_text_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
+  write_text_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
+  attach_log_file(folder_ / "run.log");
+  spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
+  spdlog::info("{}", describe(source_.calibration));
+  writer_.emplace(folder_, frame_,
+                  std::vector{frame_.describe(),
+                              fmt::format("edged {}, recording {}, mode {}", kVersion, info.name, mode_name(mode_))});
+}
+
+void Run::take(Measurement measurement) {
+  const auto note_visual = [this](Modality modality, Timestamp first, Timestamp last) {
+    const RigCamera* camera = source_.calibration.rig.find(modality);
+    if (camera != nullptr) statistics_.add_visual(first + camera->time_offset, last + camera->time_offset);
+  };
+  if (const auto* batch = std::get_if<EventBatch>(&measurement); batch != nullptr && mode_ != Mode::Frames) {
+    if (!batch->events.empty()) note_visual(Modality::Events, batch->events.front().t, batch->events.back().t);
+  } else if (const auto* frame = std::get_if<Frame>(&measurement); frame != nullptr && mode_ != Mode::Events) {
+    note_visual(Modality::Frames, frame->t, frame->t);
+  }
+  const auto timer = program_timings_.measure("packetize");
+  packetizer_.add(std::move(measurement));
+}
+
+void Run::process_ready_packets() {
+  while (const std::optional<Packet> packet = packetizer_.next()) {
+    const TrackingStatus before = statistics_.last_status();
+    OdometryOutput output;
+    {
+      const auto timer = program_timings_.measure("process");
+      output = odometry_.process(*packet);
+    }
+    if (output.status != before) {
+      spdlog::info("{:.3f} s: {}", to_seconds(packet->t), to_string(output.status));
+    }
+    {
+      const auto timer = program_timings_.measure("write");
+      statistics_.add(packet->t, output);
+      writer_->add(packet->t, output);
+    }
+    if (status_line_.due()) show_status(packet->t, output);
+  }
+}
+
+void Run::show_status(Timestamp now, const OdometryOutput& output) {
+  const DatasetInfo& info = source_.dataset->info();
+  const double done_s = statistics_.visual_span_s();
+  std::string text = info.begin && info.end ? fmt::format("{:.1f} / {:.1f} s", to_seconds(now - *info.begin),
+                                                          to_seconds(*info.end - *info.begin))
+                                            : fmt::format("{:.1f} s", done_s);
+  text += fmt::format("  {:.1f}x", done_s / meter_.wall_s());
+  if (mode_ != Mode::Frames) {
+    text += fmt::format("  {}ev/s  event tracks {}", si_number(output.event_rate_hz), output.event_tracks);
+  }
+  if (mode_ != Mode::Events) text += fmt::format("  frame tracks {}", output.frame_tracks);
+  text += "  " + to_string(output.status);
+  if (!output.waiting_for.empty()) text += ", waits for " + output.waiting_for;
+  status_line_.show(text);
+}
+
+RunSummary Run::go() {
+  catch_interrupts();
+  meter_ = ResourceMeter();
+  const auto next = [this] {
+    const auto timer = program_timings_.measure("read");
+    return source_.dataset->next();
+  };
+  while (interrupt_signal() == 0) {
+    std::optional<Measurement> measurement = next();
+    if (!measurement) {
+      packetizer_.finish();
+      process_ready_packets();
+      break;
+    }
+    take(std::move(*measurement));
+    process_ready_packets();
+  }
+  writer_->flush();
+  status_line_.clear();
+  return summarize();
+}
+
+/// What the packetizer could not use, in the words of a user.
+void add_dropped(std::map<std::string, std::size_t>& repairs, const PacketizerCounters& counters) {
+  const std::pair<const char*, std::size_t> dropped[] = {
+      {"packets before the first IMU sample dropped", counters.packets_before_imu},
+      {"packets after the last IMU sample dropped", counters.packets_after_imu},
+      {"packets dropped while the IMU stayed away", counters.packets_overflow},
+      {"late events dropped", counters.events_late},
+      {"late frames dropped", counters.frames_late},
+      {"late IMU samples dropped", counters.imu_late},
+  };
+  for (const auto& [kind, count] : dropped) {
+    if (count > 0) repairs[kind] += count;
+  }
+}
+
+std::string run_status(const RunStatistics& statistics) {
+  if (interrupt_signal() != 0) return "interrupted";
+  if (!statistics.first_good_s()) return "never good";
+  switch (statistics.last_status()) {
+    case TrackingStatus::Good:
+      return "good";
+    case TrackingStatus::Degraded:
+      return "degraded";
+    case TrackingStatus::Lost:
+      return "lost";
+    case TrackingStatus::Initializing:
+      return "lost, initializing again";
+  }
+  EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
+}
+
+RunSummary Run::summarize() {
+  const DatasetInfo& info = source_.dataset->info();
+  RunSummary summary;
+  summary.wall_s = meter_.wall_s();
+  summary.cpu_s = meter_.cpu_s();
+  summary.recording = info.name;
+  summary.format = info.format;
+  summary.mode = mode_name(mode_);
+  summary.frame = frame_.name();
+  summary.folder = folder_.string();
+  summary.seed = source_.seed;
+  summary.status = run_status(statistics_);
+  summary.statistics = statistics_;
+  summary.poses = writer_->poses();
+  summary.repairs = source_.dataset->repairs();
+  add_dropped(summary.repairs, packetizer_.counters());
+  if (const auto truth = source_.dataset->ground_truth()) {
+    evaluate_run(summary, writer_->body(), source_.calibration.rig, *truth);
+  }
+  summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
+  write_text_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
+  write_text_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
+  for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
+  spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
+  return summary;
+}
+
+int run(const RunOptions& options) {
+  const OdometryConfig config = load_config(options);
+  const RunSummary summary = Run(options, open_source(options.source), config).go();
+  fmt::print("{}", options.json ? to_json(summary).dump(2) + "\n" : to_table(summary));
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
+  run_app->add_option("RECORDING", options->source.recording, "Folder (format found by content), or sim:PRESET[:SEED]")
+      ->required();
+  CLI::Option* rig =
+      run_app->add_option("--rig", options->source.rig, "Calibration that ships with the program, by name");
+  run_app->add_option("--calib", options->source.calib, "Calibration file or folder")->excludes(rig);
+  run_app->add_option("--config", options->config_file, "Options file (yaml); `edged config --yaml` prints one");
+  run_app->add_option("--set", options->assignments, "One option as key=value; may be repeated")
+      ->allow_extra_args(false);
+  run_app->add_option("KEY=VALUE", options->assignments, "More options, as with --set");
+  run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
+      ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
+      ->capture_default_str();
+  run_app
+      ->add_option(
+          "--frame", options->frame,
+          "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
+      ->capture_default_str();
+  run_app->add_option("--out", options->out, "Run folder; an earlier run there is replaced [runs/NAME-MODE]");
+  run_app->add_flag("--quiet", options->quiet, "No status line");
+  run_app->add_flag("--json", options->json, "Print the summary as json");
+  run_app->footer(
+      "Examples:\n"
+      "  edged run data/boxes_6dof --rig davis240c_ecd\n"
+      "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
+      "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet");
+  run_app->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace edged

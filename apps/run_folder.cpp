@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_folder.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kPacketsPerFlush = 30;
+
+// The first is written before anything else and marks a folder as a run's.
+constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "trajectory.tum", "trajectory_euroc.csv",
+                                  "states.csv",           "metrics.json",     "timing.json",    "run.log"};
+
+constexpr const char* kStatesHeader =
+    "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
+    "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m\n";
+
+std::ofstream open_for_writing(const std::filesystem::path& file) {
+  std::ofstream out(file);
+  if (!out) throw InputError::format("{}: cannot be written; check the folder given to --out", file.string());
+  return out;
+}
+
+void append(std::string& line, const Eigen::Vector3d& v) { line += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); }
+
+std::string state_line(Timestamp packet, const OdometryOutput& output) {
+  std::string line = fmt::format("{},{}", to_ns(packet), to_string(output.status));
+  if (output.status == TrackingStatus::Initializing) {
+    line += std::string(16, ',');
+  } else {
+    const NavState& state = output.state;
+    const Eigen::Quaterniond& q = state.T_W_B.rotation();
+    append(line, state.T_W_B.translation());
+    line += fmt::format(",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
+    append(line, state.v_W);
+    append(line, state.bias_gyro);
+    append(line, state.bias_accel);
+  }
+  return line + fmt::format(",{},{},{},{},{},{}\n", output.keyframe ? 1 : 0, output.event_tracks, output.frame_tracks,
+                            output.landmarks, output.event_rate_hz, output.scene_depth);
+}
+
+}  // namespace
+
+void make_run_folder(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw InputError::format("{}: is a file, not a folder; give another --out", folder.string());
+  }
+  if (fs::is_directory(folder) && !fs::is_empty(folder) && !fs::exists(folder / kRunFiles[0])) {
+    throw InputError::format("{}: holds files, but no earlier run; give another --out", folder.string());
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
+  for (const char* file : kRunFiles) fs::remove(folder / file);
+}
+
+void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out = open_for_writing(file);
+  out << text;
+  if (!out.flush()) throw InputError::format("{}: cannot be written; is the disk full?", file.string());
+}
+
+std::string timing_json(const StageTimings& pipeline, const StageTimings& program) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::array();
+  for (const StageTimings* timings : {&program, &pipeline}) {
+    for (const auto& [name, timing] : timings->all()) {
+      stages.push_back({{"stage", name},
+                        {"count", timing.count()},
+                        {"mean_ms", 1e3 * timing.mean_s()},
+                        {"p50_ms", 1e3 * timing.quantile_s(0.50)},
+                        {"p95_ms", 1e3 * timing.quantile_s(0.95)},
+                        {"p99_ms", 1e3 * timing.quantile_s(0.99)},
+                        {"max_ms", 1e3 * timing.max_s()},
+                        {"total_s", timing.total_s()}});
+    }
+  }
+  return nlohmann::ordered_json{{"stages", stages}}.dump(2) + "\n";
+}
+
+RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& frame,
+                     const std::vector<std::string>& comments)
+    : frame_(frame),
+      tum_(folder / "trajectory.tum", TrajectoryFormat::Tum, comments),
+      euroc_(folder / "trajectory_euroc.csv", TrajectoryFormat::EurocCsv, comments),
+      states_(open_for_writing(folder / "states.csv")) {
+  states_ << "# state of the body (IMU) in the world (z up), stamps on the IMU clock, whatever the trajectory's frame\n"
+          << kStatesHeader;
+}
+
+void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
+  states_ << state_line(packet, output);
+  if (output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded) {
+    body_.push_back({packet, output.state.T_W_B});
+    const StampedPose pose = frame_(body_.back());
+    tum_.add(pose);
+    euroc_.add(pose);
+  }
+  if (++unflushed_ >= kPacketsPerFlush) flush();
+}
+
+void RunWriter::flush() {
+  tum_.flush();
+  euroc_.flush();
+  states_.flush();
+  unflushed_ = 0;
+}
+
+}  // namespace edged

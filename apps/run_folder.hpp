@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The folder a run leaves behind, its files written as the run goes.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "edged/core/timing.hpp"
+#include "edged/io/trajectory_io.hpp"
+#include "edged/pipeline/odometry.hpp"
+#include "output_frame.hpp"
+
+namespace edged {
+
+/// Makes the folder, or empties an earlier run's folder of that run's files. Throws InputError when the path is
+/// something else: a file, or a folder that holds things but no run.
+void make_run_folder(const std::filesystem::path& folder);
+
+/// Replaces the file. Throws InputError when it cannot be written.
+void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+/// Count, mean, p50, p95, p99 and total of every stage, as json text.
+std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
+
+/// trajectory.tum, trajectory_euroc.csv and states.csv, flushed about once a second of packets.
+class RunWriter {
+ public:
+  /// comments head the trajectory files.
+  RunWriter(const std::filesystem::path& folder, const OutputFrame& frame, const std::vector<std::string>& comments);
+
+  /// Every packet becomes a line of states.csv, with pose and motion unless Initializing; Good and Degraded ones become
+  /// poses.
+  void add(Timestamp packet, const OdometryOutput& output);
+  void flush();
+
+  std::size_t poses() const { return body_.size(); }
+  /// T_W_B on the IMU clock of the poses written.
+  const Trajectory& body() const { return body_; }
+
+ private:
+  OutputFrame frame_;
+  TrajectoryWriter tum_;
+  TrajectoryWriter euroc_;
+  std::ofstream states_;
+  Trajectory body_;
+  std::size_t unflushed_ = 0;
+};
+
+}  // namespace edged

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunFolder : public ::testing::Test {
+ protected:
+  RunFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::temp_directory_path() / ("edged_run_" + std::string(test->name()));
+    fs::remove_all(folder);
+  }
+  ~RunFolder() override { fs::remove_all(folder); }
+
+  void touch(const char* name) { std::ofstream(folder / name) << "x"; }
+
+  std::vector<std::string> lines(const char* name) {
+    std::ifstream in(folder / name);
+    std::vector<std::string> result;
+    for (std::string line; std::getline(in, line);) result.push_back(line);
+    return result;
+  }
+
+  fs::path folder;
+};
+
+TEST_F(RunFolder, IsMadeWithItsParents) {
+  make_run_folder(folder / "a" / "b");
+  EXPECT_TRUE(fs::is_directory(folder / "a" / "b"));
+}
+
+TEST_F(RunFolder, RefusesAFolderThatHoldsOtherThings) {
+  fs::create_directories(folder);
+  touch("thesis.tex");
+  EXPECT_THROW(make_run_folder(folder), InputError);
+  EXPECT_THROW(make_run_folder(folder / "thesis.tex"), InputError);
+  EXPECT_TRUE(fs::exists(folder / "thesis.tex"));
+}
+
+TEST_F(RunFolder, ReplacesAnEarlierRunAndNothingElse) {
+  fs::create_directories(folder);
+  touch("config_resolved.yaml");
+  touch("metrics.json");
+  touch("notes.txt");
+  make_run_folder(folder);
+  EXPECT_FALSE(fs::exists(folder / "metrics.json"));
+  EXPECT_TRUE(fs::exists(folder / "notes.txt"));
+}
+
+TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
+  make_run_folder(folder);
+  {
+    RunWriter writer(folder, OutputFrame({}, "body"), {"first comment"});
+    OdometryOutput output;
+    for (const TrackingStatus status :
+         {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
+      output.status = status;
+      writer.add(timestamp_from_seconds(1.0 + static_cast<double>(writer.poses())), output);
+    }
+    EXPECT_EQ(writer.poses(), 2u);
+  }
+  EXPECT_EQ(read_tum(folder / "trajectory.tum").size(), 2u);
+  EXPECT_EQ(read_euroc_csv(folder / "trajectory_euroc.csv").size(), 2u);
+  EXPECT_EQ(lines("trajectory.tum")[0], "# first comment");
+  const std::vector<std::string> states = lines("states.csv");
+  ASSERT_EQ(states.size(), 6u);  // comment, names, four packets
+  const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+  for (std::size_t i = 2; i < states.size(); ++i) EXPECT_EQ(columns(states[i]), columns(states[1])) << states[i];
+}
+
+TEST(TimingJson, ListsEveryStage) {
+  StageTimings pipeline, program;
+  { const auto scope = pipeline.measure("warp"); }
+  { const auto scope = program.measure("read"); }
+  const auto json = nlohmann::json::parse(timing_json(pipeline, program));
+  ASSERT_EQ(json["stages"].size(), 2u);
+  EXPECT_EQ(json["stages"][0]["stage"], "read");
+  EXPECT_EQ(json["stages"][1]["count"], 1);
+  for (const char* key : {"mean_ms", "p50_ms", "p95_ms", "p99_ms", "total_s"})
+    EXPECT_TRUE(json["stages"][1].contains(key));
+}
+
+}  // namespace
+}  // namespace edged

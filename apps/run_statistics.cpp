@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_statistics.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace edged {
+namespace {
+
+rusage usage() {
+  rusage u = {};
+  getrusage(RUSAGE_SELF, &u);
+  return u;
+}
+
+double process_cpu_s() {
+  const rusage u = usage();
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(u.ru_utime) + seconds(u.ru_stime);
+}
+
+}  // namespace
+
+void RunStatistics::add_visual(Timestamp first, Timestamp last) {
+  if (!first_visual_) {
+    first_visual_ = first;
+    last_visual_ = last;
+  }
+  last_visual_ = std::max(last_visual_, last);
+}
+
+void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
+  ++packets_;
+  if (output.keyframe) ++keyframes_;
+  if (output.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
+  last_status_ = output.status;
+  const Timestamp begin = first_visual_.value_or(packet);
+  seconds_[static_cast<std::size_t>(output.status)] += std::max(0.0, to_seconds(packet - last_packet_.value_or(begin)));
+  last_packet_ = packet;
+  if (output.status == TrackingStatus::Good && !first_good_s_) first_good_s_ = to_seconds(packet - begin);
+}
+
+double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(last_visual_ - *first_visual_) : 0.0; }
+
+double RunStatistics::coverage() const {
+  const double span = visual_span_s();
+  return span > 0.0 ? std::min(1.0, time_in_s(TrackingStatus::Good) / span) : 0.0;
+}
+
+ResourceMeter::ResourceMeter() : wall_(std::chrono::steady_clock::now()), cpu_s_(process_cpu_s()) {}
+
+double ResourceMeter::wall_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+}
+
+double ResourceMeter::cpu_s() const { return process_cpu_s() - cpu_s_; }
+
+double ResourceMeter::peak_rss_mb() { return static_cast<double>(usage().ru_maxrss) / 1024.0; }
+
+}  // namespace edged

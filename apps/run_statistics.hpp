@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is counted while a run goes, and what the process used.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+
+#include "edged/core/types.hpp"
+#include "edged/pipeline/odometry.hpp"
+
+namespace edged {
+
+/// Counts of one run. Stamps are on the IMU clock.
+class RunStatistics {
+ public:
+  /// A visual measurement that the mode uses: spans the time that a pose could cover.
+  void add_visual(Timestamp first, Timestamp last);
+  void add(Timestamp packet, const OdometryOutput& output);
+
+  std::size_t packets() const { return packets_; }
+  std::size_t keyframes() const { return keyframes_; }
+  std::size_t times_lost() const { return times_lost_; }
+  /// First visual measurement to last [s].
+  double visual_span_s() const;
+  /// Time since the previous packet (the first: since the first measurement), summed over packets of that status [s].
+  double time_in_s(TrackingStatus status) const { return seconds_[static_cast<std::size_t>(status)]; }
+  /// Share of the visual span whose packets were Good.
+  double coverage() const;
+  /// From the first visual measurement to the first Good packet [s].
+  std::optional<double> first_good_s() const { return first_good_s_; }
+  TrackingStatus last_status() const { return last_status_; }
+
+ private:
+  std::optional<Timestamp> first_visual_;
+  Timestamp last_visual_;
+  std::optional<Timestamp> last_packet_;
+  std::size_t packets_ = 0, keyframes_ = 0, times_lost_ = 0;
+  std::array<double, 4> seconds_{};
+  std::optional<double> first_good_s_;
+  TrackingStatus last_status_ = TrackingStatus::Initializing;
+};
+
+/// Wall and processor time since construction; peak memory since the process began.
+class ResourceMeter {
+ public:
+  ResourceMeter();
+  double wall_s() const;
+  double cpu_s() const;  ///< user + system, all threads
+  static double peak_rss_mb();
+
+ private:
+  std::chrono::steady_clock::time_point wall_;
+  double cpu_s_;
+};
+
+}  // namespace edged

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_statistics.hpp"
+
+#include <gtest/gtest.h>
+
+namespace edged {
+namespace {
+
+Timestamp at(double s) { return timestamp_from_seconds(s); }
+
+OdometryOutput with(TrackingStatus status, bool keyframe = false) {
+  OdometryOutput output;
+  output.status = status;
+  output.keyframe = keyframe;
+  return output;
+}
+
+TEST(RunStatistics, CoverageIsTheShareOfTheVisualSpanWithAGoodPose) {
+  RunStatistics statistics;
+  statistics.add_visual(at(10.0), at(10.0));
+  statistics.add_visual(at(20.0), at(20.0));
+  statistics.add(at(12.0), with(TrackingStatus::Initializing));
+  statistics.add(at(13.0), with(TrackingStatus::Good, true));
+  statistics.add(at(17.0), with(TrackingStatus::Good));
+  statistics.add(at(18.0), with(TrackingStatus::Degraded));
+  statistics.add(at(19.0), with(TrackingStatus::Lost));
+  EXPECT_DOUBLE_EQ(statistics.coverage(), 0.5);
+  EXPECT_DOUBLE_EQ(statistics.visual_span_s(), 10.0);
+  EXPECT_DOUBLE_EQ(statistics.time_in_s(TrackingStatus::Initializing), 2.0);
+  EXPECT_DOUBLE_EQ(*statistics.first_good_s(), 3.0);
+  EXPECT_EQ(statistics.packets(), 5u);
+  EXPECT_EQ(statistics.keyframes(), 1u);
+  EXPECT_EQ(statistics.times_lost(), 1u);
+}
+
+TEST(RunStatistics, OfNothingAreZero) {
+  const RunStatistics statistics;
+  EXPECT_EQ(statistics.coverage(), 0.0);
+  EXPECT_EQ(statistics.visual_span_s(), 0.0);
+  EXPECT_FALSE(statistics.first_good_s());
+}
+
+TEST(RunStatistics, CountLossesNotLostPackets) {
+  RunStatistics statistics;
+  for (int i = 0; i < 3; ++i) statistics.add(at(i), with(TrackingStatus::Lost));
+  statistics.add(at(4), with(TrackingStatus::Good));
+  statistics.add(at(5), with(TrackingStatus::Lost));
+  EXPECT_EQ(statistics.times_lost(), 2u);
+}
+
+TEST(ResourceMeter, SeesProcessorTimeAndMemory) {
+  const ResourceMeter meter;
+  volatile double sum = 0.0;
+  while (meter.wall_s() < 0.02) sum = sum + 1.0;
+  EXPECT_GT(meter.cpu_s(), 0.0);
+  EXPECT_GT(ResourceMeter::peak_rss_mb(), 1.0);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_summary.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "edged/core/check.hpp"
+#include "evaluation_text.hpp"
+#include "version.hpp"
+
+namespace edged {
+namespace {
+
+double per(double amount, double of) { return of > 0.0 ? amount / of : 0.0; }
+
+nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+std::string line(const char* name, const std::string& value, const std::string& note = "") {
+  return note.empty() ? fmt::format("  {:<20} {}\n", name, value)
+                      : fmt::format("  {:<20} {:<12} {}\n", name, value, note);
+}
+
+nlohmann::ordered_json accuracy_json(const std::optional<Evaluation>& e) {
+  const auto field = [&e](auto get) { return e ? number_or_null(get(*e)) : nlohmann::ordered_json(nullptr); };
+  return {{"alignment", to_string(e ? e->protocol.alignment : AlignmentKind::SE3)},
+          {"ate_rmse_m", field([](const Evaluation& v) { return v.ate_m.rmse; })},
+          {"ate_mean_m", field([](const Evaluation& v) { return v.ate_m.mean; })},
+          {"ate_max_m", field([](const Evaluation& v) { return v.ate_m.max; })},
+          {"mpe_percent", field([](const Evaluation& v) { return v.mpe_percent; })},
+          {"rotation_mean_deg", field([](const Evaluation& v) { return v.rotation_deg.mean; })},
+          {"scale", field([](const Evaluation& v) { return v.scale; })}};
+}
+
+}  // namespace
+
+void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth) {
+  try {
+    const Association association = associate(truth.trajectory, OutputFrame(rig, truth.frame)(body));
+    summary.evaluation = evaluate(association, protocol("P3"));
+    for (const char* name : {"P1", "P2", "P3", "P4"}) {
+      try {
+        summary.mpe_percent[name] = evaluate(association, protocol(name), {}).mpe_percent;
+      } catch (const InputError& e) {
+        spdlog::info("protocol {} does not apply: {}", name, e.what());
+      }
+    }
+  } catch (const InputError& e) {
+    spdlog::warn("no comparison with the ground truth: {}", e.what());
+  }
+}
+
+nlohmann::ordered_json to_json(const RunSummary& s) {
+  const double span = s.statistics.visual_span_s();
+  nlohmann::ordered_json json = {
+      {"recording", s.recording}, {"format", s.format},
+      {"mode", s.mode},           {"output_frame", s.frame},
+      {"version", kVersion},      {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
+      {"status", s.status}};
+  json.update(accuracy_json(s.evaluation));
+  json.update({{"poses", s.poses},
+               {"keyframes", s.statistics.keyframes()},
+               {"packets", s.statistics.packets()},
+               {"coverage", s.statistics.coverage()},
+               {"first_good_s", number_or_null(s.statistics.first_good_s())},
+               {"times_lost", s.statistics.times_lost()},
+               {"duration_s", span},
+               {"wall_s", s.wall_s},
+               {"real_time_factor", per(span, s.wall_s)},
+               {"cpu_s_per_s", per(s.cpu_s, span)},
+               {"peak_rss_mb", s.peak_rss_mb}});
+  for (const TrackingStatus status :
+       {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
+    json["seconds_in"][to_string(status)] = s.statistics.time_in_s(status);
+  }
+  json["mpe_percent_by_protocol"] = s.mpe_percent;
+  json["repairs"] = s.repairs;
+  json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+std::string to_table(const RunSummary& s) {
+  const double span = s.statistics.visual_span_s();
+  std::string table = fmt::format("{}, {}, {:.1f} s -> {}\n", s.recording, s.mode, span, s.folder);
+  table += line("status", s.status,
+                s.statistics.times_lost() > 0 ? fmt::format("lost {} times", s.statistics.times_lost()) : "");
+  if (s.evaluation) {
+    const Evaluation& e = *s.evaluation;
+    table += line("ATE RMSE", fmt::format("{:.4f} m", e.ate_m.rmse),
+                  fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
+                              e.path_length_m));
+    table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
+    table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect");
+  } else {
+    table += line("ATE RMSE", "-", "no ground truth to compare with");
+  }
+  table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()));
+  table += line(
+      "coverage", fmt::format("{:.1f} %", 100.0 * s.statistics.coverage()),
+      s.statistics.first_good_s() ? fmt::format("first good pose after {:.2f} s", *s.statistics.first_good_s()) : "");
+  table += line("real-time factor", fmt::format("{:.2f}", per(span, s.wall_s)),
+                fmt::format("{:.2f} cpu s per s, peak {:.0f} MB", per(s.cpu_s, span), s.peak_rss_mb));
+  for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
+  return table;
+}
+
+}  // namespace edged

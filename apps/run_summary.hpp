@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What a run amounts to: metrics.json, and the short table at its end.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "edged/core/dataset.hpp"
+#include "edged/eval/metrics.hpp"
+#include "output_frame.hpp"
+#include "run_statistics.hpp"
+
+namespace edged {
+
+struct RunSummary {
+  std::string recording, format, mode, frame, folder;
+  std::optional<int> seed;
+  std::string status;  ///< "good", "degraded", "lost", "never good" or "interrupted"
+  RunStatistics statistics;
+  std::size_t poses = 0;
+  double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
+  std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
+  std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
+  std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
+};
+
+/// Compares the body's poses with the ground truth, in the ground truth's frame. Leaves the summary without evaluation,
+/// and logs why, where that is not possible.
+void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
+
+nlohmann::ordered_json to_json(const RunSummary& summary);
+std::string to_table(const RunSummary& summary);
+
+}  // namespace edged

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/core/check.hpp"
+#include "edged/io/ecd_writer.hpp"
+#include "edged/sim/simulator.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "status_line.hpp"
+
+namespace edged {
+namespace {
+
+struct SimulateOptions {
+  std::string preset = "room";
+  std::optional<std::string> seed, duration_s;
+  std::vector<std::string> assignments;
+  std::filesystem::path out;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// Ends early, and cleanly, when the user interrupts.
+class InterruptibleDataset : public Dataset {
+ public:
+  explicit InterruptibleDataset(Dataset& inner) : inner_(inner) {}
+  const DatasetInfo& info() const override { return inner_.info(); }
+  std::optional<Measurement> next() override { return interrupt_signal() == 0 ? inner_.next() : std::nullopt; }
+  std::optional<GroundTruth> ground_truth() const override { return inner_.ground_truth(); }
+
+ private:
+  Dataset& inner_;
+};
+
+SimulatorConfig load_config(const SimulateOptions& options) {
+  SimulatorConfig config = simulator_preset(options.preset);
+  ConfigFields fields = ConfigFields::of(config);
+  if (options.seed) fields.set("seed", *options.seed);
+  if (options.duration_s) fields.set("duration_s", *options.duration_s);
+  for (const std::string& assignment : options.assignments) fields.set(assignment);
+  return config;
+}
+
+int run_simulate(const SimulateOptions& options) {
+  catch_interrupts();
+  const SimulatorConfig config = load_config(options);
+  Simulator simulator(config);
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path("recordings") / fmt::format("{}_{}", options.preset, config.seed)
+                          : options.out;
+  StatusLine status(options.quiet);
+  EcdWriteOptions write;
+  write.calibration = simulator.calibration();
+  write.progress = [&](Timestamp t) {
+    if (status.due()) status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s));
+  };
+  InterruptibleDataset dataset(simulator);
+  const EcdWriteCounts counts = write_ecd(dataset, folder, write);
+  status.clear();
+  if (options.json) {
+    const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},
+                                         {"seed", config.seed},       {"duration_s", config.duration_s},
+                                         {"events", counts.events},   {"frames", counts.frames},
+                                         {"imu", counts.imu},         {"poses", counts.poses}};
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses\n", folder.string(),
+               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses);
+  }
+  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+}
+
+int list_options(const std::string& preset) {
+  SimulatorConfig config = simulator_preset(preset);
+  fmt::print("{}", ConfigFields::of(config).to_yaml());
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<SimulateOptions>();
+  const auto list = std::make_shared<bool>(false);
+  CLI::App* simulate = app.add_subcommand("simulate", "Make a recording with ground truth: events, frames and IMU");
+  simulate->add_option("--preset", options->preset, fmt::format("One of {}", fmt::join(simulator_presets(), ", ")))
+      ->check(CLI::IsMember(simulator_presets()))
+      ->capture_default_str();
+  simulate->add_option("--seed", options->seed, "Another flight, other noise [1]");
+  simulate->add_option("--duration", options->duration_s, "[s] [that of the preset]");
+  simulate->add_option("--set", options->assignments, "One option as key=value; may be repeated")
+      ->allow_extra_args(false);
+  simulate->add_flag("--list", *list, "Print every option of the preset, with unit and effect, instead");
+  simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
+  simulate->add_flag("--quiet", options->quiet, "No status line");
+  simulate->add_flag("--json", options->json, "Print the summary as json");
+  simulate->footer(
+      "Example:\n  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight");
+  simulate->callback([options, list, &chosen] {
+    chosen = [options, list] { return *list ? list_options(options->preset) : run_simulate(*options); };
+  });
+}
+
+}  // namespace edged
