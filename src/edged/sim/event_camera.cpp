@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/event_camera.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+
+float log_brightness(float x) {
+  // x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 atanh((m - 1) / (m + 1)) as a series.
+  constexpr std::uint32_t kSqrtHalf = 0x3F3504F3U;
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - kSqrtHalf;
+  const float exponent = static_cast<float>(static_cast<std::int32_t>(bits) >> 23);
+  const float m = std::bit_cast<float>((bits & 0x007FFFFFU) + kSqrtHalf);
+  const float s = (m - 1.0F) / (m + 1.0F), s2 = s * s;
+  const float series = 2.0F + s2 * (2.0F / 3.0F + s2 * (2.0F / 5.0F + s2 * (2.0F / 7.0F)));
+  return exponent * std::numbers::ln2_v<float> + s * series;
+}
+
+void EventCameraConfig::visit(ConfigFields& fields) {
+  fields.add("threshold_on", threshold_on, {"ln", 0.01, 10, "rise of the log brightness that makes a positive event"});
+  fields.add("threshold_off", threshold_off, {"ln", 0.01, 10, "fall that makes a negative event"});
+  fields.add("threshold_sigma", threshold_sigma, {"ln", 0, 1, "spread of the thresholds over the pixels"});
+  fields.add("refractory_us", refractory_us, {"us", 0, 1e6, "a pixel is silent for so long after an event"});
+  fields.add("bandwidth_hz", bandwidth_hz, {"Hz", 0, 1e6, "of the pixel's front-end, low in the dark; 0: unlimited"});
+  fields.add("leak_hz", leak_hz, {"Hz", 0, 1e3, "positive events of a pixel in still light"});
+  fields.add("shot_hz", shot_hz, {"Hz", 0, 1e3, "random events of a pixel, of either sign"});
+  fields.add("dark_radiance", dark_radiance,
+             {"", 1e-6, 1, "added to every pixel's light; lowers the contrast in the dark"});
+}
+
+EventCamera::EventCamera(const EventCameraConfig& config, int width, int height, std::uint64_t seed)
+    : config_(config), width_(width), random_(seed, 3) {
+  const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  on_.resize(n), off_.resize(n), level_.resize(n), reference_.resize(n), target_.resize(n);
+  last_ns_.assign(n, std::numeric_limits<std::int64_t>::min() / 2);
+  const auto draw = [&](double mean) {
+    return static_cast<float>(std::max(0.25 * mean, mean + config.threshold_sigma * random_.normal()));
+  };
+  for (std::size_t i = 0; i < n; ++i) on_[i] = draw(config.threshold_on), off_[i] = draw(config.threshold_off);
+}
+
+std::vector<Event> EventCamera::update(Timestamp t, std::span<const float> radiance) {
+  EDGED_CHECK(radiance.size() == level_.size(), "{} pixels instead of {}", radiance.size(), level_.size());
+  const std::size_t n = level_.size();
+  const float dark = static_cast<float>(config_.dark_radiance);
+  for (std::size_t i = 0; i < n; ++i) target_[i] = log_brightness(radiance[i] + dark);
+  if (!started_) {
+    started_ = true, t_ = t;
+    level_ = target_;
+    // Where in its cycle a pixel is when the recording starts is chance.
+    for (std::size_t i = 0; i < n; ++i)
+      reference_[i] = level_[i] + static_cast<float>(random_.uniform(-0.99, 0.99)) * std::min(on_[i], off_[i]);
+    return {};
+  }
+  EDGED_CHECK(t > t_, "picture at {} ns after {} ns", to_ns(t), to_ns(t_));
+  const Interval interval{to_ns(t_), (t - t_).count()};
+  const double dt = to_seconds(t - t_);
+  const float gain = config_.bandwidth_hz > 0.0
+                         ? static_cast<float>(1.0 - std::exp(-2.0 * std::numbers::pi * config_.bandwidth_hz * dt))
+                         : 1.0F;
+  const float leak = static_cast<float>(config_.leak_hz * dt);
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float before = level_[i];
+    level_[i] = gain == 1.0F ? target_[i] : before + gain * (target_[i] - before);
+    reference_[i] -= leak * on_[i];
+    const float change = level_[i] - reference_[i];
+    if (change >= on_[i] || change <= -off_[i]) step_pixel(i, before, interval, events);
+  }
+  add_shot_noise(interval, events);
+  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+  t_ = t;
+  return events;
+}
+
+void EventCamera::step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events) {
+  const float after = level_[pixel];
+  const bool positive = after > reference_[pixel];
+  const float step = positive ? on_[pixel] : -off_[pixel];
+  const auto crossed = [&] { return positive ? after - reference_[pixel] >= step : after - reference_[pixel] <= step; };
+  while (crossed()) {
+    reference_[pixel] += step;
+    const double share =
+        after == before ? 1.0 : std::clamp((reference_[pixel] - before) / (after - before), 0.0F, 1.0F);
+    const std::int64_t t_ns =
+        interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
+    // A pixel in its refractory time takes the new level without telling.
+    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
+    last_ns_[pixel] = t_ns;
+    events.push_back(make_event(pixel, t_ns, positive));
+  }
+}
+
+void EventCamera::add_shot_noise(const Interval& interval, std::vector<Event>& events) {
+  const double expected =
+      config_.shot_hz * static_cast<double>(interval.length_ns) * 1e-9 * static_cast<double>(level_.size());
+  for (int count = random_.arrivals(expected); count > 0; --count) {
+    const std::size_t pixel = static_cast<std::size_t>(random_.index(static_cast<int>(level_.size())));
+    const std::int64_t t_ns =
+        interval.begin_ns + static_cast<std::int64_t>(random_.uniform() * static_cast<double>(interval.length_ns));
+    const bool positive = random_.uniform() < 0.5;
+    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
+    last_ns_[pixel] = t_ns;
+    reference_[pixel] = level_[pixel];
+    events.push_back(make_event(pixel, t_ns, positive));
+  }
+}
+
+Event EventCamera::make_event(std::size_t pixel, std::int64_t t_ns, bool positive) const {
+  const std::size_t w = static_cast<std::size_t>(width_);
+  return {timestamp_from_ns(t_ns / 1000 * 1000), static_cast<std::uint16_t>(pixel % w),
+          static_cast<std::uint16_t>(pixel / w), positive};
+}
+
+}  // namespace edged

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// An event camera: each pixel reports when the logarithm of its brightness has moved by its threshold.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "edged/core/config.hpp"
+#include "edged/core/types.hpp"
+#include "edged/sim/random.hpp"
+
+namespace edged {
+
+/// The model of Hu, Liu, Delbruck, "v2e" (CVPRW 2021), without hot pixels: threshold mismatch, refractory time,
+/// one-pole bandwidth, leak and shot noise.
+struct EventCameraConfig {
+  double threshold_on = 0.3;
+  double threshold_off = 0.3;
+  double threshold_sigma = 0.03;
+  double refractory_us = 300.0;
+  double bandwidth_hz = 0.0;
+  double leak_hz = 0.1;
+  double shot_hz = 0.03;
+  double dark_radiance = 0.003;
+
+  void visit(ConfigFields& fields);
+};
+
+class EventCamera {
+ public:
+  EventCamera(const EventCameraConfig& config, int width, int height, std::uint64_t seed);
+
+  /// The events between the last picture and this one, in time order, stamps in whole microseconds within the interval.
+  /// The brightness is taken to be linear in time in between. The first picture gives no events. radiance: width x
+  /// height, linear; t must increase.
+  std::vector<Event> update(Timestamp t, std::span<const float> radiance);
+
+ private:
+  struct Interval {
+    std::int64_t begin_ns, length_ns;
+  };
+  void step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events);
+  void add_shot_noise(const Interval& interval, std::vector<Event>& events);
+  Event make_event(std::size_t pixel, std::int64_t t_ns, bool positive) const;
+
+  EventCameraConfig config_;
+  int width_;
+  Random random_;
+  std::vector<float> on_, off_;           // thresholds
+  std::vector<float> level_, reference_;  // log brightness: now, and at the last event
+  std::vector<float> target_;             // before the bandwidth
+  std::vector<std::int64_t> last_ns_;     // of the last event
+  Timestamp t_;
+  bool started_ = false;
+};
+
+/// Natural logarithm of x > 0, to 1e-6, the same bits on every machine.
+float log_brightness(float x);
+
+}  // namespace edged

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/frame_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+
+void FrameCameraConfig::visit(ConfigFields& fields) {
+  fields.add("rate_hz", rate_hz, {"Hz", 0.1, 1000, "frames per second"});
+  fields.add("exposure_ms", exposure_ms, {"ms", 0.01, 1000, "time of exposure; the stamp is its middle"});
+  fields.add("electrons_per_ms", electrons_per_ms, {"1/ms", 1, 1e9, "signal of a white spot in good light"});
+  fields.add("electrons_per_level", electrons_per_level, {"", 0.01, 1e6, "inverse gain: electrons for one grey level"});
+  fields.add("read_noise_electrons", read_noise_electrons, {"", 0, 1e5, "noise that does not depend on light"});
+}
+
+FrameCamera::FrameCamera(const FrameCameraConfig& config, int width, int height, std::uint64_t seed)
+    : config_(config),
+      width_(width),
+      height_(height),
+      random_(seed, 4),
+      light_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F) {}
+
+void FrameCamera::expose(std::span<const float> begin, std::span<const float> end, double dt_s) {
+  EDGED_CHECK(begin.size() == light_.size() && end.size() == light_.size(), "{} and {} pixels", begin.size(),
+              end.size());
+  const float half = static_cast<float>(0.5 * dt_s);
+  for (std::size_t i = 0; i < light_.size(); ++i) light_[i] += half * (begin[i] + end[i]);
+}
+
+cv::Mat FrameCamera::read_out() {
+  cv::Mat_<std::uint8_t> image(height_, width_);
+  std::size_t i = 0;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x, ++i) {
+      const double electrons = light_[i] * 1e3 * config_.electrons_per_ms;
+      const double noise = std::sqrt(electrons + config_.read_noise_electrons * config_.read_noise_electrons);
+      const double level = (electrons + noise * random_.normal()) / config_.electrons_per_level;
+      image(y, x) = static_cast<std::uint8_t>(std::clamp(level + 0.5, 0.0, 255.0));
+    }
+  }
+  std::fill(light_.begin(), light_.end(), 0.0F);
+  return image;
+}
+
+}  // namespace edged

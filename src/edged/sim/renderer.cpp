@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace edged {
+namespace {
+
+constexpr int kMotionStride = 4;
+constexpr float kBackground = 0.5F;
+constexpr double kNear = 0.02;  // [m]
+
+/// Extent on the unit plane of the part of a quadrangle that lies beyond the near plane.
+struct Extent {
+  double x_0 = std::numeric_limits<double>::infinity(), x_1 = -x_0, y_0 = x_0, y_1 = -x_0;
+  void add(const Eigen::Vector3d& p_C) {
+    const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z();
+    x_0 = std::min(x_0, x), x_1 = std::max(x_1, x), y_0 = std::min(y_0, y), y_1 = std::max(y_1, y);
+  }
+};
+
+Extent project_extent(const Face& face, const SE3& T_C_W) {
+  std::array<Eigen::Vector3d, 4> corners;
+  constexpr std::array<std::array<double, 2>, 4> kSigns{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (std::size_t i = 0; i < 4; ++i)
+    corners[i] =
+        T_C_W * (face.centre_W + kSigns[i][0] * face.half_u * face.u_W + kSigns[i][1] * face.half_v * face.v_W);
+  Extent extent;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d &a = corners[i], &b = corners[(i + 1) % 4];
+    if (a.z() > kNear) extent.add(a);
+    if ((a.z() > kNear) != (b.z() > kNear)) extent.add(a + (kNear - a.z()) / (b.z() - a.z()) * (b - a));
+  }
+  return extent;
+}
+
+/// First and last index whose [low, high] meets [from, to]; low and high need not be sorted.
+std::pair<int, int> overlap(const std::vector<float>& low, const std::vector<float>& high, double from, double to) {
+  const int n = static_cast<int>(low.size());
+  const auto meets = [&](int i) {
+    return high[static_cast<std::size_t>(i)] >= from && low[static_cast<std::size_t>(i)] <= to;
+  };
+  int first = 0, last = n - 1;
+  while (first < n && !meets(first)) ++first;
+  while (last >= first && !meets(last)) --last;
+  return {first, last};
+}
+
+}  // namespace
+
+Renderer::Renderer(const CameraModel& camera, Scene scene)
+    : width_(camera.width()),
+      height_(camera.height()),
+      focal_(static_cast<float>(camera.mean_focal())),
+      scene_(std::move(scene)) {
+  const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  constexpr float kMax = std::numeric_limits<float>::max();
+  row_min_y_.assign(static_cast<std::size_t>(height_), kMax), row_max_y_.assign(row_min_y_.size(), -kMax);
+  column_min_x_.assign(static_cast<std::size_t>(width_), kMax), column_max_x_.assign(column_min_x_.size(), -kMax);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      const Eigen::Vector2d point = camera.pixel_to_point(Eigen::Vector2d(x, y));
+      const float bx = static_cast<float>(point.x()), by = static_cast<float>(point.y());
+      bearing_x_.push_back(bx), bearing_y_.push_back(by);
+      const std::size_t row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
+      row_min_y_[row] = std::min(row_min_y_[row], by), row_max_y_[row] = std::max(row_max_y_[row], by);
+      column_min_x_[column] = std::min(column_min_x_[column], bx),
+      column_max_x_[column] = std::max(column_max_x_[column], bx);
+      if (x % kMotionStride != 0 || y % kMotionStride != 0) continue;
+      constexpr double kStep = 1e-5;
+      Eigen::Matrix2d slope;
+      slope.col(0) = (camera.distort_to_pixel(point + Eigen::Vector2d(kStep, 0)) - Eigen::Vector2d(x, y)) / kStep;
+      slope.col(1) = (camera.distort_to_pixel(point + Eigen::Vector2d(0, kStep)) - Eigen::Vector2d(x, y)) / kStep;
+      pixel_per_point_.push_back(slope.cast<float>());
+    }
+  }
+  views_.resize(scene_.faces.size());
+  seen_.resize(n), scratch_.resize(n), out_.radiance.resize(n), out_.inverse_depth.resize(n);
+}
+
+Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
+  const Extent extent = project_extent(face, T_C_W);
+  const auto [x_0, x_1] = overlap(column_min_x_, column_max_x_, extent.x_0, extent.x_1);
+  const auto [y_0, y_1] = overlap(row_min_y_, row_max_y_, extent.y_0, extent.y_1);
+  return {x_0, x_1, y_0, y_1};
+}
+
+const Rendering& Renderer::render(const SE3& T_W_C) {
+  std::fill(seen_.begin(), seen_.end(), -1);
+  std::fill(out_.inverse_depth.begin(), out_.inverse_depth.end(), 0.0F);
+  const SE3 T_C_W = T_W_C.inverse();
+  const Eigen::Matrix3d R_C_W = T_C_W.R();
+  for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
+    const Face& face = scene_.faces[i];
+    const double distance = face.normal_W.dot(T_W_C.translation() - face.centre_W);
+    if (distance <= 1e-6) continue;
+    const PixelBox box = bounds(face, T_C_W);
+    if (box.x_1 < box.x_0 || box.y_1 < box.y_0) continue;
+    const Eigen::Vector3d c_C = T_C_W * face.centre_W;
+    const Eigen::Vector3d a = R_C_W * face.normal_W / -distance;  // 1/z = n.b / n.c
+    const Eigen::Vector3d u_C = R_C_W * face.u_W, v_C = R_C_W * face.v_W;
+    views_[i] = {a.cast<float>(),
+                 (u_C - u_C.dot(c_C) * a).cast<float>(),
+                 (v_C - v_C.dot(c_C) * a).cast<float>(),
+                 static_cast<float>(face.half_u),
+                 static_cast<float>(face.half_v),
+                 static_cast<float>(distance)};
+    cast(views_[i], box, static_cast<int>(i));
+  }
+  shade();
+  blur();
+  return out_;
+}
+
+void Renderer::cast(const View& view, const PixelBox& box, int index) {
+  const Eigen::Vector3f a = view.inverse_depth, u = view.u, v = view.v;
+  const float half_u = view.half_u, half_v = view.half_v;
+  for (int y = box.y_0; y <= box.y_1; ++y) {
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * width_;
+    const float *bx = bearing_x_.data() + row, *by = bearing_y_.data() + row;
+    float* nearest = out_.inverse_depth.data() + row;
+    int* seen = seen_.data() + row;
+    for (int x = box.x_0; x <= box.x_1; ++x) {
+      const float w = a.x() * bx[x] + a.y() * by[x] + a.z();
+      const float uw = u.x() * bx[x] + u.y() * by[x] + u.z();
+      const float vw = v.x() * bx[x] + v.y() * by[x] + v.z();
+      const bool hit = (w > nearest[x]) & (std::abs(uw) <= half_u * w) & (std::abs(vw) <= half_v * w);
+      nearest[x] = hit ? w : nearest[x];
+      seen[x] = hit ? index : seen[x];
+    }
+  }
+}
+
+void Renderer::shade() {
+  const std::size_t n = seen_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (seen_[i] < 0) {
+      scratch_[i] = kBackground;
+      continue;
+    }
+    const Face& face = scene_.faces[static_cast<std::size_t>(seen_[i])];
+    const View& view = views_[static_cast<std::size_t>(seen_[i])];
+    const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
+    const float w = out_.inverse_depth[i], z = 1.0F / w;
+    const float texels = face.texels_per_m;
+    // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|).
+    const float pitch = texels * z / focal_;
+    const float area = pitch * pitch * std::sqrt(b.squaredNorm()) * z / view.distance;
+    const Texture& texture = scene_.textures[face.texture];
+    scratch_[i] = face.brightness * texture.sample(view.u.dot(b) * z * texels + face.offset_u,
+                                                   view.v.dot(b) * z * texels + face.offset_v, rough_log2(area));
+  }
+}
+
+void Renderer::blur() {
+  // The lens and the size of a pixel: standard deviation sqrt(0.4) = 0.63 px.
+  constexpr float kSide = 0.2F, kMiddle = 0.6F;
+  std::vector<float>& out = out_.radiance;
+  const std::size_t w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+  for (std::size_t y = 0; y < h; ++y) {
+    const float* above = scratch_.data() + w * (y > 0 ? y - 1 : 0);
+    const float* here = scratch_.data() + w * y;
+    const float* below = scratch_.data() + w * std::min(y + 1, h - 1);
+    float* row = out.data() + w * y;
+    for (std::size_t x = 0; x < w; ++x) row[x] = kMiddle * here[x] + kSide * (above[x] + below[x]);
+  }
+  for (std::size_t y = 0; y < h; ++y) {
+    float* row = out.data() + w * y;
+    float* copy = scratch_.data() + w * y;
+    std::copy(row, row + w, copy);
+    for (std::size_t x = 1; x + 1 < w; ++x) row[x] = kMiddle * copy[x] + kSide * (copy[x - 1] + copy[x + 1]);
+  }
+}
+
+double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector3d& omega_C) const {
+  const Eigen::Vector3f v = v_C.cast<float>(), omega = omega_C.cast<float>();
+  float fastest = 0.0F;
+  std::size_t k = 0;
+  for (int y = 0; y < height_; y += kMotionStride) {
+    for (int x = 0; x < width_; x += kMotionStride) {
+      const std::size_t i = static_cast<std::size_t>(y * width_ + x);
+      const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
+      const Eigen::Vector3f moved = -v * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
+      const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
+      fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
+    }
+  }
+  return std::sqrt(static_cast<double>(fastest));
+}
+
+}  // namespace edged

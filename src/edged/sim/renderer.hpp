@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Ray casting of a scene into a distorted camera, and how fast its image moves.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "edged/camera/camera_model.hpp"
+#include "edged/sim/scene.hpp"
+
+namespace edged {
+
+/// One picture, row by row.
+struct Rendering {
+  std::vector<float> radiance;       ///< linear, 1 is a white spot in good light
+  std::vector<float> inverse_depth;  ///< 1 / z-depth [1/m]; 0 where there is nothing
+};
+
+class Renderer {
+ public:
+  Renderer(const CameraModel& camera, Scene scene);
+
+  /// The picture from T_W_C. The reference is valid until the next call.
+  const Rendering& render(const SE3& T_W_C);
+
+  const Rendering& last() const { return out_; }
+
+  /// Fastest image motion [px/s] in the last picture, for a camera that moves with v_C [m/s] and turns with omega_C
+  /// [rad/s], both in its own frame; looked at on every fourth pixel.
+  double max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector3d& omega_C) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  /// A face in the camera frame as three linear forms of the bearing b = (x, y, 1): inverse depth w = a.b and plane
+  /// coordinates times w. No division is needed to decide what is seen.
+  struct View {
+    Eigen::Vector3f inverse_depth, u, v;
+    float half_u, half_v;
+    float distance;  // of the camera from the plane [m]
+  };
+  struct PixelBox {
+    int x_0, x_1, y_0, y_1;  // inclusive; empty when x_1 < x_0
+  };
+
+  PixelBox bounds(const Face& face, const SE3& T_C_W) const;
+  void cast(const View& view, const PixelBox& box, int index);
+  void shade();
+  void blur();
+
+  int width_, height_;
+  float focal_;
+  Scene scene_;
+  std::vector<float> bearing_x_, bearing_y_;
+  std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
+  std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row
+  std::vector<View> views_;
+  std::vector<int> seen_;  // face at each pixel, -1 for none
+  std::vector<float> scratch_;
+  Rendering out_;
+};
+
+}  // namespace edged

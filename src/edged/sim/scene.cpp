@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/scene.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace edged {
+namespace {
+
+constexpr int kTextures = 6;
+constexpr int kTextureSize = 1024;
+
+Eigen::Quaterniond random_rotation(Random& random) {
+  const Eigen::Vector3d vector = random.normal3();
+  return Eigen::Quaterniond(random.normal(), vector.x(), vector.y(), vector.z()).normalized();
+}
+
+/// The six faces of a cuboid of these half sizes, seen from outside, or from inside for a room.
+struct Cuboid {
+  SE3 T_W_O;
+  Eigen::Vector3d half;
+  bool inside = false;
+};
+
+void add_cuboid(Scene& scene, const Cuboid& cuboid, double light, Random& random) {
+  const Eigen::Matrix3d R = cuboid.T_W_O.R();
+  const std::size_t first = static_cast<std::size_t>(random.index(kTextures));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    for (const double side : {-1.0, 1.0}) {
+      Face face;
+      face.normal_W = R.col(axis) * (cuboid.inside ? -side : side);
+      face.u_W = R.col(next);
+      face.v_W = face.normal_W.cross(face.u_W);
+      face.centre_W = cuboid.T_W_O.translation() + side * cuboid.half[axis] * R.col(axis);
+      face.half_u = cuboid.half[next];
+      face.half_v = cuboid.half[last];
+      face.texture = cuboid.inside ? scene.faces.size() % kTextures : first;
+      face.offset_u = static_cast<float>(random.index(kTextureSize));
+      face.offset_v = static_cast<float>(random.index(kTextureSize));
+      face.brightness = static_cast<float>(light * random.uniform(0.6, 1.0));
+      scene.faces.push_back(face);
+    }
+  }
+}
+
+bool keeps_clear(const Cuboid& cuboid, double clearance, std::span<const SE3> path_W_C) {
+  const SE3 T_O_W = cuboid.T_W_O.inverse();
+  return std::all_of(path_W_C.begin(), path_W_C.end(), [&](const SE3& T_W_C) {
+    const Eigen::Vector3d p_O = T_O_W * T_W_C.translation();
+    return (p_O.cwiseAbs() - cuboid.half).cwiseMax(0.0).norm() > clearance;
+  });
+}
+
+void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random) {
+  Eigen::Vector3d low = path_W_C.front().translation(), high = low;
+  for (const SE3& T_W_C : path_W_C) {
+    low = low.cwiseMin(T_W_C.translation());
+    high = high.cwiseMax(T_W_C.translation());
+  }
+  const Eigen::Vector3d margin(config.wall_m, config.wall_m, 0.75 * config.wall_m);
+  low -= margin, high += margin;
+  const Cuboid room{SE3(Eigen::Quaterniond::Identity(), 0.5 * (low + high)), 0.5 * (high - low), true};
+  add_cuboid(scene, room, config.light, random);
+  int placed = 0;
+  // A room too full for another box keeps the ones it has.
+  for (int tries = 0; placed < config.objects && tries < 200 * config.objects; ++tries) {
+    Cuboid box;
+    for (int i = 0; i < 3; ++i) box.half[i] = random.uniform(0.12, 0.4);
+    Eigen::Vector3d p;
+    for (int i = 0; i < 3; ++i) p[i] = random.uniform(low[i] + 0.3, high[i] - 0.3);
+    const bool standing = random.uniform() < 0.6;
+    if (standing) p.z() = low.z() + box.half.z();
+    const double yaw = random.uniform(0.0, std::numbers::pi);
+    const Eigen::Quaterniond tumbled = random_rotation(random);
+    const Eigen::Quaterniond upright(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+    box.T_W_O = SE3(standing ? upright : tumbled, p);
+    if (!keeps_clear(box, config.clearance_m, path_W_C)) continue;
+    add_cuboid(scene, box, config.light, random);
+    ++placed;
+  }
+}
+
+void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
+  for (const SE3& T_W_C : path_W_C) {
+    axis += T_W_C.rotation() * Eigen::Vector3d::UnitZ();
+    mean += T_W_C.translation() / static_cast<double>(path_W_C.size());
+  }
+  axis.normalize();
+  double nearest = -std::numeric_limits<double>::infinity();
+  for (const SE3& T_W_C : path_W_C) nearest = std::max(nearest, axis.dot(T_W_C.translation() - mean));
+  Face wall;
+  wall.centre_W = mean + (nearest + config.poster_distance_m) * axis;
+  wall.normal_W = -axis;
+  wall.u_W = axis.unitOrthogonal();
+  wall.v_W = wall.normal_W.cross(wall.u_W);
+  wall.half_u = wall.half_v = 40.0;
+  wall.brightness = static_cast<float>(config.light);
+  scene.faces.push_back(wall);
+}
+
+}  // namespace
+
+void SceneConfig::visit(ConfigFields& fields) {
+  fields.choice("kind", kind,
+                {{"boxes", SceneKind::Boxes}, {"poster", SceneKind::Poster}, {"shapes", SceneKind::Shapes}},
+                {.effect = "a room with boxes, one rich wall, or a white wall with dark shapes"});
+  fields.add("objects", objects, {"", 0, 200, "boxes in the room"});
+  fields.add("clearance_m", clearance_m, {"m", 0.05, 10, "distance of the boxes from the camera's path"});
+  fields.add("wall_m", wall_m,
+             {"m", 0.2, 100, "distance of the room's walls from the camera's path; floor and ceiling 3/4"});
+  fields.add("poster_distance_m", poster_distance_m,
+             {"m", 0.1, 30, "distance of a single wall from the nearest camera"});
+  fields.add("light", light, {"", 1e-4, 10, "1: a well lit room; 0.03: frames nearly black"});
+}
+
+Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed) {
+  Random random(seed, 2);
+  Scene scene;
+  switch (config.kind) {
+    case SceneKind::Boxes:
+      for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_rich_texture(kTextureSize, random));
+      add_room(scene, config, path_W_C, random);
+      break;
+    case SceneKind::Poster:
+      scene.textures.push_back(make_rich_texture(2 * kTextureSize, random));
+      add_wall(scene, config, path_W_C);
+      break;
+    case SceneKind::Shapes:
+      scene.textures.push_back(make_shapes_texture(2 * kTextureSize, random));
+      add_wall(scene, config, path_W_C);
+      break;
+  }
+  return scene;
+}
+
+}  // namespace edged

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What there is to see: textured rectangles, put together to a room with boxes or a single wall.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "edged/core/config.hpp"
+#include "edged/core/lie.hpp"
+#include "edged/sim/texture.hpp"
+
+namespace edged {
+
+/// A rectangle seen from the side its normal points to.
+struct Face {
+  Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal
+  double half_u = 0.0, half_v = 0.0;             ///< [m]
+  std::size_t texture = 0;                       ///< index into the scene
+  float texels_per_m = 256.0F;
+  float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
+  float brightness = 1.0F;                 ///< radiance of a white spot
+};
+
+struct Scene {
+  std::vector<Texture> textures;
+  std::vector<Face> faces;
+};
+
+enum class SceneKind { Boxes, Poster, Shapes };
+
+struct SceneConfig {
+  SceneKind kind = SceneKind::Boxes;
+  int objects = 16;
+  double clearance_m = 0.45;
+  double wall_m = 1.6;
+  double poster_distance_m = 1.3;
+  double light = 1.0;
+
+  void visit(ConfigFields& fields);
+};
+
+/// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, or a wall in
+/// front of all of it, square to the mean optical axis.
+Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed);
+
+}  // namespace edged

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Timestamp kForever = Timestamp::max();
+constexpr Duration kMicrosecond(1000);
+constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
+// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are seen in time.
+constexpr double kLongestStep_s = 3e-3;
+
+SimulatorConfig checked(const SimulatorConfig& config) {
+  if (config.frames.exposure_ms * 1e-3 >= 1.0 / config.frames.rate_hz)
+    throw InputError::format(
+        "option 'frames.exposure_ms' is {}, but frames come every {} ms; lower it or frames.rate_hz",
+        config.frames.exposure_ms, 1e3 / config.frames.rate_hz);
+  return config;
+}
+
+std::vector<SE3> camera_path(const ContinuousTrajectory& trajectory, const SimulatorConfig& config) {
+  std::vector<SE3> path;
+  for (double t = 0.0; t <= config.duration_s; t += 0.02) path.push_back(trajectory.at(t).T_W_B * config.T_B_C);
+  return path;
+}
+
+Scene scene_of(const ContinuousTrajectory& trajectory, const SimulatorConfig& config) {
+  return make_scene(config.scene, camera_path(trajectory, config), static_cast<std::uint64_t>(config.seed));
+}
+
+Timestamp whole_microseconds(double s) {
+  return timestamp_from_ns(static_cast<std::int64_t>(std::llround(s * 1e6)) * 1000);
+}
+
+}  // namespace
+
+void SimulatedCameraConfig::visit(ConfigFields& fields) {
+  fields.add("width", width, {"px", 16, 4096, "columns"});
+  fields.add("height", height, {"px", 16, 4096, "rows"});
+  fields.add("fx", fx, {"px", 1, 1e5, "focal length"});
+  fields.add("fy", fy, {"px", 1, 1e5, "focal length"});
+  fields.add("cx", cx, {"px", 0, 4096, "principal point"});
+  fields.add("cy", cy, {"px", 0, 4096, "principal point"});
+  fields.add("k1", k1, {"", -10, 10, "radial distortion"});
+  fields.add("k2", k2, {"", -10, 10, "radial distortion"});
+  fields.add("p1", p1, {"", -1, 1, "tangential distortion"});
+  fields.add("p2", p2, {"", -1, 1, "tangential distortion"});
+}
+
+CameraModel SimulatedCameraConfig::model() const {
+  return {width, height, fx, fy, cx, cy, DistortionModel::RadTan, {k1, k2, p1, p2, 0.0}};
+}
+
+void SimulatorConfig::visit(ConfigFields& fields) {
+  fields.add("seed", seed, {"", 0, 2147483647, "same seed, same bits; motion, scene and noise all follow from it"});
+  fields.add("duration_s", duration_s, {"s", 0.1, 3600, "length of the recording, the rest at its start included"});
+  fields.add("max_motion_px", max_motion_px,
+             {"px", 0.05, 5, "image motion between renders; the cost grows with its inverse"});
+  fields.group("motion", motion);
+  fields.group("scene", scene);
+  fields.group("camera", camera);
+  fields.group("events", events);
+  fields.group("frames", frames);
+  fields.group("imu", imu);
+}
+
+SE3 SimulatorConfig::davis240c_extrinsics() {
+  Eigen::Matrix3d R;
+  R << 0.999905117, -0.012237498, 0.006324569, 0.012178017, 0.999882045, 0.009359045, -0.006438354, -0.009281136,
+      0.999936202;
+  return {R, Eigen::Vector3d(0.006746964, 0.000727922, 0.034257361)};
+}
+
+const std::vector<std::string>& simulator_presets() {
+  static const std::vector<std::string> names{"room", "poster", "shapes", "aggressive", "dark"};
+  return names;
+}
+
+SimulatorConfig simulator_preset(const std::string& name) {
+  SimulatorConfig config;
+  config.name = name;
+  if (name == "room") return config;
+  if (name == "poster" || name == "shapes") {
+    config.scene.kind = name == "poster" ? SceneKind::Poster : SceneKind::Shapes;
+    config.motion.max_angle_deg = 20.0;
+    config.motion.max_rate_deg_s = 30.0;
+    return config;
+  }
+  if (name == "aggressive") {
+    config.motion.extent_m = 0.8;
+    config.motion.max_speed = 2.0;
+    config.motion.max_angle_deg = 45.0;
+    config.motion.max_rate_deg_s = 180.0;
+    return config;
+  }
+  if (name == "dark") {
+    config.scene.light = 0.03;
+    config.events.bandwidth_hz = 60.0;
+    config.events.shot_hz = 0.8;
+    config.frames.exposure_ms = 25.0;
+    return config;
+  }
+  throw InputError::format("there is no simulator preset '{}'; choose one of {}", name,
+                           fmt::join(simulator_presets(), ", "));
+}
+
+Simulator::Simulator(const SimulatorConfig& config)
+    : config_(checked(config)),
+      trajectory_(make_motion(config.motion, config.duration_s, config.T_B_C, static_cast<std::uint64_t>(config.seed))),
+      renderer_(config.camera.model(), scene_of(trajectory_, config)),
+      event_camera_(config.events, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
+      frame_camera_(config.frames, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
+      imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),
+      time_offset_(duration_from_seconds(config.imu.time_offset_ms * 1e-3)),
+      exposure_(whole_microseconds(config.frames.exposure_ms * 1e-3).time_since_epoch() / 2000 * 2000),
+      end_(whole_microseconds(config.duration_s)) {
+  info_.name = config.name;
+  info_.format = "simulator";
+  info_.begin = Timestamp() + std::min(Duration(0), time_offset_);
+  info_.end = end_ + std::max(Duration(0), time_offset_);
+  info_.has_events = info_.has_frames = info_.has_imu = true;
+}
+
+std::optional<GroundTruth> Simulator::ground_truth() const {
+  GroundTruth truth_body;
+  for (Timestamp t; t <= end_; t += std::chrono::milliseconds(5))
+    truth_body.trajectory.push_back({t + time_offset_, truth(t).T_W_B});
+  return truth_body;
+}
+
+Calibration Simulator::calibration() const {
+  const RigCamera events{"events", Modality::Events, config_.camera.model(), config_.T_B_C, time_offset_};
+  RigCamera frames = events;
+  frames.name = "frames", frames.modality = Modality::Frames;
+  Calibration calibration;
+  calibration.rig = {"simulator", {events, frames}};
+  calibration.imu = config_.imu.noise();
+  return calibration;
+}
+
+std::optional<Measurement> Simulator::next() {
+  for (;;) {
+    prepare_imu();
+    // All that is stamped before `complete` has been rendered: a frame appears after the events of its second half.
+    const bool finished = t_ && *t_ >= end_;
+    const Timestamp complete =
+        finished ? kForever : (t_ ? std::min(*t_, exposure_middle(frame_count_)) : Timestamp::min());
+    const Timestamp imu = imu_ ? imu_->t : kForever;
+    const Timestamp event = events_.empty() ? kForever : events_.front().t;
+    const Timestamp frame = frames_.empty() ? kForever : frames_.front().t;
+    const Timestamp first = std::min({imu, event, frame});
+    if (first == kForever && finished) return std::nullopt;
+    if (first >= complete) {
+      advance();
+    } else if (imu == first) {
+      return *std::exchange(imu_, std::nullopt);
+    } else if (event == first) {
+      const Timestamp after_frame = frame == kForever ? kForever : frame + Duration(1);
+      return take_events(std::min({imu, after_frame, complete, event + kLongestBatch}));
+    } else {
+      Frame taken = std::move(frames_.front());
+      frames_.pop_front();
+      return taken;
+    }
+  }
+}
+
+EventBatch Simulator::take_events(Timestamp before) {
+  EventBatch batch{"events", {}};
+  while (!events_.empty() && events_.front().t < before) {
+    batch.events.push_back(events_.front());
+    events_.pop_front();
+  }
+  return batch;
+}
+
+void Simulator::prepare_imu() {
+  if (imu_) return;
+  // Sample k is taken at k / rate on the camera's clock; one beyond the end lets users interpolate there.
+  const double t_cam_s = static_cast<double>(imu_count_) / config_.imu.rate_hz;
+  if (t_cam_s >= to_seconds(end_) + 1.0 / config_.imu.rate_hz) return;
+  imu_ = imu_model_.measure(timestamp_from_seconds(t_cam_s) + time_offset_, trajectory_.at(t_cam_s));
+  ++imu_count_;
+}
+
+Timestamp Simulator::exposure_begin(int frame) const {
+  return whole_microseconds((frame + 0.1) / config_.frames.rate_hz);
+}
+Timestamp Simulator::exposure_middle(int frame) const { return exposure_begin(frame) + exposure_ / 2; }
+
+double Simulator::image_speed(Timestamp t) const {
+  const Kinematics k = truth(t);
+  const Eigen::Vector3d v_B = k.T_W_B.rotation().conjugate() * k.v_W + k.omega_B.cross(config_.T_B_C.translation());
+  const Eigen::Quaterniond R_C_B = config_.T_B_C.rotation().conjugate();
+  return renderer_.max_image_speed(R_C_B * v_B, R_C_B * k.omega_B);
+}
+
+Timestamp Simulator::next_render_time() const {
+  // A tenth is kept in reserve for what moves between the pixels that are looked at.
+  const double reach = 0.9 * config_.max_motion_px;
+  const double speed = std::max(image_speed(*t_), 1e-3);
+  double step = std::min(kLongestStep_s, reach / speed);
+  step = std::min(step, reach / std::max(image_speed(*t_ + duration_from_seconds(step)), 1e-3));
+  Timestamp t = *t_ + std::max(kMicrosecond, whole_microseconds(step).time_since_epoch());
+  const Timestamp begin = exposure_begin(frame_count_), stop = begin + exposure_;
+  if (*t_ < begin) t = std::min(t, begin);
+  if (*t_ < stop) t = std::min(t, stop);
+  return std::min(t, end_);
+}
+
+void Simulator::advance() {
+  const Timestamp t = t_ ? next_render_time() : Timestamp();
+  const Rendering& picture = renderer_.render(truth(t).T_W_B * config_.T_B_C);
+  ++renderings_;
+  const std::vector<Event> events = event_camera_.update(t, picture.radiance);
+  events_.insert(events_.end(), events.begin(), events.end());
+  if (t_) collect_light(*t_, t);
+  previous_ = picture.radiance;
+  t_ = t;
+}
+
+void Simulator::collect_light(Timestamp from, Timestamp to) {
+  if (from < exposure_begin(frame_count_)) return;
+  // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
+  frame_camera_.expose(previous_, renderer_.last().radiance, to_seconds(to - from));
+  if (to < exposure_begin(frame_count_) + exposure_) return;
+  frames_.push_back({exposure_middle(frame_count_), "frames", frame_camera_.read_out()});
+  ++frame_count_;
+}
+
+}  // namespace edged

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Event camera, frames and IMU moving through a textured scene, with the truth: a Dataset like any recording.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/core/dataset.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/sim/event_camera.hpp"
+#include "edged/sim/frame_camera.hpp"
+#include "edged/sim/imu_model.hpp"
+#include "edged/sim/motion.hpp"
+#include "edged/sim/renderer.hpp"
+#include "edged/sim/scene.hpp"
+
+namespace edged {
+
+/// Size, intrinsics and radial-tangential distortion shared by events and frames; a DAVIS240C.
+struct SimulatedCameraConfig {
+  int width = 240, height = 180;
+  double fx = 199.37143, fy = 199.70787, cx = 133.75438, cy = 113.99217;
+  double k1 = -0.38289916, k2 = 0.18933637, p1 = -0.00100247, p2 = -0.00056378;
+
+  void visit(ConfigFields& fields);
+  CameraModel model() const;
+};
+
+/// Every number of a simulation. The defaults are the preset "room"; simulator_preset gives the others.
+struct SimulatorConfig {
+  std::string name = "room";  ///< of the preset it started from; only a label
+  int seed = 1;
+  double duration_s = 20.0;
+  double max_motion_px = 0.5;
+  MotionConfig motion;
+  SceneConfig scene;
+  SimulatedCameraConfig camera;
+  EventCameraConfig events;
+  FrameCameraConfig frames;
+  ImuModelConfig imu;
+
+  /// Pose of the camera in the body; not an option.
+  SE3 T_B_C = davis240c_extrinsics();
+
+  void visit(ConfigFields& fields);
+  static SE3 davis240c_extrinsics();
+};
+
+/// "room" (default), "poster", "shapes", "aggressive" or "dark". Throws InputError that lists them.
+SimulatorConfig simulator_preset(const std::string& name);
+const std::vector<std::string>& simulator_presets();
+
+/// Deterministic by config and seed. Renders as next() is called; holds the measurements of one exposure at most.
+/// Stamps start at 0 on the camera's clock; the first second is at rest. Cameras "events" and "frames".
+class Simulator : public Dataset {
+ public:
+  /// Throws InputError for impossible values, or a motion file that is missing or too short.
+  explicit Simulator(const SimulatorConfig& config);
+
+  const DatasetInfo& info() const override { return info_; }
+  std::optional<Measurement> next() override;
+  /// T_W_B at 200 Hz, stamps on the IMU's clock.
+  std::optional<GroundTruth> ground_truth() const override;
+
+  Calibration calibration() const;
+
+  /// The exact motion; t: seconds on the camera's clock.
+  const ContinuousTrajectory& trajectory() const { return trajectory_; }
+  std::size_t renderings() const { return renderings_; }
+
+ private:
+  void advance();
+  Timestamp next_render_time() const;
+  void prepare_imu();
+  void collect_light(Timestamp from, Timestamp to);
+  Timestamp exposure_begin(int frame) const;
+  Timestamp exposure_middle(int frame) const;
+  EventBatch take_events(Timestamp before);
+  double image_speed(Timestamp t) const;
+  Kinematics truth(Timestamp t) const { return trajectory_.at(to_seconds(t)); }
+
+  SimulatorConfig config_;
+  DatasetInfo info_;
+  ContinuousTrajectory trajectory_;
+  Renderer renderer_;
+  EventCamera event_camera_;
+  FrameCamera frame_camera_;
+  ImuModel imu_model_;
+  Duration time_offset_, exposure_;
+  Timestamp end_;               // of the cameras
+  std::optional<Timestamp> t_;  // rendered up to here
+  int frame_count_ = 0;         // read out so far
+  std::int64_t imu_count_ = 0;
+  std::vector<float> previous_;  // the picture before the last one
+  std::deque<Event> events_;     // rendered but not handed out, as frames_
+  std::deque<Frame> frames_;
+  std::optional<ImuSample> imu_;  // the next one
+  std::size_t renderings_ = 0;
+};
+
+}  // namespace edged
