@@ -74,8 +74,9 @@ double visual_rms(Window& window) {
 }  // namespace
 
 void EstimatorConfig::visit(ConfigFields& fields) {
-  fields.add("recent_states", recent_states, {"", 2, 20, "newest states that keep velocity and biases"});
+  fields.add("recent_states", recent_states, {"", 1, 20, "newest states in the window, keyframes or not"});
   fields.add("keyframes", keyframes, {"", 2, 30, "older keyframes in the window; more are slower and more accurate"});
+  fields.add("max_interval_s", max_interval_s, {"s", 0.2, 10, "after this time a state becomes a keyframe in any case"});
   fields.add("iterations", iterations, {"", 1, 50, "solver iterations a packet"});
   fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "visual residuals beyond this are weighted down"});
   fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from its first guess"});
@@ -211,11 +212,6 @@ bool Estimator::start_in_motion() {
   }
   initialized_ = true;
   buffer_.clear();
-  while (static_cast<int>(std::count_if(window_.states.begin(), window_.states.end(), [](const auto& s) {
-           return s.second.has_motion;
-         })) > config_.recent_states) {
-    drop_oldest_motion();
-  }
   slide();
   return true;
 }
@@ -246,9 +242,11 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 }
 
 void Estimator::slide() {
-  const auto with_motion = std::count_if(window_.states.begin(), window_.states.end(),
-                                         [](const auto& s) { return s.second.has_motion; });
-  if (with_motion > config_.recent_states) drop_oldest_motion();
+  // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
+  if (window_.states.size() > static_cast<std::size_t>(config_.recent_states)) {
+    const auto aged = std::prev(window_.states.end(), config_.recent_states + 1);
+    if (!aged->second.keyframe) drop_recent(aged->first);
+  }
   while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) drop_oldest_keyframe();
   // Tracks that ended before they became landmarks.
   const StateId newest = window_.states.rbegin()->first;
@@ -258,19 +256,17 @@ void Estimator::slide() {
   });
 }
 
-void Estimator::drop_oldest_motion() {
-  const auto oldest = std::find_if(window_.states.begin(), window_.states.end(),
-                                   [](const auto& s) { return s.second.has_motion; });
-  const StateId id = oldest->first;
-  std::set<BlockKey> leaving = {{BlockKind::Motion, id}};
-  if (!oldest->second.keyframe) {
-    leaving.insert({BlockKind::Pose, id});
-    // Its sights go with it: kept, they would tie all its landmarks into the prior.
-    for (auto& [feature_id, feature] : window_.features) feature.seen.erase(id);
+void Estimator::drop_recent(StateId id) {
+  const auto state = window_.states.find(id);
+  const auto next = std::next(state);
+  Preintegration joined = state->second.imu.joined(next->second.imu);
+  if (joined.dt() > config_.max_interval_s) {
+    state->second.keyframe = true;
+    return;
   }
-  window_.prior = marginalize(window_, factors_touching(window_, leaving), leaving);
-  oldest->second.has_motion = false;
-  if (!oldest->second.keyframe) window_.states.erase(oldest);
+  next->second.imu = std::move(joined);
+  for (auto& [feature_id, feature] : window_.features) feature.seen.erase(id);
+  window_.states.erase(state);
   window_.drop_orphaned_priors();
 }
 
@@ -281,7 +277,7 @@ void Estimator::drop_oldest_keyframe() {
   for (const auto& [state, content] : window_.states) {
     if (content.keyframe) heir = state;
   }
-  std::set<BlockKey> leaving = {{BlockKind::Pose, id}};
+  std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
   std::map<FeatureId, bool> inherited;
   for (auto& [feature_id, feature] : window_.features) {
     if (feature.anchor != id) continue;
@@ -289,9 +285,12 @@ void Estimator::drop_oldest_keyframe() {
     inherited[feature_id] = heir != id && feature.seen.contains(heir);
   }
   std::vector<Factor> touching = factors_touching(window_, leaving);
+  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
   std::erase_if(touching, [&](const Factor& factor) {
     const BlockKey& depth = factor.blocks.back();
-    return depth.kind == BlockKind::InverseDepth && inherited.at(depth.id) && factor.blocks[1].id >= heir;
+    if (depth.kind != BlockKind::InverseDepth) return false;
+    const StateId seen_by = factor.blocks[1].id;
+    return !window_.states.at(seen_by).keyframe || (inherited.at(depth.id) && seen_by >= heir);
   });
   window_.prior = marginalize(window_, touching, leaving);
   for (auto it = window_.features.begin(); it != window_.features.end();) {

@@ -16,8 +16,9 @@
 namespace edged {
 
 struct EstimatorConfig {
-  int recent_states = 4;           ///< newest states, with velocity and biases
-  int keyframes = 7;               ///< older keyframes, pose only
+  int recent_states = 3;           ///< newest states, keyframes or not
+  int keyframes = 8;               ///< older keyframes
+  double max_interval_s = 1.0;     ///< IMU between two keyframes
   int iterations = 4;              ///< of the solver, a packet
   double cauchy_scale = 1.0;       ///< robust loss of visual residuals
   double gyro_bias_sigma = 0.02;   ///< prior at start-up
@@ -76,7 +77,7 @@ class Estimator {
   void optimize(EstimatorResult& result, int iterations);
   void slide();
   void drop_oldest_keyframe();
-  void drop_oldest_motion();
+  void drop_recent(StateId id);
 
   ImuNoise noise_;
   Rig rig_;

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/estimator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+struct RunResult {
+  bool initialized = false;
+  double started_at = 0.0;
+  double max_position_error = 0.0, max_tilt_error = 0.0, travelled_ratio = 0.0;
+  Eigen::Vector3d bias_gyro, bias_accel;
+  std::string waiting_for;
+};
+
+/// Runs the estimator through the world; errors are of the motion since the start, in the frame of the start.
+RunResult run(const TestWorldOptions& options, double duration, const EstimatorConfig& config = {}) {
+  TestWorld world(options);
+  Estimator estimator(world.rig(), world.noise(), config);
+  RunResult result;
+  SE3 T_true_est;
+  double travelled = 0.0, estimated = 0.0;
+  Eigen::Vector3d last_true = Eigen::Vector3d::Zero(), last_estimated = Eigen::Vector3d::Zero();
+  constexpr double kStep = 0.05;
+  for (int i = 1; i * kStep <= duration; ++i) {
+    const double t = i * kStep;
+    const EstimatorResult output = estimator.add(world.packet(t, kStep, i % 4 == 0));
+    result.waiting_for = output.waiting_for;
+    if (!estimator.initialized()) continue;
+    const NavState state = estimator.newest();
+    const SE3 truth = world.T_W_B(t);
+    if (!result.initialized) {
+      result.initialized = true;
+      result.started_at = t;
+      // Yaw and position are free: take them from the start.
+      const Eigen::Matrix3d R = truth.R() * state.T_W_B.R().transpose();
+      const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());
+      T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * state.T_W_B.translation());
+    } else {
+      travelled += (truth.translation() - last_true).norm();
+      estimated += (state.T_W_B.translation() - last_estimated).norm();
+    }
+    last_true = truth.translation();
+    last_estimated = state.T_W_B.translation();
+    const SE3 aligned = T_true_est * state.T_W_B;
+    result.max_position_error = std::max(result.max_position_error, (aligned.translation() - truth.translation()).norm());
+    result.max_tilt_error = std::max(result.max_tilt_error, (aligned.R().row(2) - truth.R().row(2)).norm());
+    result.bias_gyro = state.bias_gyro;
+    result.bias_accel = state.bias_accel;
+  }
+  result.travelled_ratio = travelled > 0 ? estimated / travelled : 0.0;
+  return result;
+}
+
+TEST(Estimator, StartsAtRestAndFollowsTheMotion) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TestWorldOptions options{.rest_s = 1.0, .seed = seed};
+    const RunResult result = run(options, 15.0);
+    ASSERT_TRUE(result.initialized);
+    EXPECT_LT(result.started_at, 1.0);
+    EXPECT_LT(result.max_position_error, 0.05);
+    EXPECT_LT(result.max_tilt_error, 0.02);
+    EXPECT_NEAR(result.travelled_ratio, 1.0, 0.02);
+    EXPECT_LT((result.bias_gyro - options.bias_gyro).norm(), 1e-3);
+    EXPECT_LT((result.bias_accel - options.bias_accel).norm(), 0.03);
+  }
+}
+
+TEST(Estimator, StartsInMotionAndFindsScaleAndGravity) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TestWorldOptions options{.seed = seed};
+    const RunResult result = run(options, 15.0);
+    ASSERT_TRUE(result.initialized) << result.waiting_for;
+    EXPECT_LT(result.started_at, 2.0);
+    EXPECT_LT(result.max_tilt_error, 0.06);
+    // The accelerometer bias shows only with time: until then the scale is a few percent off.
+    EXPECT_NEAR(result.travelled_ratio, 1.0, 0.05);
+    EXPECT_LT((result.bias_accel - options.bias_accel).norm(), 0.04);
+  }
+}
+
+TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
+  const RunResult result = run({.speed = 0.0}, 5.0);
+  EXPECT_FALSE(result.initialized);
+  EXPECT_THAT(result.waiting_for, testing::HasSubstr("parallax"));
+}
+
+TEST(Estimator, GivesTheSameBitsTwice) {
+  const RunResult a = run({.rest_s = 1.0}, 5.0), b = run({.rest_s = 1.0}, 5.0);
+  EXPECT_EQ(a.max_position_error, b.max_position_error);
+  EXPECT_EQ(a.bias_accel, b.bias_accel);
+}
+
+TEST(Estimator, KeepsTheWindowBounded) {
+  TestWorld world({.rest_s = 1.0});
+  const EstimatorConfig config;
+  Estimator estimator(world.rig(), world.noise(), config);
+  for (int i = 1; i <= 200; ++i) estimator.add(world.packet(i * 0.05, 0.05, i % 2 == 0));
+  EXPECT_LE(static_cast<int>(estimator.window().states.size()), config.recent_states + config.keyframes);
+  EXPECT_LE(estimator.window().features.size(), 400U);
+}
+
+}  // namespace
+}  // namespace edged

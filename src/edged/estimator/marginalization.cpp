@@ -13,6 +13,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+constexpr double kNoInformation = 1e-9;   // a diagonal entry below this was not measured at all
+constexpr double kRankTolerance = 1e-10;  // of a matrix with unit diagonal
+
 /// A factor's residual r and Jacobian columns J per block, so that r + sum J_i * (x_i - x0_i) is its linear form.
 struct LinearFactor {
   VectorXd r;
@@ -104,22 +107,29 @@ void eliminate_depths(NormalEquations& eq) {
   const Eigen::Index n = eq.size - eq.depths;
   for (Eigen::Index i = 0; i < eq.depths; ++i) {
     const double h = eq.H(i, i);
-    if (h < 1e-9) continue;
+    if (h < kNoInformation) continue;
     const VectorXd column = eq.H.block(eq.depths, i, n, 1);
     eq.H.bottomRightCorner(n, n).noalias() -= column * (column.transpose() / h);
     eq.g.tail(n) -= column * (eq.g[i] / h);
   }
 }
 
+/// S with ones on the diagonal of S H S: positions, angles and biases differ in information by ten orders of magnitude.
+VectorXd unit_diagonal_scale(const MatrixXd& H) {
+  return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
+}
+
 /// Schur complement of the leaving poses and motions, with the directions nothing has measured left out.
 void eliminate_states(NormalEquations& eq) {
   const Eigen::Index m = eq.leaving - eq.depths, n = eq.size - eq.leaving;
   if (m == 0) return;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(eq.H.block(eq.depths, eq.depths, m, m));
-  const double smallest = 1e-12 * std::max(eigen.eigenvalues().maxCoeff(), 1e-12);
+  const MatrixXd H_mm = eq.H.block(eq.depths, eq.depths, m, m);
+  const VectorXd scale = unit_diagonal_scale(H_mm);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * H_mm * scale.asDiagonal());
   const VectorXd inverse =
-      (eigen.eigenvalues().array() > smallest).select(eigen.eigenvalues().array().inverse(), 0.0);
-  const MatrixXd H_mm_inv = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+      (eigen.eigenvalues().array() > kRankTolerance).select(eigen.eigenvalues().array().inverse(), 0.0);
+  const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  const MatrixXd H_mm_inv = V * inverse.asDiagonal() * V.transpose();
   const MatrixXd H_nm = eq.H.block(eq.leaving, eq.depths, n, m);
   eq.H.bottomRightCorner(n, n).noalias() -= H_nm * H_mm_inv * H_nm.transpose();
   eq.g.tail(n).noalias() -= H_nm * (H_mm_inv * eq.g.segment(eq.depths, m));
@@ -137,18 +147,21 @@ LinearPrior marginalize(Window& window, const std::vector<Factor>& factors, cons
   const Eigen::Index n = eq.size - eq.leaving;
   if (n == 0) return prior;
   const MatrixXd H = 0.5 * (eq.H.bottomRightCorner(n, n) + MatrixXd(eq.H.bottomRightCorner(n, n).transpose()));
-  // H = P^T L D L^T P: rows of D^(1/2) L^T P, those with no information left out.
-  const Eigen::LDLT<MatrixXd> ldlt(H);
+  const VectorXd scale = unit_diagonal_scale(H);
+  // S H S = P^T L D L^T P: the rows of D^(1/2) L^T P S^-1, those with no information left out.
+  const Eigen::LDLT<MatrixXd> ldlt(scale.asDiagonal() * H * scale.asDiagonal());
   const VectorXd D = ldlt.vectorD();
-  const MatrixXd L_T_P = MatrixXd(ldlt.matrixU()) * ldlt.transpositionsP();
-  const VectorXd y = ldlt.matrixL().solve(ldlt.transpositionsP() * eq.g.tail(n));  // L^-1 P g
-  const double smallest = 1e-10 * std::max(D.maxCoeff(), 1e-10);
-  const Eigen::Index rows = (D.array() > smallest).count();
+  const VectorXd inverse_scale = (scale.array() > 0.0).select(scale.array().inverse(), 0.0);
+  const MatrixXd P = ldlt.transpositionsP() * MatrixXd::Identity(n, n);
+  const MatrixXd L_T_P = ldlt.matrixU() * P;
+  const VectorXd g = scale.asDiagonal() * eq.g.tail(n);
+  const VectorXd y = ldlt.matrixL().solve(P * g);  // L^-1 P S g
+  const Eigen::Index rows = (D.array() > kRankTolerance).count();
   prior.J.resize(rows, n);
   prior.r.resize(rows);
   for (Eigen::Index i = 0, row = 0; i < n; ++i) {
-    if (D[i] <= smallest) continue;
-    prior.J.row(row) = std::sqrt(D[i]) * L_T_P.row(i);
+    if (D[i] <= kRankTolerance) continue;
+    prior.J.row(row) = std::sqrt(D[i]) * L_T_P.row(i) * inverse_scale.asDiagonal();
     prior.r[row++] = y[i] / std::sqrt(D[i]);
   }
   prior.blocks = eq.staying;

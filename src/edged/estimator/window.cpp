@@ -52,8 +52,7 @@ double* Window::block(BlockKey key) {
   }
   const auto found = states.find(key.id);
   if (found == states.end()) return nullptr;
-  if (key.kind == BlockKind::Pose) return found->second.pose.data();
-  return found->second.has_motion ? found->second.motion.data() : nullptr;
+  return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
 const double* Window::linearisation_point(BlockKey key) {
@@ -75,7 +74,7 @@ std::vector<Factor> Window::factors() {
     out.push_back({std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
   }
   for (auto it = states.begin(); it != states.end(); ++it) {
-    if (it == states.begin() || !std::prev(it)->second.has_motion) continue;
+    if (it == states.begin()) continue;
     const StateId a = std::prev(it)->first, b = it->first;
     out.push_back({std::make_unique<ImuFactor>(it->second.imu),
                    nullptr,

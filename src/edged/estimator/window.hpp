@@ -23,14 +23,13 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
-/// One instant of the window. Recent states carry velocity and biases; older ones are keyframes with a pose only.
+/// One instant of the window: a keyframe, or one of the newest states.
 struct WindowState {
   Timestamp t;
   PoseBlock pose{};
   MotionBlock motion{};
-  bool has_motion = true;
   bool keyframe = false;
-  Preintegration imu;  ///< from the state before this one; unused once that one has lost its motion
+  Preintegration imu;  ///< from the state before this one; of the window's first state unused
 
   SE3 T_W_B() const { return pose_of(pose.data()); }
   NavState nav() const;

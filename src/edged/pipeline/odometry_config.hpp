@@ -4,13 +4,29 @@
 #pragma once
 
 #include "edged/core/config.hpp"
+#include "edged/estimator/estimator.hpp"
+#include "edged/events/accumulate.hpp"
+#include "edged/frontend/keyframe_policy.hpp"
+#include "edged/frontend/tracker.hpp"
 #include "edged/pipeline/packetizer.hpp"
 
 namespace edged {
 
 struct OdometryConfig {
+  OdometryConfig();
+
   PacketizerConfig packets;
-  // events (warp), frontend (detector, tracker, ransac, keyframes), estimator follow as their parts land
+  EventFrameConfig event_frame;
+  TrackerConfig event_tracker;
+  TrackerConfig frame_tracker;
+  KeyframeConfig keyframes;
+  EstimatorConfig estimator;
+  double initial_depth_m = 2.0;      ///< scene depth until landmarks tell
+  double quiet_rate_per_pixel = 1.2; ///< event rate [1/s/px] below which nothing moves in view
+  double min_events_per_pixel = 0.1; ///< a packet with fewer events draws no event frame
+  double degraded_after_s = 0.7;     ///< without enough landmarks or rest the status falls
+  double lost_after_s = 2.5;
+  int min_landmarks = 8;             ///< seen by the newest state, for a Good pose
 
   void visit(ConfigFields& fields);
 };

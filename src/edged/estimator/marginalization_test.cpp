@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/marginalization.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "edged/estimator/solver.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+/// Three states, their IMU factors, a gauge and hand-set priors: a problem that is nearly linear close to its solution.
+Window inertial_window(TestWorld& world) {
+  Window window(world.rig(), 1.0);
+  for (int i = 0; i < 4; ++i) {
+    const double t = 0.1 * i;
+    std::vector<ImuSample> samples;
+    for (int k = 0; k <= 20 && i > 0; ++k) samples.push_back(world.imu(t - 0.1 + 0.005 * k));
+    WindowState state;
+    state.t = timestamp_from_seconds(t);
+    state.pose = to_block(world.T_W_B(t));
+    Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
+    if (i > 0) state.imu = Preintegration(samples, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), world.noise());
+    state.keyframe = true;
+    window.add_state(std::move(state));
+  }
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-3, 1e-3));
+  for (const auto& [id, state] : window.states) {
+    MotionBlock mean = state.motion;
+    mean[0] += 0.01;
+    window.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, mean, {0.1, 0.02, 0.1}));
+  }
+  return window;
+}
+
+TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
+  TestWorld world({.bias_gyro = {0.001, 0, 0}, .bias_accel = {0.01, 0.02, 0}});
+  Window window = inertial_window(world);
+  solve(window, 50);
+  const PoseBlock solved = window.newest().pose;
+  const MotionBlock solved_motion = window.newest().motion;
+
+  const StateId first = window.states.begin()->first;
+  const std::set<BlockKey> leaving = {{BlockKind::Pose, first}, {BlockKind::Motion, first}};
+  std::vector<Factor> touching = window.factors();
+  std::erase_if(touching, [&](const Factor& f) {
+    return std::none_of(f.blocks.begin(), f.blocks.end(), [&](const BlockKey& k) { return leaving.contains(k); });
+  });
+  window.prior = marginalize(window, touching, leaving);
+  window.states.erase(first);
+  window.drop_orphaned_priors();
+
+  // Start elsewhere: the prior alone must bring the states back.
+  for (auto& [id, state] : window.states) {
+    for (int i = 0; i < 3; ++i) state.pose[static_cast<std::size_t>(i)] += 0.02;
+    for (double& m : state.motion) m += 0.01;
+  }
+  solve(window, 50);
+  double difference[9];
+  tangent_difference(BlockKind::Pose, window.newest().pose.data(), solved.data(), difference);
+  EXPECT_LT(Eigen::Map<Vector6d>(difference).norm(), 1e-4);
+  tangent_difference(BlockKind::Motion, window.newest().motion.data(), solved_motion.data(), difference);
+  EXPECT_LT((Eigen::Map<Eigen::Matrix<double, 9, 1>>(difference).norm()), 2e-4);
+}
+
+TEST(Marginalize, KeepsTheInformationOfTheNormalEquations) {
+  TestWorld world({});
+  Window window = inertial_window(world);
+  const std::vector<Factor> factors = window.factors();
+  const LinearPrior prior = marginalize(window, factors, {});  // nothing leaves: J^T J is H, J^T r is g
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(prior.J.cols(), prior.J.cols());
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(prior.J.cols());
+  for (const Factor& factor : factors) {
+    Eigen::VectorXd r(factor.cost->num_residuals());
+    std::vector<const double*> x;
+    std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J;
+    std::vector<double*> J_data;
+    for (const BlockKey& key : factor.blocks) {
+      x.push_back(window.block(key));
+      J.emplace_back(r.size(), block_size(key.kind));
+    }
+    for (auto& j : J) J_data.push_back(j.data());
+    ASSERT_TRUE(factor.cost->Evaluate(x.data(), r.data(), J_data.data()));
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(r.size(), H.cols());
+    for (std::size_t i = 0; i < J.size(); ++i) {
+      Eigen::Index offset = 0;
+      for (const BlockKey& key : prior.blocks) {
+        if (key == factor.blocks[i]) row.middleCols(offset, tangent_size(key.kind)) = J[i].leftCols(tangent_size(key.kind));
+        offset += tangent_size(key.kind);
+      }
+    }
+    H += row.transpose() * row;
+    g += row.transpose() * r;
+  }
+  EXPECT_LT((prior.J.transpose() * prior.J - H).norm() / H.norm(), 1e-9);
+  EXPECT_LT((prior.J.transpose() * prior.r - g).norm() / std::max(1.0, g.norm()), 1e-6);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A world of points, an analytic motion and the exact measurements of both: the truth the estimator is tested against.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "edged/camera/rig.hpp"
+#include "edged/estimator/estimator.hpp"
+
+namespace edged {
+
+struct TestWorldOptions {
+  double rest_s = 0.0;          ///< at the beginning
+  double speed = 1.0;           ///< scales the amplitude of the motion; 0: rotation only
+  double pixel_noise = 0.5;     ///< [px]
+  double imu_noise = 1.0;       ///< times the densities of ImuNoise
+  Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
+  Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
+  std::uint64_t seed = 1;
+};
+
+class TestWorld {
+ public:
+  explicit TestWorld(const TestWorldOptions& options) : options_(options), random_(options.seed) {
+    rig_.name = "test";
+    rig_.cameras.push_back({"frames", Modality::Frames, CameraModel(240, 180, 200, 200, 119.5, 89.5),
+                            SE3(so3::exp({0.01, 0.02, -0.01}), {0.02, 0.01, 0.03}), Duration(0)});
+    noise_.gyro_noise = 2e-4;
+    noise_.accel_noise = 4e-3;
+    for (int i = 0; i < 600; ++i) {
+      points_W_.emplace_back(uniform(-4, 4), uniform(-4, 4), uniform(1.5, 4));
+    }
+  }
+
+  const Rig& rig() const { return rig_; }
+  const ImuNoise& noise() const { return noise_; }
+
+  /// The body looks along W's z (upwards: the texture is on the ceiling).
+  SE3 T_W_B(double t) const {
+    const double s = motion_time(t);
+    const Eigen::Vector3d phi(0.2 * std::sin(1.3 * s), 0.25 * std::sin(0.9 * s), 0.3 * std::sin(0.7 * s));
+    return {so3::exp(phi), position(s)};
+  }
+
+  Eigen::Vector3d v_W(double t) const { return (T_W_B(t + 1e-5).translation() - T_W_B(t - 1e-5).translation()) / 2e-5; }
+
+  ImuSample imu(double t) {
+    constexpr double h = 1e-4;
+    const SE3 T = T_W_B(t), before = T_W_B(t - h), after = T_W_B(t + h);
+    const Eigen::Vector3d a_W = (after.translation() - 2 * T.translation() + before.translation()) / (h * h);
+    const double density = options_.imu_noise * std::sqrt(200.0);
+    ImuSample sample;
+    sample.t = timestamp_from_seconds(t);
+    sample.gyro_B = so3::log(before.rotation().conjugate() * after.rotation()) / (2 * h) + options_.bias_gyro +
+                    noise_.gyro_noise * density * normal3();
+    sample.accel_B = T.rotation().conjugate() * (a_W - kGravity_W) + options_.bias_accel +
+                     noise_.accel_noise * density * normal3();
+    return sample;
+  }
+
+  /// All visible points at t.
+  CameraObservations observe(double t) {
+    CameraObservations out{"frames", {}};
+    const RigCamera& camera = rig_.cameras.front();
+    const SE3 T_C_W = (T_W_B(t) * camera.T_B_C).inverse();
+    for (std::size_t i = 0; i < points_W_.size() && out.features.size() < 120; ++i) {
+      const Eigen::Vector3d p_C = T_C_W * points_W_[i];
+      const auto pixel = camera.model.project(p_C);
+      if (!pixel || !camera.model.contains(*pixel)) continue;
+      const Eigen::Vector2d noise(normal(), normal());
+      out.features.push_back({i + 1, p_C.hnormalized() + options_.pixel_noise / 200.0 * noise, 1.0 / 200.0});
+    }
+    return out;
+  }
+
+  /// The packet that ends at t, dt after the one before.
+  EstimatorInput packet(double t, double dt, bool keyframe) {
+    EstimatorInput input{timestamp_from_seconds(t), {}, {observe(t)}, keyframe, true};
+    const int n = static_cast<int>(std::lround(dt * 200.0));
+    if (last_imu_) input.imu.push_back(*last_imu_);
+    for (int i = last_imu_ ? 1 : 0; i <= n; ++i) input.imu.push_back(imu(t - dt + i * dt / n));
+    last_imu_ = input.imu.back();
+    return input;
+  }
+
+ private:
+  /// Zero during the rest, then smoothly up to the running time.
+  double motion_time(double t) const {
+    const double s = t - options_.rest_s;
+    if (options_.rest_s == 0.0) return s;
+    return s <= 0 ? 0.0 : s < 1.0 ? s * s * s * (1.0 - 0.5 * s) : s - 0.5;
+  }
+
+  Eigen::Vector3d position(double s) const {
+    return options_.speed * Eigen::Vector3d(0.8 * std::sin(0.9 * s), 0.6 * std::sin(1.4 * s + 0.3) - 0.6 * std::sin(0.3),
+                                            0.3 * std::sin(1.1 * s));
+  }
+
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
+  }
+  double normal() {
+    return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(2.0 * std::numbers::pi * uniform(0, 1));
+  }
+  Eigen::Vector3d normal3() {
+    const double x = normal(), y = normal(), z = normal();
+    return {x, y, z};
+  }
+
+  TestWorldOptions options_;
+  std::mt19937_64 random_;
+  Rig rig_;
+  ImuNoise noise_;
+  std::vector<Eigen::Vector3d> points_W_;
+  std::optional<ImuSample> last_imu_;
+};
+
+}  // namespace edged

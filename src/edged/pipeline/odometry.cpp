@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/odometry.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "edged/camera/undistort.hpp"
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+/// One camera's tracks and where the body was at their last image and last keyframe.
+struct Channel {
+  Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config)
+      : camera(rig_camera), tracker(rig_camera.name, image_model, config) {}
+
+  SE3 T_W_C(const SE3& T_W_B) const { return T_W_B * camera.T_B_C; }
+
+  RigCamera camera;
+  FeatureTracker tracker;
+  cv::Mat image;      ///< of the present packet; empty when it brought none
+  SE3 T_W_Blast;      ///< at the last image
+  SE3 T_W_Bkeyframe;  ///< at the last keyframe
+  bool any_image = false;
+};
+
+const RigCamera& need(const Rig& rig, Modality modality) {
+  const RigCamera* camera = rig.find(modality);
+  if (camera == nullptr) {
+    throw InputError::format("rig '{}' has no {} camera, which this mode needs: choose another --mode or --rig", rig.name,
+                             modality == Modality::Events ? "event" : "frame");
+  }
+  return *camera;
+}
+
+Rig rig_of_mode(const Rig& rig, Mode mode) {
+  Rig used{rig.name, {}};
+  if (mode != Mode::Frames) used.cameras.push_back(need(rig, Modality::Events));
+  if (mode != Mode::Events) used.cameras.push_back(need(rig, Modality::Frames));
+  return used;
+}
+
+}  // namespace
+
+std::string to_string(TrackingStatus status) {
+  switch (status) {
+    case TrackingStatus::Initializing: return "Initializing";
+    case TrackingStatus::Good: return "Good";
+    case TrackingStatus::Degraded: return "Degraded";
+    case TrackingStatus::Lost: return "Lost";
+  }
+  EDGED_CHECK(false, "status {}", static_cast<int>(status));
+}
+
+struct Odometry::Impl {
+  Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config);
+
+  OdometryOutput process(const Packet& packet);
+
+  void predict(const Packet& packet);
+  void draw_event_frame(const Packet& packet);
+  void take_frame(const Packet& packet);
+  void track(Channel& channel, Timestamp t);
+  void reject(Channel& channel);
+  bool is_keyframe(const Packet& packet) const;
+  void mark_keyframe(Timestamp t);
+  EstimatorResult estimate(const Packet& packet, bool keyframe);
+  void update_depth();
+  void move_world(const SE3& T_new_old);
+  TrackingStatus judge(const EstimatorResult& result, Timestamp t);
+  int tracks(Modality modality) const;
+
+  Mode mode;
+  OdometryConfig config;
+  ImuNoise noise;
+  Estimator estimator;
+  std::vector<Channel> channels;  ///< events first
+  std::optional<EventFrameRenderer> renderer;
+  StageTimings timings;
+
+  FeatureId next_feature = 1;
+  NavState now;                     ///< predicted, then optimised; before the start attitude by gyro only
+  std::vector<StampedPose> T_W_B;   ///< predicted body poses that the packet's events are warped with
+  bool quiet = false;               ///< the event camera sees nothing move
+  double scene_depth;
+  std::optional<Timestamp> last_keyframe, last_frame, last_supported;
+  cv::Mat event_frame;
+};
+
+Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config)
+    : mode(used_mode),
+      config(used_config),
+      noise(imu_noise),
+      estimator(rig_of_mode(rig, used_mode), imu_noise, used_config.estimator),
+      scene_depth(used_config.initial_depth_m) {
+  for (const RigCamera& camera : rig_of_mode(rig, mode).cameras) {
+    if (camera.modality == Modality::Events) {
+      const CameraModel ideal = ideal_pinhole(camera.model);
+      renderer.emplace(UndistortTable(camera.model, ideal), config.event_frame);
+      channels.emplace_back(camera, ideal, config.event_tracker);
+    } else {
+      channels.emplace_back(camera, camera.model, config.frame_tracker);
+    }
+  }
+}
+
+OdometryOutput Odometry::Impl::process(const Packet& packet) {
+  predict(packet);
+  draw_event_frame(packet);
+  take_frame(packet);
+  for (Channel& channel : channels) track(channel, packet.t);
+  for (Channel& channel : channels) reject(channel);
+  const bool keyframe = is_keyframe(packet);
+  if (keyframe) mark_keyframe(packet.t);
+  const EstimatorResult result = estimate(packet, keyframe);
+  update_depth();
+
+  OdometryOutput output;
+  output.status = judge(result, packet.t);
+  output.state = now;
+  output.keyframe = keyframe;
+  output.event_tracks = tracks(Modality::Events);
+  output.frame_tracks = tracks(Modality::Frames);
+  output.landmarks = result.landmarks;
+  output.event_rate_hz = packet.event_rate_hz;
+  output.scene_depth = scene_depth;
+  output.waiting_for = result.waiting_for;
+  return output;
+}
+
+void Odometry::Impl::predict(const Packet& packet) {
+  const auto timer = timings.measure("predict");
+  T_W_B.clear();
+  if (estimator.initialized()) {
+    for (const NavState& state : propagate_all(now, packet.imu)) T_W_B.push_back({state.t, state.T_W_B});
+    now = propagate(now, Preintegration(packet.imu, now.bias_gyro, now.bias_accel, noise));
+  } else {
+    // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
+    SE3 pose = now.T_W_B;
+    for (std::size_t i = 0; i < packet.imu.size(); ++i) {
+      if (i > 0) {
+        const double dt = to_seconds(packet.imu[i].t - packet.imu[i - 1].t);
+        const Eigen::Vector3d rate = 0.5 * (packet.imu[i].gyro_B + packet.imu[i - 1].gyro_B);
+        pose = pose * SE3(so3::exp(rate * dt), Eigen::Vector3d::Zero());
+      }
+      T_W_B.push_back({packet.imu[i].t, pose});
+    }
+    now.T_W_B = pose;
+  }
+  now.t = packet.t;
+}
+
+void Odometry::Impl::draw_event_frame(const Packet& packet) {
+  event_frame.release();
+  if (!renderer) return;
+  const auto timer = timings.measure("event_frame");
+  const double pixels = static_cast<double>(renderer->camera().width()) * renderer->camera().height();
+  quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
+  channels.front().image.release();
+  if (static_cast<double>(packet.events.size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
+  const CameraMotion motion = camera_motion(T_W_B, now.T_W_B, channels.front().camera.T_B_C);
+  event_frame = renderer->render(packet.events, motion, scene_depth);
+  channels.front().image = event_frame;
+}
+
+void Odometry::Impl::take_frame(const Packet& packet) {
+  if (mode == Mode::Events) return;
+  channels.back().image = packet.frame ? packet.frame->image : cv::Mat();
+  if (packet.frame) last_frame = packet.t;
+}
+
+void Odometry::Impl::track(Channel& channel, Timestamp t) {
+  if (channel.image.empty()) return;
+  const auto timer = timings.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
+  std::optional<TrackPrediction> prediction;
+  if (channel.any_image) {
+    prediction.emplace();
+    prediction->T_cur_prev = channel.T_W_C(now.T_W_B).inverse() * channel.T_W_C(channel.T_W_Blast);
+    prediction->scene_depth = scene_depth;
+    prediction->depth = [this](FeatureId id) { return estimator.initialized() ? estimator.depth(id) : std::nullopt; };
+  }
+  channel.tracker.track(channel.image, t, prediction);
+  channel.any_image = true;
+}
+
+void Odometry::Impl::reject(Channel& channel) {
+  if (channel.image.empty()) return;
+  const auto timer = timings.measure("reject");
+  const Eigen::Matrix3d R_Bkf_B = (channel.T_W_Bkeyframe.rotation().conjugate() * now.T_W_B.rotation()).toRotationMatrix();
+  const Eigen::Matrix3d R_B_C = channel.camera.T_B_C.R();
+  channel.tracker.reject_outliers(FeatureTracker::Reference::Keyframe, R_B_C.transpose() * R_Bkf_B * R_B_C);
+}
+
+bool Odometry::Impl::is_keyframe(const Packet& packet) const {
+  const bool any_image = std::any_of(channels.begin(), channels.end(), [](const auto& c) { return !c.image.empty(); });
+  if (!any_image) return false;
+  // With both cameras at work a keyframe waits for the next frame, so that both see it.
+  const bool frame_due = mode == Mode::Fused && !packet.frame && last_frame && packet.t - *last_frame < std::chrono::milliseconds(60);
+  if (frame_due) return false;
+  SinceKeyframe since;
+  since.any = last_keyframe.has_value();
+  if (!since.any) return true;
+  since.time = packet.t - *last_keyframe;
+  for (const Channel& channel : channels) {
+    if (channel.image.empty()) continue;
+    const Eigen::Quaterniond q = channel.T_W_Bkeyframe.rotation().conjugate() * now.T_W_B.rotation();
+    const Eigen::Matrix3d R_B_C = channel.camera.T_B_C.R();
+    since.tracks += channel.tracker.since_keyframe(R_B_C.transpose() * q.toRotationMatrix() * R_B_C);
+    since.rotation_rad = std::max(since.rotation_rad, so3::log(q).norm());
+  }
+  return keyframe_reason(since, config.keyframes) != KeyframeReason::None;
+}
+
+void Odometry::Impl::mark_keyframe(Timestamp t) {
+  const auto timer = timings.measure("detect");
+  for (Channel& channel : channels) {
+    if (channel.image.empty()) continue;
+    channel.tracker.detect(channel.image, next_feature);
+    channel.tracker.mark_keyframe();
+    channel.T_W_Bkeyframe = now.T_W_B;
+  }
+  last_keyframe = t;
+}
+
+EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
+  const auto timer = timings.measure("estimate");
+  EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet || mode == Mode::Frames};
+  for (Channel& channel : channels) {
+    if (channel.image.empty()) continue;
+    channel.T_W_Blast = now.T_W_B;
+    input.observations.push_back(channel.tracker.observations());
+  }
+  const bool started = estimator.initialized();
+  const EstimatorResult result = estimator.add(input);
+  for (Channel& channel : channels) channel.tracker.remove(result.outliers);
+  if (!estimator.initialized()) return result;
+  const SE3 predicted = now.T_W_B;
+  now = estimator.newest();
+  if (!started) move_world(now.T_W_B * predicted.inverse());
+  for (Channel& channel : channels) {
+    if (!channel.image.empty()) channel.T_W_Blast = now.T_W_B;
+    if (!channel.image.empty() && keyframe) channel.T_W_Bkeyframe = now.T_W_B;
+  }
+  return result;
+}
+
+void Odometry::Impl::update_depth() {
+  if (!estimator.initialized()) return;
+  for (const Channel& channel : channels) {
+    if (const auto depth = estimator.median_depth(channel.camera.name)) {
+      scene_depth = *depth;
+      return;
+    }
+  }
+}
+
+void Odometry::Impl::move_world(const SE3& T_new_old) {
+  for (Channel& channel : channels) {
+    channel.T_W_Blast = T_new_old * channel.T_W_Blast;
+    channel.T_W_Bkeyframe = T_new_old * channel.T_W_Bkeyframe;
+  }
+}
+
+TrackingStatus Odometry::Impl::judge(const EstimatorResult& result, Timestamp t) {
+  if (!estimator.initialized()) return TrackingStatus::Initializing;
+  if (result.standstill || result.landmarks_seen >= config.min_landmarks || !last_supported) last_supported = t;
+  const double alone_s = to_seconds(t - *last_supported);
+  if (alone_s > config.lost_after_s) return TrackingStatus::Lost;
+  return alone_s > config.degraded_after_s ? TrackingStatus::Degraded : TrackingStatus::Good;
+}
+
+int Odometry::Impl::tracks(Modality modality) const {
+  for (const Channel& channel : channels) {
+    if (channel.camera.modality == modality) return static_cast<int>(channel.tracker.tracks().size());
+  }
+  return 0;
+}
+
+Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config)
+    : impl_(std::make_unique<Impl>(rig, imu_noise, mode, config)) {}
+Odometry::~Odometry() = default;
+
+OdometryOutput Odometry::process(const Packet& packet) { return impl_->process(packet); }
+const StageTimings& Odometry::timings() const { return impl_->timings; }
+const cv::Mat& Odometry::event_frame() const { return impl_->event_frame; }
+
+}  // namespace edged

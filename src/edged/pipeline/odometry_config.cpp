@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/odometry_config.hpp"
+
+namespace edged {
+
+OdometryConfig::OdometryConfig() {
+  event_tracker.sigma_px = 1.5;  // the look of an event frame changes with the direction of motion
+}
+
+void OdometryConfig::visit(ConfigFields& fields) {
+  fields.group("packets", packets);
+  fields.group("event_frame", event_frame);
+  fields.group("event_tracker", event_tracker);
+  fields.group("frame_tracker", frame_tracker);
+  fields.group("keyframes", keyframes);
+  fields.group("estimator", estimator);
+  fields.add("initial_depth_m", initial_depth_m, {"m", 0.05, 1000, "scene depth until landmarks tell"});
+  fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
+             {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
+  fields.add("min_events_per_pixel", min_events_per_pixel, {"", 0, 10, "a packet with fewer events draws no event frame"});
+  fields.add("degraded_after_s", degraded_after_s, {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
+  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
+  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
+}
+
+}  // namespace edged
