@@ -70,7 +70,7 @@ std::vector<fs::path> rig_folders() {
 
 std::string format_transform(const std::string& name, const SE3& T) {
   std::string out;
-  const Eigen::Matrix4d m = T.matrix();
+  const Eigen::Matrix4d m = T.matrix().array() + 0.0;  // -0 becomes 0
   for (int row = 0; row < 3; ++row)
     out += fmt::format("  {:8}[{:12.9f} {:12.9f} {:12.9f} | {:12.9f}]\n", row == 1 ? name + " = " : "", m(row, 0), m(row, 1),
                        m(row, 2), m(row, 3));
@@ -147,7 +147,7 @@ std::string describe(const Calibration& calibration) {
     out += format_transform("T_B_C", camera.T_B_C);
     out += "  body (IMU) to camera, p_C = T_C_B * p_B\n";
     out += format_transform("T_C_B", camera.T_B_C.inverse());
-    out += fmt::format("  lever arm {:.4f} m; t_imu = t_cam + {:.3f} ms\n", p.norm(),
+    out += fmt::format("  lever arm {:.4f} m; t_imu = t_cam {:+.3f} ms\n", p.norm(),
                        to_seconds(camera.time_offset) * 1e3);
   }
   const ImuNoise& n = calibration.imu;

@@ -1,2 +1,124 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
+// What is written reads back to the same bits.
+#include "edged/io/ecd_writer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "edged/io/recording.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Gives what it is told to.
+class ListedDataset : public Dataset {
+ public:
+  const DatasetInfo& info() const override { return info_; }
+  std::optional<Measurement> next() override {
+    if (next_ == measurements.size()) return std::nullopt;
+    return measurements[next_++];
+  }
+  std::optional<GroundTruth> ground_truth() const override { return truth; }
+
+  std::vector<Measurement> measurements;
+  std::optional<GroundTruth> truth;
+
+ private:
+  DatasetInfo info_;
+  std::size_t next_ = 0;
+};
+
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+ListedDataset random_dataset() {
+  ListedDataset d;
+  std::mt19937_64 random(7);
+  Timestamp t = timestamp_from_ns(1'468'939'993'067'416'019);
+  for (int i = 0; i < 200; ++i) {
+    t += std::chrono::milliseconds(1);
+    const Eigen::Vector3d gyro(uniform(random), -uniform(random), 1e-9 * uniform(random));
+    d.measurements.push_back(ImuSample{t, gyro, gyro * 9.81});
+    EventBatch batch{"left", {}};
+    for (Timestamp e = t; e < t + std::chrono::microseconds(900); e += Duration(1 + random() % 20'000))
+      batch.events.push_back({e, static_cast<std::uint16_t>(random() % 240), static_cast<std::uint16_t>(random() % 180),
+                              random() % 2 == 1});
+    d.measurements.push_back(std::move(batch));
+    if (i % 40 != 0) continue;
+    cv::Mat image(180, 240, CV_8UC1);
+    for (auto& pixel : cv::Mat_<std::uint8_t>(image)) pixel = static_cast<std::uint8_t>(random());
+    d.measurements.push_back(Frame{t + std::chrono::microseconds(950), "left", image});
+  }
+  d.truth = GroundTruth{{{t, SE3(Eigen::Quaterniond(0.8, 0, 0, 0.6), {1, 2, 3})}}, "body"};
+  return d;
+}
+
+TEST(EcdWriter, WrittenRecordingReadsBackToTheSameBits) {
+  TempFolder folder;
+  ListedDataset source = random_dataset();
+  int calls = 0;
+  EcdWriteOptions options{load_rig("davis240c_ecd"), [&](Timestamp) { ++calls; }};
+  const EcdWriteCounts counts = write_ecd(source, folder.path() / "out", options);
+  EXPECT_GT(calls, 0);
+
+  ListedDataset again = random_dataset();
+  const Contents a = read_all(again);
+  Recording r = open_recording(folder.path() / "out");
+  const Contents b = read_all(*r.dataset);
+  EXPECT_EQ(counts.events, a.events.size());
+  EXPECT_EQ(a.events, b.events);
+  ASSERT_EQ(a.imu.size(), b.imu.size());
+  for (std::size_t i = 0; i < a.imu.size(); ++i) {
+    EXPECT_EQ(a.imu[i].t, b.imu[i].t);
+    EXPECT_EQ(a.imu[i].gyro_B, b.imu[i].gyro_B);
+    EXPECT_EQ(a.imu[i].accel_B, b.imu[i].accel_B);
+  }
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (std::size_t i = 0; i < a.frames.size(); ++i) {
+    EXPECT_EQ(a.frames[i].t, b.frames[i].t);
+    EXPECT_EQ(cv::norm(a.frames[i].image, b.frames[i].image, cv::NORM_INF), 0.0);
+  }
+  EXPECT_TRUE(r.dataset->repairs().empty());
+  ASSERT_TRUE(r.calibration);
+  EXPECT_EQ(r.calibration->rig.camera("events").model, options.calibration->rig.camera("events").model);
+}
+
+TEST(EcdWriter, GroundTruthBecomesThatOfTheCameraOnItsClock) {
+  TempFolder folder;
+  ListedDataset source = random_dataset();
+  const Calibration calibration = load_rig("davis240c_ecd");
+  write_ecd(source, folder.path() / "out", {calibration, {}});
+  const GroundTruth truth = *open_recording(folder.path() / "out").dataset->ground_truth();
+  const RigCamera& camera = calibration.rig.camera("events");
+  EXPECT_EQ(truth.frame, "events");
+  EXPECT_EQ(truth.trajectory[0].t, source.truth->trajectory[0].t - std::chrono::microseconds(2400));
+  EXPECT_TRUE(truth.trajectory[0].T.matrix().isApprox((source.truth->trajectory[0].T * camera.T_B_C).matrix(), 1e-12));
+}
+
+TEST(EcdWriter, RefusesWhatTheFormatCannotHold) {
+  TempFolder folder;
+  ListedDataset source = random_dataset();
+  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "a"); }), HasSubstr("a calibration with extrinsics"));
+  source.truth.reset();
+  source.measurements.push_back(EventBatch{"right", {Event{}}});
+  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "b"); }), HasSubstr("not both left and right"));
+  folder.write("c/imu.txt", "");
+  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "c"); }), HasSubstr("holds a recording already"));
+  EXPECT_THAT(input_error([&] { write_ecd(source, "/proc/none/out"); }), HasSubstr("cannot be made"));
+}
+
+TEST(EcdWriter, CopiesARealRecordingExactly) {
+  const auto path = data_folder() / "ecd" / "slider_depth";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no data";
+  TempFolder folder;
+  write_ecd(*open_recording(path).dataset, folder.path() / "out");
+  EXPECT_EQ(read_text(folder.path() / "out" / "events.txt"), read_text(path / "events.txt"));
+  EXPECT_EQ(read_all(*open_recording(folder.path() / "out").dataset).frames.size(), 87u);
+}
+
+}  // namespace
+}  // namespace edged

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Duration kLateness = std::chrono::milliseconds(1);  // events this late are still sorted in
 constexpr std::size_t kMaxHeld = 200'000;                     // events kept back for sorting
-constexpr std::uint64_t kMaxSeconds = 9'223'372'035;          // of a 64-bit count of nanoseconds
+constexpr std::uint64_t kMaxSeconds = kMaxStampNs / 1'000'000'000 - 1;
 constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,         10'000,
                                                   100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
 

@@ -132,21 +132,24 @@ std::optional<Timestamp> parse_seconds(std::string_view field) {
   if (!d) return std::nullopt;
   const long whole = d->point + 9;  // digits of the number of nanoseconds
   if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
-  if (whole > 18) return std::nullopt;
-  std::int64_t ns = 0;
+  if (whole > 19) return std::nullopt;
+  std::uint64_t ns = 0;
   for (long i = 0; i < whole; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    ns = ns * 10 + (k < d->digits.size() ? d->digits[k] - '0' : 0);
+    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
   }
   const auto next = static_cast<std::size_t>(whole);
   if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
-  return Timestamp(Duration(d->negative ? -ns : ns));
+  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
+  const auto value = static_cast<std::int64_t>(ns);
+  return Timestamp(Duration(d->negative ? -value : value));
 }
 
 std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
   std::int64_t ns = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
   if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  if (ns > kMaxStampNs || ns < -kMaxStampNs) return std::nullopt;
   return Timestamp(Duration(ns));
 }
 

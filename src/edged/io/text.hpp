@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -71,6 +72,9 @@ class FieldReader {
  private:
   std::string_view rest_;
 };
+
+/// Stamps beyond this are refused as damage (in Unix time: after 2115), so that differences never overflow.
+inline constexpr std::int64_t kMaxStampNs = 4'600'000'000'000'000'000;
 
 /// A finite number that fills the whole field, or nothing.
 std::optional<double> parse_number(std::string_view field);

@@ -1,2 +1,100 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
+// Trajectory files: columns, stamps, damage.
+#include "edged/io/trajectory_io.hpp"
+
+#include <gmock/gmock.h>
+
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+Trajectory sample_trajectory() {
+  Trajectory out;
+  for (int i = 0; i < 50; ++i) {
+    const Vector6d xi = (Vector6d() << 0.1 * i, -0.03 * i, 1.0 / (i + 3), 0.01 * i, -0.02 * i, 0.05 * i).finished();
+    out.push_back({timestamp_from_ns(1'468'940'220'388'679'504 + i * 5'000'001), SE3::exp(xi)});
+  }
+  return out;
+}
+
+void expect_same(const Trajectory& a, const Trajectory& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].t, b[i].t);
+    EXPECT_EQ(a[i].T.translation(), b[i].T.translation());
+    EXPECT_TRUE(a[i].T.rotation().coeffs().isApprox(b[i].T.rotation().coeffs(), 1e-15));
+  }
+}
+
+TEST(TrajectoryIo, TumAndEurocReadBackExactly) {
+  TempFolder folder;
+  const Trajectory trajectory = sample_trajectory();
+  write_tum(folder.path() / "a.tum", trajectory, {"pose of the body in the world"});
+  write_euroc_csv(folder.path() / "a.csv", trajectory, {"pose of the body in the world"});
+  expect_same(read_tum(folder.path() / "a.tum"), trajectory);
+  expect_same(read_euroc_csv(folder.path() / "a.csv"), trajectory);
+  expect_same(read_trajectory(folder.path() / "a.tum"), trajectory);
+  expect_same(read_trajectory(folder.path() / "a.csv"), trajectory);
+  EXPECT_THAT(read_text(folder.path() / "a.tum"), HasSubstr("# pose of the body in the world\n# timestamp"));
+  EXPECT_THAT(read_text(folder.path() / "a.tum"), HasSubstr("\n1468940220.388679504 "));
+}
+
+TEST(TrajectoryIo, TumPutsTheScalarLastAndEurocFirst) {
+  TempFolder folder;
+  const auto tum = read_tum(folder.write("a.tum", "# c\n1.5 1 2 3 0 0 0.6 0.8\n"));
+  const auto csv = read_euroc_csv(folder.write("a.csv", "#t\n1500000000, 1, 2, 3, 0.8, 0, 0, 0.6, 7, 7, 7\n"));
+  expect_same(tum, csv);
+  EXPECT_NEAR(tum[0].T.rotation().w(), 0.8, 1e-15);
+}
+
+TEST(TrajectoryIo, KittiLinesAreRowsOfTheMatrix) {
+  TempFolder folder;
+  const auto file = folder.write("a.txt", "1 0 0 4 0 1 0 5 0 0 1 6\n0 -1 0 7 1 0 0 8 0 0 1 9\n");
+  const auto poses = read_trajectory(file);
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(to_ns(poses[1].t), 1'000'000'000);
+  EXPECT_EQ(poses[1].T.translation(), Eigen::Vector3d(7, 8, 9));
+  EXPECT_TRUE((poses[1].T * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(7, 9, 9)));
+}
+
+TEST(TrajectoryIo, DamageIsNamedByFileAndLine) {
+  TempFolder folder;
+  const auto complaint = [&](const std::string& text) {
+    return input_error([&] { read_tum(folder.write("bad.tum", text)); });
+  };
+  const std::string good = "1 0 0 0 0 0 0 1\n";
+  EXPECT_THAT(complaint(good + "2 0 0 0 0 0 0\n"), HasSubstr("bad.tum:2: not `t tx"));
+  EXPECT_THAT(complaint(good + "2 0 nan 0 0 0 0 1\n"), HasSubstr("bad.tum:2:"));
+  EXPECT_THAT(complaint(good + "2 0 0 0 0 0 0 0\n"), HasSubstr("norm 0.000"));
+  EXPECT_THAT(complaint(good + "0.5 0 0 0 0 0 0 1\n"), HasSubstr("sort the file"));
+  EXPECT_THAT(input_error([&] { read_tum(folder.path() / "none.tum"); }), HasSubstr("none.tum: cannot be opened"));
+  EXPECT_THAT(input_error([&] { read_trajectory(folder.write("e.tum", "")); }), HasSubstr("holds no pose"));
+  EXPECT_THAT(input_error([&] { read_trajectory(folder.write("e.tum", "1 2 3\n")); }), HasSubstr("3 columns"));
+}
+
+TEST(TrajectoryIo, HandsDamageToTheHandlerAndGoesOn) {
+  TempFolder folder;
+  std::vector<std::size_t> lines;
+  const auto trajectory =
+      read_tum(folder.write("a.tum", "1 0 0 0 0 0 0 1\nrubbish\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0"),
+               [&](std::size_t line, const std::string&) { lines.push_back(line); });
+  EXPECT_EQ(trajectory.size(), 2u);
+  EXPECT_EQ(lines, (std::vector<std::size_t>{2, 3, 5}));
+}
+
+TEST(TrajectoryIo, ReadsTheRealFiles) {
+  const auto data = data_folder();
+  if (!std::filesystem::exists(data / "eval_oracle")) GTEST_SKIP() << "no data";
+  EXPECT_EQ(read_trajectory(data / "eval_oracle" / "KITTI_00_gt.txt").size(), 4541u);
+  EXPECT_EQ(to_ns(read_trajectory(data / "eval_oracle" / "V102.txt").front().t), 1'403'715'529'112'143'517);
+  EXPECT_EQ(to_ns(read_trajectory(data / "ecd" / "groundtruth" / "poster_translation.txt").front().t),
+            1'468'940'220'388'679'504);
+  EXPECT_GT(read_trajectory(data / "euroc_mh01" / "mav0" / "state_groundtruth_estimate0" / "data.csv").size(), 3000u);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Folders for the tests of io.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/core/check.hpp"
+#include "edged/core/dataset.hpp"
+
+namespace edged {
+
+/// A fresh folder that goes away with the object.
+class TempFolder {
+ public:
+  TempFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() /
+            (std::string("edged_") + test->test_suite_name() + "_" + test->name() + "_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+  void write_image(const std::string& name, int width = 240, int height = 180, int gray = 100) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    cv::imwrite((path_ / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(gray)));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The real recordings; tests skip themselves where a folder of it is absent.
+inline std::filesystem::path data_folder() {
+  if (const char* own = std::getenv("EDGED_DATA")) return own;
+  return std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+/// All a data set gives, sorted by kind.
+struct Contents {
+  std::vector<Measurement> all;
+  std::vector<Event> events;
+  std::vector<Frame> frames;
+  std::vector<ImuSample> imu;
+};
+
+inline Contents read_all(Dataset& dataset) {
+  Contents c;
+  while (auto m = dataset.next()) {
+    if (const auto* b = std::get_if<EventBatch>(&*m)) c.events.insert(c.events.end(), b->events.begin(), b->events.end());
+    if (const auto* f = std::get_if<Frame>(&*m)) c.frames.push_back(*f);
+    if (const auto* s = std::get_if<ImuSample>(&*m)) c.imu.push_back(*s);
+    c.all.push_back(std::move(*m));
+  }
+  return c;
+}
+
+inline bool operator==(const Event& a, const Event& b) {
+  return a.t == b.t && a.x == b.x && a.y == b.y && a.positive == b.positive;
+}
+
+/// The message of the InputError that `action` throws, or "" when it throws none.
+template <typename Action>
+std::string input_error(Action&& action) {
+  try {
+    action();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace edged
