@@ -74,11 +74,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
 
-/// The known key that the user most likely meant: like the whole key, or like its last part when the group was left
-/// out.
+/// The known key that the user most likely meant: like the whole key, or with a last part that is almost the same when
+/// the group was left out or mistaken.
 std::string nearest_key(const std::vector<ConfigField>& fields, const std::string& key) {
+  constexpr std::size_t kTypingErrors = 2;
   const auto distance = [&](const ConfigField& field) {
-    return std::min(edit_distance(key, field.key), edit_distance(last_part(key), last_part(field.key)) + 1);
+    const std::size_t whole = edit_distance(key, field.key);
+    const std::size_t last = edit_distance(last_part(key), last_part(field.key));
+    return last <= kTypingErrors ? std::min(whole, last + 1) : whole;
   };
   const auto nearest = std::min_element(fields.begin(), fields.end(), [&](const ConfigField& a, const ConfigField& b) {
     return distance(a) < distance(b);
