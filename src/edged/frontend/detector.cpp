@@ -15,8 +15,9 @@ namespace edged {
 namespace {
 
 constexpr double kReferenceWidth_px = 240.0;
-constexpr int kCandidatesPerCell = 4;  // spares for a cell whose best corner lies too close to a neighbour's
-constexpr int kHarrisHalf = 3;         // 7x7 block, as ORB
+constexpr std::size_t kCandidatesPerCell = 4;  // spares for a cell whose best corner lies too close to a neighbour's
+constexpr int kSameCorner_px = 4;
+constexpr int kHarrisHalf = 3;  // 7x7 block, as ORB
 constexpr double kHarrisK = 0.04;
 constexpr int kFastRadius = 3;
 constexpr int kShiTomasiBlock = 5;
@@ -52,9 +53,7 @@ class Grid {
     return {x0, y0, first(column + 1, columns_, size_.width) - x0, first(row + 1, rows_, size_.height) - y0};
   }
 
-  int cell_at(int x, int y) const {
-    return index(y, rows_, size_.height) * columns_ + index(x, columns_, size_.width);
-  }
+  int cell_at(int x, int y) const { return index(y, rows_, size_.height) * columns_ + index(x, columns_, size_.width); }
 
  private:
   static int first(int i, int cells, int length) { return (i * length + cells - 1) / cells; }
@@ -97,18 +96,17 @@ std::vector<Candidate> fast_corners(const cv::Mat& image, const cv::Rect& cell, 
 
 std::vector<Candidate> shi_tomasi_corners(const cv::Mat& image, const cv::Rect& cell, double min_gradient) {
   const cv::Rect area(cell.x - 1, cell.y - 1, cell.width + 2, cell.height + 2);
-  cv::Mat response;
+  cv::Mat response, largest;
   cv::cornerMinEigenVal(image(area), response, kShiTomasiBlock, 3);
+  cv::dilate(response, largest, cv::Mat());  // the largest of the 3x3 neighbourhood
   // In OpenCV's scale a slope of g grey levels per pixel all over the block gives (2 g / 255)^2.
   const double floor = std::pow(2.0 * min_gradient / 255.0, 2);
   std::vector<Candidate> found;
   for (int y = 1; y + 1 < response.rows; ++y) {
     for (int x = 1; x + 1 < response.cols; ++x) {
       const float value = response.at<float>(y, x);
-      if (value < floor) continue;
-      double largest = 0;
-      cv::minMaxLoc(response(cv::Rect(x - 1, y - 1, 3, 3)), nullptr, &largest);
-      if (value >= largest) found.push_back({0, x + area.x, y + area.y, value});
+      if (value < floor || value < largest.at<float>(y, x)) continue;
+      found.push_back({0, x + area.x, y + area.y, value});
     }
   }
   return found;
@@ -122,17 +120,26 @@ std::vector<Candidate> corners_in(const cv::Mat& image, const cv::Rect& cell, co
   return found;
 }
 
+std::vector<Candidate> strongest_apart(std::vector<Candidate> found) {
+  std::sort(found.begin(), found.end(), stronger);
+  std::vector<Candidate> kept;
+  for (const Candidate& c : found) {
+    const auto same_corner = [&](const Candidate& k) {
+      return std::max(std::abs(c.x - k.x), std::abs(c.y - k.y)) < kSameCorner_px;
+    };
+    if (std::none_of(kept.begin(), kept.end(), same_corner)) kept.push_back(c);
+    if (kept.size() == kCandidatesPerCell) break;
+  }
+  return kept;
+}
+
 std::vector<Candidate> candidates(const cv::Mat& image, const Grid& grid, const cv::Rect& inner,
                                   const DetectorConfig& config) {
   std::vector<Candidate> all;
   for (int cell = 0; cell < grid.count(); ++cell) {
     const cv::Rect visible = grid.rectangle(cell) & inner;
     if (grid.taken(cell) || visible.empty()) continue;
-    std::vector<Candidate> found = corners_in(image, visible, config);
-    const std::size_t kept = std::min<std::size_t>(found.size(), kCandidatesPerCell);
-    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept), found.end(), stronger);
-    found.resize(kept);
-    for (Candidate& c : found) c.cell = cell, all.push_back(c);
+    for (Candidate& c : strongest_apart(corners_in(image, visible, config))) c.cell = cell, all.push_back(c);
   }
   std::sort(all.begin(), all.end(), stronger);
   return all;
@@ -159,16 +166,29 @@ void DetectorConfig::visit(ConfigFields& fields) {
   fields.add("max_features", max_features,
              {.unit = "1", .min = 8, .max = 2000, .effect = "most live tracks per camera; one per cell"});
   fields.add("cell_px", cell_px,
-             {.unit = "px", .min = 6, .max = 120, .effect = "side of a grid cell in an image 240 px wide; grows with the width"});
+             {.unit = "px",
+              .min = 6,
+              .max = 120,
+              .effect = "side of a grid cell in an image 240 px wide; grows with the width"});
   fields.add("separation_px", separation_px,
-             {.unit = "px", .min = 0, .max = 60, .effect = "no new corner nearer to a track, at 240 px width; grows with the width"});
-  fields.add("border_px", border_px, {.unit = "px", .min = 5, .max = 60, .effect = "no corner nearer to the rim of the image"});
+             {.unit = "px",
+              .min = 0,
+              .max = 60,
+              .effect = "no new corner nearer to a track, at 240 px width; grows with the width"});
+  fields.add("border_px", border_px,
+             {.unit = "px", .min = 5, .max = 60, .effect = "no corner nearer to the rim of the image"});
   fields.add("fast_threshold", fast_threshold,
              {.unit = "grey", .min = 2, .max = 200, .effect = "contrast of FAST corners, tried first in every cell"});
   fields.add("fast_threshold_low", fast_threshold_low,
-             {.unit = "grey", .min = 1, .max = 200, .effect = "contrast of FAST corners in cells where the first one finds none"});
+             {.unit = "grey",
+              .min = 1,
+              .max = 200,
+              .effect = "contrast of FAST corners in cells where the first one finds none"});
   fields.add("min_gradient", min_gradient,
-             {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest slope of a Shi-Tomasi corner in its weak direction"});
+             {.unit = "grey/px",
+              .min = 0,
+              .max = 100,
+              .effect = "weakest slope of a Shi-Tomasi corner in its weak direction"});
   fields.add("subpixel", subpixel, {.effect = "move new corners to their sub-pixel saddle point"});
 }
 

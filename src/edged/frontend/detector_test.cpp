@@ -29,7 +29,9 @@ class Detector : public testing::TestWithParam<CornerKind> {
 };
 
 INSTANTIATE_TEST_SUITE_P(BothKinds, Detector, testing::Values(CornerKind::FastHarris, CornerKind::ShiTomasi),
-                         [](const auto& kind) { return kind.param == CornerKind::FastHarris ? "FastHarris" : "ShiTomasi"; });
+                         [](const auto& kind) {
+                           return kind.param == CornerKind::FastHarris ? "FastHarris" : "ShiTomasi";
+                         });
 
 TEST_P(Detector, FindsTheCornersOfASquare) {
   const cv::Mat image = squares({{94, 74}});  // its corners lie in four cells
@@ -68,7 +70,8 @@ TEST_P(Detector, LeavesCellsAndNeighbourhoodsOfLiveTracksAlone) {
     EXPECT_GE(c.pixel.x(), 120.0);
     for (const auto& p : occupied) EXPECT_GT((c.pixel - p).norm(), config_.separation_px - 1.0);
   }
-  EXPECT_TRUE(detect_corners(squares({{94, 74}}), Pixels{{90, 70}, {110, 70}, {90, 90}, {110, 90}}, 100, config_).empty());
+  EXPECT_TRUE(
+      detect_corners(squares({{94, 74}}), Pixels{{90, 70}, {110, 70}, {90, 90}, {110, 90}}, 100, config_).empty());
 }
 
 TEST_P(Detector, KeepsTheStrongestOverTheWholeGridUnderALimit) {
@@ -121,7 +124,8 @@ TEST_P(Detector, MovesToTheSaddlePointWhenAsked) {
 
 TEST(FastHarrisDetector, LowersTheThresholdOnlyWhereACellStaysEmpty) {
   cv::Mat image = squares({{94, 74}});
-  cv::rectangle(image, cv::Rect(154, 74, 12, 12), cv::Scalar(45), cv::FILLED);  // 15 grey levels: too faint for the first try
+  cv::rectangle(image, cv::Rect(154, 74, 12, 12), cv::Scalar(45),
+                cv::FILLED);  // 15 grey levels: too faint for the first try
   DetectorConfig config;
   EXPECT_EQ(detect_corners(image, {}, 100, config).size(), 8U);
   config.fast_threshold_low = config.fast_threshold;

@@ -36,7 +36,8 @@ TEST(EurocTracks, MostCornersSurviveFromImageToImage) {
   int before = 0, after = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {
     const cv::Mat image = cv::imread(images[i].string(), cv::IMREAD_GRAYSCALE);
-    const TrackSummary summary = tracker.track(image, timestamp_from_seconds(0.05 * static_cast<double>(i)), std::nullopt);
+    const TrackSummary summary =
+        tracker.track(image, timestamp_from_seconds(0.05 * static_cast<double>(i)), std::nullopt);
     tracker.reject_outliers(FeatureTracker::Reference::Previous, std::nullopt);
     before += summary.before;
     after += static_cast<int>(tracker.tracks().size());

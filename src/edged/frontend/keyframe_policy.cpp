@@ -14,12 +14,18 @@ void KeyframeConfig::visit(ConfigFields& fields) {
   fields.add("min_tracked_share", min_tracked_share,
              {.unit = "1", .min = 0, .max = 1, .effect = "keyframe when fewer of the last one's tracks are alive"});
   fields.add("parallax_deg", parallax_deg,
-             {.unit = "deg", .min = 0.01, .max = 45, .effect = "keyframe when the median parallax since the last one is larger"});
-  fields.add("rotation_deg", rotation_deg,
-             {.unit = "deg", .min = 0.1, .max = 180, .effect = "keyframe when the camera has turned more since the last one"});
-  fields.add("min_interval_s", min_interval_s, {.unit = "s", .min = 0, .max = 10, .effect = "never two keyframes nearer in time"});
-  fields.add("max_interval_s", max_interval_s,
-             {.unit = "s", .min = 0.01, .max = 100, .effect = "keyframe after this time, unless the camera stands still"});
+             {.unit = "deg",
+              .min = 0.01,
+              .max = 45,
+              .effect = "keyframe when the median parallax since the last one is larger"});
+  fields.add(
+      "rotation_deg", rotation_deg,
+      {.unit = "deg", .min = 0.1, .max = 180, .effect = "keyframe when the camera has turned more since the last one"});
+  fields.add("min_interval_s", min_interval_s,
+             {.unit = "s", .min = 0, .max = 10, .effect = "never two keyframes nearer in time"});
+  fields.add(
+      "max_interval_s", max_interval_s,
+      {.unit = "s", .min = 0.01, .max = 100, .effect = "keyframe after this time, unless the camera stands still"});
   fields.add("still_parallax_deg", still_parallax_deg,
              {.unit = "deg", .min = 0, .max = 10, .effect = "below this parallax time alone makes no keyframe"});
 }
@@ -46,12 +52,18 @@ KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig&
 
 std::string to_string(KeyframeReason reason) {
   switch (reason) {
-    case KeyframeReason::None: return "none";
-    case KeyframeReason::First: return "first";
-    case KeyframeReason::FewTracks: return "few tracks";
-    case KeyframeReason::Parallax: return "parallax";
-    case KeyframeReason::Rotation: return "rotation";
-    case KeyframeReason::Time: return "time";
+    case KeyframeReason::None:
+      return "none";
+    case KeyframeReason::First:
+      return "first";
+    case KeyframeReason::FewTracks:
+      return "few tracks";
+    case KeyframeReason::Parallax:
+      return "parallax";
+    case KeyframeReason::Rotation:
+      return "rotation";
+    case KeyframeReason::Time:
+      return "time";
   }
   EDGED_CHECK(false, "reason {}", static_cast<int>(reason));
 }

@@ -20,11 +20,14 @@ constexpr double kEigenvalueScale = 1.0 / 1024.0;
 
 void KltConfig::visit(ConfigFields& fields) {
   fields.add("window_px", window_px, {.unit = "px", .min = 5, .max = 61, .effect = "side of the compared window, odd"});
-  fields.add("levels", levels, {.unit = "1", .min = 1, .max = 6, .effect = "half-size levels searched, full size included"});
+  fields.add("levels", levels,
+             {.unit = "1", .min = 1, .max = 6, .effect = "half-size levels searched, full size included"});
   fields.add("iterations", iterations, {.unit = "1", .min = 1, .max = 100, .effect = "most steps per level"});
-  fields.add("epsilon_px", epsilon_px, {.unit = "px", .min = 0.001, .max = 1, .effect = "a step this short ends a level"});
-  fields.add("min_gradient", min_gradient,
-             {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest RMS slope of a window in its weak direction"});
+  fields.add("epsilon_px", epsilon_px,
+             {.unit = "px", .min = 0.001, .max = 1, .effect = "a step this short ends a level"});
+  fields.add(
+      "min_gradient", min_gradient,
+      {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest RMS slope of a window in its weak direction"});
 }
 
 void ImagePyramid::build(const cv::Mat& image, const KltConfig& config) {
@@ -41,8 +44,8 @@ Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<
   const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, config.iterations, config.epsilon_px);
   const double min_eigenvalue = config.min_gradient * config.min_gradient * kEigenvalueScale;
   cv::calcOpticalFlowPyrLK(from.levels(), to.levels(), points, flow.points, flow.found, cv::noArray(),
-                           cv::Size(config.window_px, config.window_px), top_level, stop,
-                           cv::OPTFLOW_USE_INITIAL_FLOW, min_eigenvalue);
+                           cv::Size(config.window_px, config.window_px), top_level, stop, cv::OPTFLOW_USE_INITIAL_FLOW,
+                           min_eigenvalue);
   return flow;
 }
 

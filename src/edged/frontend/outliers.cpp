@@ -58,7 +58,8 @@ std::vector<char> below(const std::vector<double>& values, double limit) {
 int count(const std::vector<char>& mask) { return static_cast<int>(std::count(mask.begin(), mask.end(), 1)); }
 
 template <typename Problem>
-std::optional<typename Problem::model_t> ransac(const std::shared_ptr<Problem>& problem, double threshold, int iterations) {
+std::optional<typename Problem::model_t> ransac(const std::shared_ptr<Problem>& problem, double threshold,
+                                                int iterations) {
   opengv::sac::Ransac<Problem> search(iterations, threshold, kConfidence);
   search.sac_model_ = problem;
   if (!search.computeModel()) return std::nullopt;
@@ -130,11 +131,18 @@ void OutlierConfig::visit(ConfigFields& fields) {
   fields.add("rotation_only_px", rotation_only_px,
              {.unit = "px", .min = 0, .max = 20, .effect = "below this median parallax no translation is looked for"});
   fields.add("rotation_gate_px", rotation_gate_px,
-             {.unit = "px", .min = 0.1, .max = 100, .effect = "largest parallax of an inlier while no translation is looked for"});
+             {.unit = "px",
+              .min = 0.1,
+              .max = 100,
+              .effect = "largest parallax of an inlier while no translation is looked for"});
   fields.add("fallback_share", fallback_share,
-             {.unit = "1", .min = 0, .max = 1, .effect = "with fewer inliers than this the gyro's rotation is doubted: five-point"});
-  fields.add("min_share", min_share,
-             {.unit = "1", .min = 0, .max = 1, .effect = "a motion with fewer inliers is not believed and rejects nothing"});
+             {.unit = "1",
+              .min = 0,
+              .max = 1,
+              .effect = "with fewer inliers than this the gyro's rotation is doubted: five-point"});
+  fields.add(
+      "min_share", min_share,
+      {.unit = "1", .min = 0, .max = 1, .effect = "a motion with fewer inliers is not believed and rejects nothing"});
   fields.add("iterations", iterations, {.unit = "1", .min = 1, .max = 5000, .effect = "most RANSAC trials"});
 }
 

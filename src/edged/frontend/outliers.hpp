@@ -45,8 +45,8 @@ struct OutlierResult {
 
 /// Which pairs fit one rigid motion. R_ref_cur, from the gyro, turns rays of the current camera into the reference
 /// camera's axes; without it (gyro saturated) five-point RANSAC (Nister 2004) is used, and also when the given rotation
-/// finds less support than fallback_share. focal_px turns the thresholds into angles. RANSAC by OpenGV (Kneip and Furgale
-/// 2014) with a fixed seed: same input, same result.
+/// finds less support than fallback_share. focal_px turns the thresholds into angles. RANSAC by OpenGV (Kneip and
+/// Furgale 2014) with a fixed seed: same input, same result.
 OutlierResult find_inliers(std::span<const Correspondence> pairs, const std::optional<Eigen::Matrix3d>& R_ref_cur,
                            double focal_px, const OutlierConfig& config);
 

@@ -102,7 +102,8 @@ TEST(Outliers, FivePointTakesOverWhenTheGyroIsFarOff) {
 }
 
 TEST(Outliers, PureRotationKillsNoTracks) {
-  for (const std::optional<Eigen::Matrix3d>& R : {std::optional<Eigen::Matrix3d>(kTurn.R()), std::optional<Eigen::Matrix3d>()}) {
+  for (const std::optional<Eigen::Matrix3d>& R :
+       {std::optional<Eigen::Matrix3d>(kTurn.R()), std::optional<Eigen::Matrix3d>()}) {
     const Quality q = average(kTurn, R, OutlierModel::RotationOnly);
     EXPECT_DOUBLE_EQ(q.kept, 1.0);
     EXPECT_GT(q.rejected, 0.95);
@@ -141,7 +142,8 @@ TEST(Outliers, RejectsNothingWhenNoMotionHasSupport) {
 TEST(Outliers, KeepsAllOfVeryFewPairs) {
   for (const int n : {0, 1, 2, 5}) {
     const Scene scene = make_scene(kMotion, n, 0, 0.0);
-    for (const std::optional<Eigen::Matrix3d>& R : {std::optional<Eigen::Matrix3d>(kMotion.R()), std::optional<Eigen::Matrix3d>()}) {
+    for (const std::optional<Eigen::Matrix3d>& R :
+         {std::optional<Eigen::Matrix3d>(kMotion.R()), std::optional<Eigen::Matrix3d>()}) {
       EXPECT_EQ(find_inliers(scene.pairs, R, kFocal, {}).inliers, n);
     }
   }
@@ -149,7 +151,8 @@ TEST(Outliers, KeepsAllOfVeryFewPairs) {
 
 TEST(Outliers, GivesTheSameAnswerTwice) {
   const Scene scene = make_scene(kMotion, 70, 30, 0.7);
-  for (const std::optional<Eigen::Matrix3d>& R : {std::optional<Eigen::Matrix3d>(kMotion.R()), std::optional<Eigen::Matrix3d>()}) {
+  for (const std::optional<Eigen::Matrix3d>& R :
+       {std::optional<Eigen::Matrix3d>(kMotion.R()), std::optional<Eigen::Matrix3d>()}) {
     EXPECT_EQ(find_inliers(scene.pairs, R, kFocal, {}).inlier, find_inliers(scene.pairs, R, kFocal, {}).inlier);
   }
 }

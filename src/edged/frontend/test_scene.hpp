@@ -42,7 +42,8 @@ class PlaneScene {
   /// What the camera sees; outside the texture it is black.
   cv::Mat image(const SE3& T_W_C) const {
     Eigen::Matrix3d plane_to_texture;  // one texture pixel per image pixel seen from identity, its centre on the axis
-    plane_to_texture << camera_.fx() / depth_, 0, 2.0 * camera_.width(), 0, camera_.fy() / depth_, 2.0 * camera_.height(), 0, 0, 1;
+    plane_to_texture << camera_.fx() / depth_, 0, 2.0 * camera_.width(), 0, camera_.fy() / depth_,
+        2.0 * camera_.height(), 0, 0, 1;
     const Eigen::Matrix3d H = plane_to_pixel(T_W_C) * plane_to_texture.inverse();
     cv::Mat_<double> matrix(3, 3);
     for (int r = 0; r < 3; ++r) {

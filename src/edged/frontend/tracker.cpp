@@ -37,20 +37,29 @@ void TrackerConfig::visit(ConfigFields& fields) {
   fields.group("detector", detector);
   fields.group("klt", klt);
   fields.group("outliers", outliers);
-  fields.choice("templates", templates, {{"previous", TemplatePolicy::Previous}, {"keyframe", TemplatePolicy::Keyframe}},
+  fields.choice("templates", templates,
+                {{"previous", TemplatePolicy::Previous}, {"keyframe", TemplatePolicy::Keyframe}},
                 {.effect = "match to the previous image only, or then also to the last keyframe"});
-  fields.add("forward_backward_px", forward_backward_px,
-             {.unit = "px", .min = 0.01, .max = 100, .effect = "a track followed back must return this near to its start"});
+  fields.add(
+      "forward_backward_px", forward_backward_px,
+      {.unit = "px", .min = 0.01, .max = 100, .effect = "a track followed back must return this near to its start"});
   fields.add("min_correlation", min_correlation,
              {.unit = "1", .min = -1, .max = 1, .effect = "least correlation of a track's patch with the one before"});
   fields.add("border_px", border_px, {.unit = "px", .min = 0, .max = 60, .effect = "tracks nearer to the rim end"});
-  fields.add("merge_px", merge_px, {.unit = "px", .min = 0, .max = 60, .effect = "the younger of two tracks this near ends"});
-  fields.add("retry_share", retry_share,
-             {.unit = "1", .min = 0, .max = 1, .effect = "when more of the predicted seeds fail, the old positions are tried"});
-  fields.add("refill_share", refill_share,
-             {.unit = "1", .min = 0, .max = 1, .effect = "fewer live tracks than this share of max_features ask for corners"});
-  fields.add("sigma_px", sigma_px,
-             {.unit = "px", .min = 0.01, .max = 20, .effect = "standard deviation of an observation told to the estimator"});
+  fields.add("merge_px", merge_px,
+             {.unit = "px", .min = 0, .max = 60, .effect = "the younger of two tracks this near ends"});
+  fields.add(
+      "retry_share", retry_share,
+      {.unit = "1",
+       .min = 0,
+       .max = 1,
+       .effect = "when more of the predicted seeds fail, all tracks are also searched from their old positions"});
+  fields.add(
+      "refill_share", refill_share,
+      {.unit = "1", .min = 0, .max = 1, .effect = "fewer live tracks than this share of max_features ask for corners"});
+  fields.add(
+      "sigma_px", sigma_px,
+      {.unit = "px", .min = 0.01, .max = 20, .effect = "standard deviation of an observation told to the estimator"});
 }
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
@@ -61,7 +70,8 @@ FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camer
   }
 }
 
-TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t, const std::optional<TrackPrediction>& prediction) {
+TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
+                                   const std::optional<TrackPrediction>& prediction) {
   TrackSummary summary;
   summary.before = static_cast<int>(tracks_.size());
   now_ = t;
@@ -162,8 +172,8 @@ CameraObservations FeatureTracker::observations() const {
 
 void FeatureTracker::check_image(const cv::Mat& image) const {
   if (image.type() != CV_8UC1 || image.cols != camera_.width() || image.rows != camera_.height()) {
-    throw InputError::format("an image of camera {} is {}x{} with {} channels, its calibration wants {}x{} grey: {}", name_,
-                             image.cols, image.rows, image.channels(), camera_.width(), camera_.height(),
+    throw InputError::format("an image of camera {} is {}x{} with {} channels, its calibration wants {}x{} grey: {}",
+                             name_, image.cols, image.rows, image.channels(), camera_.width(), camera_.height(),
                              "use the calibration of this camera");
   }
 }
@@ -188,8 +198,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
   }
-  const Flow forward = follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1,
-                              config_.klt);
+  const Flow forward =
+      follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1, config_.klt);
   std::vector<std::size_t> reached;
   for (std::size_t k = 0; k < alive.size(); ++k) {
     matches.points[alive[k]] = forward.points[k];
@@ -198,8 +208,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
     if (matches.fates[alive[k]] == Fate::Kept) reached.push_back(alive[k]);
   }
   const std::vector<cv::Point2f> starts = select(from, reached);
-  const Flow backward = follow(current_, previous_, select(matches.points, reached), starts, kBackwardTopLevel,
-                               config_.klt);
+  const Flow backward =
+      follow(current_, previous_, select(matches.points, reached), starts, kBackwardTopLevel, config_.klt);
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const std::size_t i = reached[k];
     if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {
@@ -220,26 +230,21 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
 
   const std::vector<cv::Point2f> seeds = predict(*prediction);
   Matches matches = match(from, seeds);
+  const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
+  const auto all = static_cast<double>(from.size());
+  if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
+    // Those that a bad prediction left alive are likely to be wrong: all or nothing.
+    Matches again = match(from, from);
+    summary.prediction_failed = kept(again) > kept(matches);
+    if (summary.prediction_failed) return again;
+  }
   std::vector<double> dx, dy;
-  std::vector<std::size_t> failed;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (matches.fates[i] != Fate::Kept) {
-      failed.push_back(i);
-      continue;
-    }
+    if (matches.fates[i] != Fate::Kept) continue;
     dx.push_back(matches.points[i].x - seeds[i].x);
     dy.push_back(matches.points[i].y - seeds[i].y);
   }
   summary.median_innovation_px = {median(dx), median(dy)};
-  if (static_cast<double>(failed.size()) <= config_.retry_share * static_cast<double>(from.size())) return matches;
-
-  summary.prediction_failed = true;
-  const std::vector<cv::Point2f> again = select(from, failed);
-  const Matches second = match(again, again);
-  for (std::size_t k = 0; k < failed.size(); ++k) {
-    matches.points[failed[k]] = second.points[k];
-    matches.fates[failed[k]] = second.fates[k];
-  }
   return matches;
 }
 
@@ -257,7 +262,8 @@ void FeatureTracker::match_keyframe(Matches& matches) const {
     cv::Point2f& point = matches.points[known[k]];
     if (!flow.found[k] || distance(flow.points[k], point) > kKeyframeStep_px) continue;
     if (!camera_.contains(to_eigen(flow.points[k]), config_.border_px)) continue;
-    if (patch_correlation(keyframe_.image(), then[k], current_.image(), flow.points[k]) < config_.min_correlation) continue;
+    if (patch_correlation(keyframe_.image(), then[k], current_.image(), flow.points[k]) < config_.min_correlation)
+      continue;
     point = flow.points[k];
   }
 }
@@ -277,12 +283,23 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
   alive.reserve(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     switch (matches.fates[i]) {
-      case Fate::Kept: break;
-      case Fate::Flow: ++summary.lost_flow; continue;
-      case Fate::Backward: ++summary.lost_backward; continue;
-      case Fate::Appearance: ++summary.lost_appearance; continue;
-      case Fate::Border: ++summary.lost_border; continue;
-      case Fate::Merged: ++summary.merged; continue;
+      case Fate::Kept:
+        break;
+      case Fate::Flow:
+        ++summary.lost_flow;
+        continue;
+      case Fate::Backward:
+        ++summary.lost_backward;
+        continue;
+      case Fate::Appearance:
+        ++summary.lost_appearance;
+        continue;
+      case Fate::Border:
+        ++summary.lost_border;
+        continue;
+      case Fate::Merged:
+        ++summary.merged;
+        continue;
     }
     Track track = tracks_[i];
     track.previous_pixel = track.pixel;

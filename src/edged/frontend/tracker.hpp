@@ -30,7 +30,8 @@ struct TrackerConfig {
   OutlierConfig outliers;
   TemplatePolicy templates = TemplatePolicy::Previous;
   double forward_backward_px = 1.0;
-  double min_correlation = 0.7;
+  // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
+  double min_correlation = 0.3;
   double border_px = 4.0;
   double merge_px = 3.0;
   double retry_share = 0.5;
@@ -68,30 +69,30 @@ struct TrackSummary {
   int lost_backward = 0;    ///< following back did not return to the start
   int lost_appearance = 0;  ///< the patch has become another
   int lost_border = 0;
-  int merged = 0;                ///< ran into an older track
-  bool prediction_failed = false;  ///< most seeds failed and the search was repeated from the old positions
+  int merged = 0;                  ///< ran into an older track
+  bool prediction_failed = false;  ///< the old positions were better seeds and were used
   Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - predicted; zero without prediction
 };
 
-/// A cycle is track, reject_outliers, then at a keyframe (or when needs_corners) detect, and mark_keyframe at a keyframe.
-/// Deterministic; one object per camera, not thread safe.
+/// A cycle is track, reject_outliers, then at a keyframe (or when needs_corners) detect, and mark_keyframe at a
+/// keyframe. Deterministic; one object per camera, not thread safe.
 class FeatureTracker {
  public:
   /// camera: model of the images given to track (the ideal pinhole for undistorted event frames).
   FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config);
 
-  /// Follows all tracks into image (CV_8UC1, size of the camera). An empty image ends all tracks. Throws InputError when the
-  /// size or type does not fit.
+  /// Follows all tracks into image (CV_8UC1, size of the camera). An empty image ends all tracks. Throws InputError
+  /// when the size or type does not fit.
   TrackSummary track(const cv::Mat& image, Timestamp t, const std::optional<TrackPrediction>& prediction);
 
   enum class Reference { Keyframe, Previous };
 
-  /// Drops the tracks that contradict one rigid motion since the reference. R_ref_cur: rotation from the gyro, camera now to
-  /// camera then; nothing when it cannot be trusted. Tracks younger than the reference are kept.
+  /// Drops the tracks that contradict one rigid motion since the reference. R_ref_cur: rotation from the gyro, camera
+  /// now to camera then; nothing when it cannot be trusted. Tracks younger than the reference are kept.
   OutlierResult reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur);
 
-  /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from next_id.
-  /// Returns how many.
+  /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from
+  /// next_id. Returns how many.
   int detect(const cv::Mat& image, FeatureId& next_id);
 
   /// True when fewer tracks are alive than refill_share of max_features.
