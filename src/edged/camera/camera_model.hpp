@@ -41,8 +41,8 @@ class CameraModel {
   /// Pixel of a point (x, y) on the unit plane.
   Eigen::Vector2d distort_to_pixel(const Eigen::Vector2d& point) const;
 
-  /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m) or so far off the axis that the
-  /// distortion turns back (it would fold into the image), at most 89 degrees with a distortion. May lie outside the image.
+  /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m) or so far off the axis that
+  /// the distortion turns back, 89 degrees at most (it would fold into the image). May lie outside the image.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
 
   /// Unit-plane point (x, y) of a pixel, by Newton steps to 1e-10. For a pixel outside the image that has no bearing:

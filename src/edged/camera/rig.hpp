@@ -17,8 +17,8 @@ enum class Modality { Events, Frames };
 struct RigCamera {
   std::string name;
   Modality modality = Modality::Frames;
-  CameraModel model;                 ///< of the raw (distorted) image
-  SE3 T_B_C;                         ///< camera frame to body: p_B = T_B_C * p_C
+  CameraModel model;                   ///< of the raw (distorted) image
+  SE3 T_B_C;                           ///< camera frame to body: p_B = T_B_C * p_C
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };
 

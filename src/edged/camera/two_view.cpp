@@ -63,7 +63,7 @@ std::optional<Vector3d> nearest_point(const std::vector<Ray>& rays) {
   return p_W;
 }
 
-/// Half the squared unit-plane residuals with gradient and Gauss-Newton matrix (C7).
+/// Sum of the squared unit-plane residuals and the Gauss-Newton system H step = b of it (C7).
 struct Linearised {
   double squared_sum = 0.0;
   Matrix3d H = Matrix3d::Zero();

@@ -14,7 +14,8 @@ namespace edged {
 /// entirely (OpenCV's alpha = 0), with the focal lengths kept positive. Throws InputError when no such camera exists.
 CameraModel ideal_pinhole(const CameraModel& raw);
 
-/// Raw pixel -> undistorted pixel of `ideal`, for every pixel once. 8 bytes a pixel, read in the inner loop of the warp.
+/// Raw pixel -> undistorted pixel of `ideal`, for every pixel once. 8 bytes a pixel, read in the inner loop of the
+/// warp.
 class UndistortTable {
  public:
   UndistortTable(const CameraModel& raw, const CameraModel& ideal);

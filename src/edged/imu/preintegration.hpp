@@ -16,8 +16,8 @@ using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Matrix15d = Eigen::Matrix<double, 15, 15>;
 
-/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours. `samples` are in time order
-/// and must cover [t_0, t_1] (CheckError otherwise).
+/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours. `samples` are in time
+/// order and must cover [t_0, t_1] (CheckError otherwise).
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);
 
 /// The motion between the first and the last sample, free of the state it starts from:
