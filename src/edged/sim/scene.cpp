@@ -35,11 +35,12 @@ void add_cuboid(Scene& scene, const Cuboid& cuboid, double light, Random& random
       Face face;
       face.normal_W = R.col(axis) * (cuboid.inside ? -side : side);
       face.u_W = R.col(next);
-      face.v_W = face.normal_W.cross(face.u_W);
+      face.v_W = face.u_W.cross(face.normal_W);
       face.centre_W = cuboid.T_W_O.translation() + side * cuboid.half[axis] * R.col(axis);
       face.half_u = cuboid.half[next];
       face.half_v = cuboid.half[last];
       face.texture = cuboid.inside ? scene.faces.size() % kTextures : first;
+      face.texels_per_m = cuboid.inside ? 256.0F : 420.0F;
       face.offset_u = static_cast<float>(random.index(kTextureSize));
       face.offset_v = static_cast<float>(random.index(kTextureSize));
       face.brightness = static_cast<float>(light * random.uniform(0.6, 1.0));
@@ -98,7 +99,7 @@ void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   wall.centre_W = mean + (nearest + config.poster_distance_m) * axis;
   wall.normal_W = -axis;
   wall.u_W = axis.unitOrthogonal();
-  wall.v_W = wall.normal_W.cross(wall.u_W);
+  wall.v_W = wall.u_W.cross(wall.normal_W);
   wall.half_u = wall.half_v = 40.0;
   wall.brightness = static_cast<float>(config.light);
   scene.faces.push_back(wall);

@@ -16,7 +16,7 @@ namespace edged {
 
 /// A rectangle seen from the side its normal points to.
 struct Face {
-  Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal
+  Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal, u x v = -normal
   double half_u = 0.0, half_v = 0.0;             ///< [m]
   std::size_t texture = 0;                       ///< index into the scene
   float texels_per_m = 256.0F;

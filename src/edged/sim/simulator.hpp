@@ -69,7 +69,10 @@ class Simulator : public Dataset {
 
   /// The exact motion; t: seconds on the camera's clock.
   const ContinuousTrajectory& trajectory() const { return trajectory_; }
+  /// What has been rendered so far: how many pictures, and the last one's time on the camera's clock.
   std::size_t renderings() const { return renderings_; }
+  Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
+  const Rendering& last_rendering() const { return renderer_.last(); }
 
  private:
   void advance();

@@ -125,7 +125,7 @@ Texture make_rich_texture(int size, Random& random) {
   cv::Mat image = clouds(size, random);
   // Large marks first, small ones over them; as many of each as keep their covered area alike.
   for (double mark = 160.0; mark >= 10.0; mark *= 0.7) {
-    const int count = static_cast<int>(0.11 * size * size / (mark * mark));
+    const int count = static_cast<int>(0.15 * size * size / (mark * mark));
     for (int i = 0; i < count; ++i) draw_mark(image, mark, random);
   }
   return Texture(image);

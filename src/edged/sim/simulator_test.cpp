@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+struct Recorded {
+  std::vector<Event> events;
+  std::vector<Frame> frames;
+  std::vector<ImuSample> imu;
+};
+
+SimulatorConfig small(const std::string& preset, double duration_s) {
+  SimulatorConfig config = simulator_preset(preset);
+  config.duration_s = duration_s;
+  config.motion.rest_s = 0.3;
+  config.motion.blend_s = 0.2;
+  config.camera.width = 120, config.camera.height = 90;
+  config.camera.fx = config.camera.fy = 100.0;
+  config.camera.cx = 59.5, config.camera.cy = 44.5;
+  return config;
+}
+
+Recorded record(const SimulatorConfig& config) {
+  Simulator simulator(config);
+  Recorded out;
+  while (const auto measurement = simulator.next()) {
+    if (const auto* batch = std::get_if<EventBatch>(&*measurement))
+      out.events.insert(out.events.end(), batch->events.begin(), batch->events.end());
+    if (const auto* frame = std::get_if<Frame>(&*measurement)) out.frames.push_back(*frame);
+    if (const auto* sample = std::get_if<ImuSample>(&*measurement)) out.imu.push_back(*sample);
+  }
+  return out;
+}
+
+bool same(const Recorded& a, const Recorded& b) {
+  const auto same_event = [](const Event& p, const Event& q) {
+    return p.t == q.t && p.x == q.x && p.y == q.y && p.positive == q.positive;
+  };
+  const auto same_frame = [](const Frame& p, const Frame& q) {
+    return p.t == q.t && cv::norm(p.image, q.image, cv::NORM_INF) == 0.0;
+  };
+  const auto same_imu = [](const ImuSample& p, const ImuSample& q) {
+    return p.t == q.t && p.gyro_B == q.gyro_B && p.accel_B == q.accel_B;
+  };
+  return std::equal(a.events.begin(), a.events.end(), b.events.begin(), b.events.end(), same_event) &&
+         std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame) &&
+         std::equal(a.imu.begin(), a.imu.end(), b.imu.begin(), b.imu.end(), same_imu);
+}
+
+TEST(Simulator, GivesTheSameBitsForTheSameSeedOnly) {
+  SimulatorConfig config = small("room", 1.2);
+  const Recorded first = record(config), second = record(config);
+  config.seed = 2;
+  const Recorded other = record(config);
+  EXPECT_GT(first.events.size(), 10000U);
+  EXPECT_TRUE(same(first, second));
+  EXPECT_FALSE(same(first, other));
+}
+
+TEST(Simulator, HandsOutEverySensorInOneOrderOfTime) {
+  for (const double offset_ms : {2.4, -7.3}) {
+    SimulatorConfig config = small("room", 1.0);
+    config.imu.time_offset_ms = offset_ms;
+    Simulator simulator(config);
+    Timestamp last = Timestamp::min();
+    std::size_t frames = 0, samples = 0;
+    while (const auto measurement = simulator.next()) {
+      Timestamp first, final;
+      if (const auto* batch = std::get_if<EventBatch>(&*measurement)) {
+        ASSERT_FALSE(batch->events.empty());
+        EXPECT_EQ(batch->camera, "events");
+        first = batch->events.front().t, final = batch->events.back().t;
+        EXPECT_LE(final - first, std::chrono::milliseconds(5));
+      } else if (const auto* frame = std::get_if<Frame>(&*measurement)) {
+        first = final = frame->t;
+        ++frames;
+      } else {
+        first = final = std::get<ImuSample>(*measurement).t;
+        ++samples;
+      }
+      ASSERT_LE(last, first);
+      last = final;
+    }
+    EXPECT_EQ(frames, 24U);
+    EXPECT_EQ(samples, 1001U);
+  }
+}
+
+double sharpness(const cv::Mat& image) {
+  cv::Mat edges;
+  cv::Laplacian(image, edges, CV_32F);
+  return cv::norm(edges, cv::NORM_L2SQR) / static_cast<double>(image.total());
+}
+
+TEST(Simulator, BlursFramesInMotionButNotAtRest) {
+  SimulatorConfig config = small("aggressive", 1.2);
+  config.frames.read_noise_electrons = 0.0;
+  config.frames.electrons_per_ms *= 1e3, config.frames.electrons_per_level *= 1e3;
+  config.frames.exposure_ms = 25.0;
+  const Recorded slow = record(config);
+  config.frames.electrons_per_ms *= 25.0 / 0.5;
+  config.frames.exposure_ms = 0.5;
+  const Recorded quick = record(config);
+  ASSERT_EQ(slow.frames.size(), quick.frames.size());
+  EXPECT_NEAR(sharpness(slow.frames[2].image) / sharpness(quick.frames[2].image), 1.0, 0.02);
+  EXPECT_LT(sharpness(slow.frames.back().image), 0.6 * sharpness(quick.frames.back().image));
+  EXPECT_NEAR(cv::norm(slow.frames[1].image, slow.frames[3].image, cv::NORM_INF), 0.0, 1.0);
+}
+
+TEST(Simulator, PresetsLookLikeTheirNames) {
+  EXPECT_THROW(simulator_preset("submarine"), InputError);
+  std::map<std::string, double> brightness, rate;
+  for (const std::string& name : simulator_presets()) {
+    const Recorded recorded = record(small(name, 1.5));
+    brightness[name] = cv::mean(recorded.frames.back().image)[0];
+    rate[name] = static_cast<double>(recorded.events.size()) / 1.2;
+    EXPECT_GT(rate[name], 3e4) << name;  // a quarter of a DAVIS240C's pixels
+    EXPECT_LT(rate[name], 2e6) << name;
+  }
+  EXPECT_GT(brightness["shapes"], brightness["room"]);
+  EXPECT_GT(brightness["room"], 40.0);
+  EXPECT_LT(brightness["dark"], 20.0);
+  EXPECT_GT(rate["aggressive"], rate["room"]);
+}
+
+TEST(Simulator, GroundTruthIsTheBodyOnTheClockOfTheImu) {
+  const SimulatorConfig config = small("poster", 1.0);
+  const Simulator simulator(config);
+  const auto truth = simulator.ground_truth();
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(truth->frame, "body");
+  ASSERT_EQ(truth->trajectory.size(), 201U);
+  const StampedPose& pose = truth->trajectory[150];
+  EXPECT_EQ(pose.t, timestamp_from_seconds(0.7524));
+  EXPECT_EQ(pose.T.translation(), simulator.trajectory().at(0.75).T_W_B.translation());
+  const Calibration calibration = simulator.calibration();
+  EXPECT_EQ(calibration.rig.camera("events").time_offset, timestamp_from_seconds(0.0024).time_since_epoch());
+  EXPECT_EQ(calibration.rig.camera("frames").model, config.camera.model());
+}
+
+TEST(Simulator, RefusesAnExposureLongerThanThePeriod) {
+  SimulatorConfig config = small("room", 1.0);
+  ConfigFields::of(config).set("frames.exposure_ms=50");
+  EXPECT_THROW(Simulator{config}, InputError);
+}
+
+}  // namespace
+}  // namespace edged
