@@ -46,8 +46,9 @@ Protocol chosen_protocol(const EvalOptions& options) {
 }
 
 int run_eval(const EvalOptions& options) {
-  const Association association = associate(read_trajectory(options.truth), read_trajectory(options.estimate),
-                                            duration_from_seconds(options.max_gap_s));
+  const Trajectory truth = read_trajectory(options.truth);
+  const Trajectory estimate = read_trajectory(options.estimate);
+  const Association association = associate(truth, estimate, duration_from_seconds(options.max_gap_s));
   const Evaluation evaluation = evaluate(association, chosen_protocol(options), options.deltas_s);
   fmt::print("{}", options.json ? to_json(evaluation).dump(2) + "\n" : to_table(evaluation));
   return kExitOk;

@@ -247,7 +247,7 @@ RunSummary Run::summarize() {
   summary.poses = writer_->poses();
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
-  if (const auto truth = source_.dataset->ground_truth()) {
+  if (const auto truth = source_.dataset->ground_truth(); truth && writer_->poses() > 0) {
     evaluate_run(summary, writer_->body(), source_.calibration.rig, *truth);
   }
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();

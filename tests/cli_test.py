@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""The program as a user meets it: exit codes, error lines, run folders. Usage: EDGED=path/to/edged cli_test.py"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+EDGED = os.environ["EDGED"]
+
+
+def edged(*args, cwd=None):
+    return subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, cwd=cwd, check=False, timeout=300)
+
+
+class WithFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def assert_refused(self, result, *words, code=3):
+        """One line on stderr that holds the words, and the exit code."""
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+
+class CommandLine(WithFolder):
+    def test_help_teaches_with_examples_and_exit_codes(self):
+        text = edged("--help").stdout
+        for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
+            self.assertIn(word, text)
+        for command in ("run", "simulate", "eval"):
+            self.assertIn("Example", edged(command, "--help").stdout)
+
+    def test_a_wrong_command_line_is_code_2(self):
+        for args in ([], ["fly"], ["run"], ["run", "x", "--mode", "sonar"], ["eval", "a"], ["config", "--what"]):
+            self.assertEqual(edged(*args).returncode, 2, args)
+
+    def test_version_names_the_program(self):
+        self.assertRegex(edged("--version").stdout, r"^edged \d+\.\d+\.\d+")
+
+
+class BadInput(WithFolder):
+    def test_a_missing_recording(self):
+        self.assert_refused(edged("run", self.folder / "nothing"), "nothing")
+
+    def test_an_empty_folder(self):
+        self.assert_refused(edged("run", self.folder), str(self.folder))
+
+    def test_an_unknown_rig_lists_those_there_are(self):
+        self.assert_refused(edged("run", self.folder, "--rig", "davis999"), "davis999", "davis240c_ecd")
+
+    def test_an_unknown_option_suggests_the_nearest(self):
+        self.assert_refused(edged("run", "sim:room", "--set", "packets.max_intervall_s=1"), "'packets.max_interval_s'")
+
+    def test_an_option_out_of_range_names_the_range(self):
+        self.assert_refused(edged("run", "sim:room", "packets.max_interval_s=-1"), "packets.max_interval_s", "0.001")
+
+    def test_a_bad_config_file_names_file_line_and_key(self):
+        file = self.folder / "bad.yaml"
+        file.write_text("packets:\n  max_interval_s: soon\n")
+        self.assert_refused(edged("run", "sim:room", "--config", file), f"{file}:2", "packets.max_interval_s", "soon")
+
+    def test_an_unknown_preset_or_seed(self):
+        self.assert_refused(edged("run", "sim:moon"), "moon", "room")
+        self.assert_refused(edged("run", "sim:room:x"), "seed")
+
+    def test_a_folder_that_is_no_run_is_not_overwritten(self):
+        (self.folder / "thesis.tex").write_text("years of work")
+        self.assert_refused(edged("run", "sim:room", "--out", self.folder), str(self.folder), "--out")
+        self.assertEqual((self.folder / "thesis.tex").read_text(), "years of work")
+
+    def test_a_trajectory_that_is_none(self):
+        file = self.folder / "notes.txt"
+        file.write_text("hello\n")
+        self.assert_refused(edged("eval", file, file), str(file))
+        self.assert_refused(edged("eval", self.folder / "none.txt", file), "none.txt")
+
+
+class Eval(WithFolder):
+    def setUp(self):
+        super().setUp()
+        self.truth = self.folder / "truth.txt"
+        self.truth.write_text("".join(f"{100 + 0.1 * i:.1f} {i * 0.1} {(i % 7) * 0.1} {(i % 3) * 0.2} 0 0 0 1\n"
+                                      for i in range(200)))
+
+    def test_a_trajectory_equals_itself(self):
+        result = json.loads(edged("eval", self.truth, self.truth, "--json").stdout)
+        self.assertLess(result["ate_rmse_m"], 1e-9)
+        self.assertAlmostEqual(result["scale"], 1.0)
+        self.assertEqual(result["pairs"], 200)
+
+    def test_protocols_and_windows_are_applied(self):
+        self.assertEqual(json.loads(edged("eval", self.truth, self.truth, "--protocol", "P1", "--json").stdout)["window_s"],
+                         [3.0, 8.0])
+        custom = edged("eval", self.truth, self.truth, "--align", "yaw", "--first", "5", "--json")
+        self.assertEqual(json.loads(custom.stdout)["alignment"], "position+yaw")
+        self.assertIn("ATE position", edged("eval", self.truth, self.truth).stdout)
+
+    def test_other_clocks_are_refused(self):
+        later = self.folder / "later.txt"
+        later.write_text("".join(f"{5000 + i} 0 0 {i} 0 0 0 1\n" for i in range(9)))
+        self.assert_refused(edged("eval", self.truth, later), "clock")
+
+
+class Config(WithFolder):
+    def test_every_option_is_described(self):
+        options = json.loads(edged("config", "--json").stdout)
+        self.assertGreater(len(options), 10)
+        for option in options:
+            self.assertTrue(option["effect"], option["key"])
+            self.assertIn(option["key"], edged("config", option["key"]).stdout)
+
+    def test_the_printed_yaml_is_a_valid_config(self):
+        file = self.folder / "all.yaml"
+        file.write_text(edged("config", "--yaml").stdout)
+        # A recording that is not there: the config has been read before it is looked for.
+        self.assert_refused(edged("run", self.folder / "nothing", "--config", file), "nothing")
+
+
+class Run(WithFolder):
+    """On one short simulated flight."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.work = pathlib.Path(tempfile.mkdtemp(prefix="edged_run_"))
+        cls.flight = cls.work / "flight"
+        result = edged("simulate", "--duration", "5", "--seed", "2", "--out", cls.flight, "--json", "--quiet")
+        assert result.returncode == 0, result.stderr
+        cls.simulated = json.loads(result.stdout)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.work)
+
+    def test_simulate_says_what_it_wrote_and_does_not_overwrite(self):
+        self.assertGreater(self.simulated["events"], 10000)
+        with open(self.flight / "events.txt", encoding="ascii") as events:
+            self.assertEqual(sum(1 for _ in events), self.simulated["events"])
+        self.assert_refused(edged("simulate", "--duration", "1", "--out", self.flight, "--quiet"), str(self.flight))
+
+    def test_a_run_leaves_a_complete_folder_and_the_same_bytes_twice(self):
+        a, b = self.folder / "a", self.folder / "b"
+        result = edged("run", self.flight, "--out", a, "--json", "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr, "")
+        summary = json.loads(result.stdout)
+        self.assertEqual(summary, json.loads((a / "metrics.json").read_text()))
+        for key in ("ate_rmse_m", "mpe_percent", "scale", "alignment", "poses", "keyframes", "coverage",
+                    "real_time_factor", "cpu_s_per_s", "peak_rss_mb", "status"):
+            self.assertIn(key, summary)
+        self.assertLess(summary["ate_rmse_m"], 0.1)
+        for name in ("trajectory_euroc.csv", "states.csv", "config_resolved.yaml", "timing.json", "run.log"):
+            self.assertGreater((a / name).stat().st_size, 0, name)
+        # Again, from the options the first run resolved.
+        again = edged("run", self.flight, "--out", b, "--config", a / "config_resolved.yaml", "--quiet")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((a / "trajectory.tum").read_bytes(), (b / "trajectory.tum").read_bytes())
+        self.assertIn("mean position error", again.stdout)
+        # The file says what metrics.json says.
+        evaluated = json.loads(edged("eval", self.flight / "groundtruth.txt", a / "trajectory.tum", "--json").stdout)
+        self.assertAlmostEqual(evaluated["ate_rmse_m"], summary["ate_rmse_m"], places=9)
+
+    def test_every_mode_runs_into_its_default_folder(self):
+        for mode in ("events", "frames"):
+            result = edged("run", self.flight, "--mode", mode, cwd=self.folder)
+            self.assertIn(result.returncode, (0, 4), result.stderr)
+            self.assertTrue((self.folder / "runs" / f"flight-{mode}" / "metrics.json").is_file())
+
+    def test_the_output_frame_can_be_chosen(self):
+        out = self.folder / "body"
+        edged("run", self.flight, "--out", out, "--frame", "body", "--quiet")
+        self.assertIn("body (IMU)", (out / "trajectory.tum").read_text().splitlines()[0])
+        self.assert_refused(edged("run", self.flight, "--frame", "left", "--out", out), "left")
+
+    def test_without_a_good_pose_the_code_is_4(self):
+        flight = self.folder / "short"
+        edged("simulate", "--duration", "0.2", "--out", flight, "--quiet")
+        result = edged("run", flight, "--out", self.folder / "run", "--json", "--quiet")
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
+        self.assertEqual(json.loads(result.stdout)["status"], "never good")
+
+    def test_ctrl_c_leaves_complete_files(self):
+        out = self.folder / "run"
+        process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
+        while not (out / "run.log").exists() and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 130)
+        self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")
+        self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

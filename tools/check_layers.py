@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow.
+
+The table is the rule: `| module | may use | holds |`, one row a module, bottom to top. A row may name only rows above it,
+so there are no cycles. Usage: check_layers.py [ROOT]; prints every violation and exits 1 if there is one.
+"""
+import pathlib
+import re
+import sys
+
+ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|")
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
+
+
+def read_table(architecture):
+    """Module -> modules it may use, in the order of the table, and what is wrong with the table itself."""
+    allowed, errors, inside = {}, [], False
+    for number, line in enumerate(architecture.read_text().splitlines(), 1):
+        if re.match(r"^\|\s*module\s*\|\s*may use\s*\|", line):
+            inside = True
+        elif inside and not line.startswith("|"):
+            break
+        elif inside and (row := ROW.match(line)):
+            name, uses = row.group(1), re.findall(r"`(\w+)`", row.group(2))
+            errors += [f"{architecture.name}:{number}: `{name}` uses `{use}`, which has no row above it"
+                       for use in uses if use not in allowed]
+            allowed[name] = set(uses)
+    return allowed, errors
+
+
+def check_includes(root, allowed):
+    for file in sorted(p for p in (root / "src" / "edged").rglob("*") if p.suffix in (".hpp", ".cpp")):
+        module = file.relative_to(root / "src" / "edged").parts[0]
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            where, included = f"{file.relative_to(root)}:{number}", match.group(1)
+            if not included.startswith("edged/"):
+                yield f'{where}: "{included}" is not included from the root (edged/...)'
+            elif not (root / "src" / included).is_file():
+                yield f'{where}: "{included}" does not exist'
+            else:
+                target = included.split("/")[1]
+                if target != module and target not in allowed.get(module, set()):
+                    yield f"{where}: {module} may not include {target}"
+
+
+def check_links(root, allowed):
+    """What CMake links: DEPENDS of a module; test programs link what they like."""
+    for module in allowed:
+        section = None
+        for line in (root / "src" / "edged" / module / "CMakeLists.txt").read_text().splitlines():
+            for keyword, target, other in LINKS.findall(line):
+                if keyword or other:
+                    section = keyword or other
+                elif section == "DEPENDS" and target not in allowed[module]:
+                    yield f"src/edged/{module}/CMakeLists.txt: {module} may not link {target}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
+    allowed, errors = read_table(root / "ARCHITECTURE.md")
+    present = {p.parent.name for p in (root / "src" / "edged").glob("*/CMakeLists.txt")}
+    errors += [f"ARCHITECTURE.md: `{name}` stands in the table, but there is no src/edged/{name}" for name in
+               sorted(allowed.keys() - present)]
+    errors += [f"src/edged/{name}: has no row in the table of ARCHITECTURE.md" for name in sorted(present - allowed.keys())]
+    errors += check_includes(root, allowed)
+    errors += check_links(root, {m: a for m, a in allowed.items() if m in present})
+    print("\n".join(errors) if errors else f"{len(allowed)} modules keep their layers")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""Checks what no formatter checks: licence lines, header guards, and the sizes of files and functions.
+
+Usage: check_style.py [ROOT]; prints warnings and errors, exits 1 if there is an error. Sizes above the first number are a
+warning: a place to look. Above the second they are an error.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+FILE_LINES = (400, 600)
+FUNCTION_LINES = (60, 100)
+SPDX = ("SPDX-FileCopyrightText: 2026 Edged USLAM developers", "SPDX-License-Identifier: Apache-2.0")
+CODE = {".cpp", ".hpp"}
+SCRIPTS = {".py", ".sh", ".cmake"}
+# Namespace contents are not indented, so a function begins and ends at column 0.
+NO_FUNCTION = re.compile(r"^(namespace|class|struct|enum|union|extern|using|#|//|/\*|\}|constexpr std::array)")
+
+
+def files(root):
+    """What git tracks or would track."""
+    names = subprocess.run(["git", "-C", root, "ls-files", "--cached", "--others", "--exclude-standard"], check=False,
+                           capture_output=True, text=True)
+    if names.returncode == 0:
+        return [root / name for name in names.stdout.splitlines() if (root / name).is_file()]
+    return [p for p in root.rglob("*") if p.is_file() and "build" not in p.relative_to(root).parts]
+
+
+def functions(lines):
+    """(first line, length) of every function that begins at column 0, counted from its opening brace."""
+    begin = None
+    for number, line in enumerate(lines, 1):
+        if begin is None:
+            if line.endswith("{") and line[:1].strip() and not NO_FUNCTION.match(line):
+                begin = number
+            elif line.endswith(") {") and line.startswith("    "):  # a signature over several lines
+                begin = number
+        elif line.startswith("}"):
+            yield begin, number - begin + 1
+            begin = None
+
+
+def check(path, name, errors, warnings):
+    lines = path.read_text(errors="replace").splitlines()
+    head = lines[1:3] if lines and lines[0].startswith("#!") else lines[:2]
+    if len(head) < 2 or any(want not in line for want, line in zip(SPDX, head)):
+        errors.append(f"{name}:1: the two SPDX lines are missing")
+    if path.suffix not in CODE:
+        return
+    if path.suffix == ".hpp":
+        if "#pragma once" not in lines:
+            errors.append(f"{name}: no #pragma once")
+        if len(lines) < 3 or not lines[2].startswith("// "):
+            errors.append(f"{name}:3: says in no sentence what the file is")
+    for (soft, hard), what, sizes in ((FILE_LINES, "file", [(1, len(lines))]),
+                                      (FUNCTION_LINES, "function", functions(lines))):
+        for line, size in sizes:
+            if size > soft:
+                (errors if size > hard else warnings).append(f"{name}:{line}: {what} of {size} lines (aim: {soft})")
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
+    errors, warnings = [], []
+    for path in files(root):
+        if path.suffix in CODE | SCRIPTS or path.name == "CMakeLists.txt":
+            check(path, path.relative_to(root), errors, warnings)
+    for text in warnings:
+        print(f"warning: {text}")
+    for text in errors:
+        print(f"error: {text}")
+    print(f"{len(errors)} errors, {len(warnings)} warnings")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
