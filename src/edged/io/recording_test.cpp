@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "edged/io/test_support.hpp"
 #include "edged/io/text.hpp"
 
@@ -127,6 +129,31 @@ TEST(Recording, SurvivesEveryFileCutAtAnyPlace) {
       const Contents c = read_all(*r.dataset);
       EXPECT_NO_THROW(r.dataset->ground_truth()) << name << " " << percent;
       EXPECT_GE(c.all.size(), 25u);  // without the IMU: 20 batches and 5 frames
+    }
+    folder.write(name, whole);
+  }
+}
+
+TEST(Recording, RandomDamageIsMendedOrRefusedButNeverWorse) {
+  TempFolder folder;
+  write_small(folder);
+  folder.write("calibration.yaml", to_yaml(load_rig("davis240c_ecd")));
+  const std::string bytes = "0123456789.-+e \n\r,#:[]{}naif\x01\xff";
+  std::mt19937_64 random(3);
+  for (const std::string name : {"events.txt", "imu.txt", "images.txt", "groundtruth.txt", "calibration.yaml", "images/1.png"}) {
+    const std::string whole = read_text(folder.path() / name);
+    for (int round = 0; round < 40; ++round) {
+      std::string text = whole;
+      for (int i = 0; i <= round; ++i) text[random() % text.size()] = bytes[random() % bytes.size()];
+      folder.write(name, text);
+      try {
+        Recording r = open_recording(folder.path());
+        const Contents c = read_all(*r.dataset);
+        r.dataset->ground_truth();
+        for (std::size_t i = 1; i < c.all.size(); ++i) ASSERT_LE(stamp_of(c.all[i - 1]), stamp_of(c.all[i]));
+      } catch (const InputError& e) {
+        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+      }
     }
     folder.write(name, whole);
   }
