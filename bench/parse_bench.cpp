@@ -52,7 +52,8 @@ void read_events_text(benchmark::State& state) {
     Repairs repairs;
     EventTextStream stream(file.path(), 240, 180, repairs);
     std::size_t events = 0;
-    while (const Event* first = stream.peek()) events += stream.take_before(first->t + std::chrono::milliseconds(1)).size();
+    while (const Event* first = stream.peek())
+      events += stream.take_before(first->t + std::chrono::milliseconds(1)).size();
     if (events != kEvents) state.SkipWithError("events are missing");
   }
   state.SetItemsProcessed(state.iterations() * kEvents);

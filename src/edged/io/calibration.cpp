@@ -43,7 +43,8 @@ Calibration read_file(const fs::path& file) {
   if (root.find("cam0")) return read_kalibr(root);
   if (root.find("sensor_type")) return read_euroc(file);
   throw InputError::format(
-      "{}: no known calibration; looked for the key edged_rig (ours), cam0 (Kalibr camchain) or sensor_type (EuRoC), or for "
+      "{}: no known calibration; looked for the key edged_rig (ours), cam0 (Kalibr camchain) or sensor_type (EuRoC), "
+      "or for "
       "4 or 9 numbers (calib.txt)",
       file.string());
 }
@@ -53,8 +54,8 @@ void check(const Calibration& calibration, const fs::path& path) {
   for (const RigCamera& camera : calibration.rig.cameras) {
     const double arm = camera.T_B_C.translation().norm();
     if (arm > kLongLeverArm)
-      spdlog::warn("{}: camera {} is {:.2f} m away from the IMU: is the translation in metres?", path.string(), camera.name,
-                   arm);
+      spdlog::warn("{}: camera {} is {:.2f} m away from the IMU: is the translation in metres?", path.string(),
+                   camera.name, arm);
   }
 }
 
@@ -72,8 +73,8 @@ std::string format_transform(const std::string& name, const SE3& T) {
   std::string out;
   const Eigen::Matrix4d m = T.matrix().array() + 0.0;  // -0 becomes 0
   for (int row = 0; row < 3; ++row)
-    out += fmt::format("  {:8}[{:12.9f} {:12.9f} {:12.9f} | {:12.9f}]\n", row == 1 ? name + " = " : "", m(row, 0), m(row, 1),
-                       m(row, 2), m(row, 3));
+    out += fmt::format("  {:8}[{:12.9f} {:12.9f} {:12.9f} | {:12.9f}]\n", row == 1 ? name + " = " : "", m(row, 0),
+                       m(row, 1), m(row, 2), m(row, 3));
   return out;
 }
 
@@ -95,8 +96,9 @@ Calibration load_calibration(const fs::path& path, const fs::path& imu_file) {
     } else if (fs::exists(path / "calib.txt")) {
       file = path / "calib.txt";
     } else {
-      throw InputError::format("{}: no calibration found; looked for calibration.yaml, [mav0/]cam0, camchain*.yaml, calib.txt",
-                               path.string());
+      throw InputError::format(
+          "{}: no calibration found; looked for calibration.yaml, [mav0/]cam0, camchain*.yaml, calib.txt",
+          path.string());
     }
   }
   Calibration calibration = read_file(file);
@@ -135,9 +137,9 @@ std::string describe(const Calibration& calibration) {
   std::string out = fmt::format("rig {}\n", calibration.rig.name);
   for (const RigCamera& camera : calibration.rig.cameras) {
     const CameraModel& m = camera.model;
-    out += fmt::format("camera {} ({}): {} x {} px, fx {:.3f} fy {:.3f} cx {:.3f} cy {:.3f}, distortion {}\n", camera.name,
-                       camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(), m.fx(), m.fy(),
-                       m.cx(), m.cy(), to_string(m.distortion()));
+    out += fmt::format("camera {} ({}): {} x {} px, fx {:.3f} fy {:.3f} cx {:.3f} cy {:.3f}, distortion {}\n",
+                       camera.name, camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
+                       m.fx(), m.fy(), m.cx(), m.cy(), to_string(m.distortion()));
     if (!calibration.has_extrinsics) {
       out += "  pose on the body and time offset: unknown\n";
       continue;
@@ -147,8 +149,8 @@ std::string describe(const Calibration& calibration) {
     out += format_transform("T_B_C", camera.T_B_C);
     out += "  body (IMU) to camera, p_C = T_C_B * p_B\n";
     out += format_transform("T_C_B", camera.T_B_C.inverse());
-    out += fmt::format("  lever arm {:.4f} m; t_imu = t_cam {:+.3f} ms\n", p.norm(),
-                       to_seconds(camera.time_offset) * 1e3);
+    out +=
+        fmt::format("  lever arm {:.4f} m; t_imu = t_cam {:+.3f} ms\n", p.norm(), to_seconds(camera.time_offset) * 1e3);
   }
   const ImuNoise& n = calibration.imu;
   out += fmt::format(
@@ -165,19 +167,22 @@ std::string to_yaml(const Calibration& calibration) {
   if (calibration.has_imu_noise)
     out += fmt::format(
         "imu:\n  gyro_noise: {}  # rad/s/sqrt(Hz)\n  accel_noise: {}  # m/s^2/sqrt(Hz)\n  gyro_walk: {}  # "
-        "rad/s^2/sqrt(Hz)\n  accel_walk: {}  # m/s^3/sqrt(Hz)\n  gyro_saturation: {}  # rad/s\n  accel_saturation: {}  # "
+        "rad/s^2/sqrt(Hz)\n  accel_walk: {}  # m/s^3/sqrt(Hz)\n  gyro_saturation: {}  # rad/s\n  accel_saturation: {}  "
+        "# "
         "m/s^2\n  saturation_inflation: {}\n",
         n.gyro_noise, n.accel_noise, n.gyro_walk, n.accel_walk, n.gyro_saturation, n.accel_saturation,
         n.saturation_inflation);
   out += "cameras:\n";
   for (const RigCamera& camera : calibration.rig.cameras) {
     const CameraModel& m = camera.model;
-    out += fmt::format("  - name: \"{}\"\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
-                       camera.name, camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(), m.fx(),
-                       m.fy(), m.cx(), m.cy());
+    out +=
+        fmt::format("  - name: \"{}\"\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
+                    camera.name, camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
+                    m.fx(), m.fy(), m.cx(), m.cy());
     const auto& k = m.coefficients();
     if (m.distortion() == DistortionModel::RadTan)
-      out += fmt::format("    distortion: radtan\n    coefficients: [{}, {}, {}, {}, {}]\n", k[0], k[1], k[2], k[3], k[4]);
+      out +=
+          fmt::format("    distortion: radtan\n    coefficients: [{}, {}, {}, {}, {}]\n", k[0], k[1], k[2], k[3], k[4]);
     if (m.distortion() == DistortionModel::Equidistant)
       out += fmt::format("    distortion: equidistant\n    coefficients: [{}, {}, {}, {}]\n", k[0], k[1], k[2], k[3]);
     out += "    T_B_C:  # camera to IMU: p_B = T_B_C * p_C\n";

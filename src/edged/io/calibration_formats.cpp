@@ -85,8 +85,8 @@ ImuNoise read_own_noise(const YamlReader& imu) {
 }
 
 RigCamera read_own_camera(const YamlReader& node, const Rig& before) {
-  node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion", "coefficients",
-                   "T_B_C", "T_C_B", "time_offset"});
+  node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
+                   "coefficients", "T_B_C", "T_C_B", "time_offset"});
   RigCamera camera;
   const auto base = node.find("same_as");
   if (base) {
@@ -156,7 +156,8 @@ Calibration read_kalibr(const YamlReader& root) {
     } else if (modality) {
       camera.modality = read_modality(*modality);
     }
-    if (const auto name = node->find("name"); name && !(modality && modality->text() == "both")) camera.name = name->text();
+    if (const auto name = node->find("name"); name && !(modality && modality->text() == "both"))
+      camera.name = name->text();
     out.rig.cameras.push_back(camera);
   }
   return out;

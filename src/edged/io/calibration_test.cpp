@@ -35,7 +35,8 @@ cameras:
     same_as: events
 )";
 
-// A camera 10 cm in front of the IMU (body x) that looks along it: T_B_C has t = (0.1, 0, 0); its inverse t = (0, 0, -0.1).
+// A camera 10 cm in front of the IMU (body x) that looks along it: T_B_C has t = (0.1, 0, 0); its inverse t = (0, 0,
+// -0.1).
 constexpr const char* kKalibr = R"(cam0:
   T_cam_imu:
   - [0.0, -1.0, 0.0, 0.0]
@@ -111,7 +112,8 @@ TEST(Calibration, EurocTransformIsOurs) {
   if (!std::filesystem::exists(mav0)) GTEST_SKIP() << "no data";
   const Calibration c = load_calibration(mav0);
   const RigCamera& camera = c.rig.camera("cam0");
-  EXPECT_TRUE(camera.T_B_C.translation().isApprox(Eigen::Vector3d(-0.0216401454975, -0.064676986768, 0.00981073058949)));
+  EXPECT_TRUE(
+      camera.T_B_C.translation().isApprox(Eigen::Vector3d(-0.0216401454975, -0.064676986768, 0.00981073058949)));
   EXPECT_EQ(camera.model.width(), 752);
   EXPECT_DOUBLE_EQ(c.imu.gyro_noise, 1.6968e-4);
   EXPECT_DOUBLE_EQ(c.imu.accel_walk, 3e-3);
@@ -121,7 +123,8 @@ TEST(Calibration, EurocTransformIsOurs) {
 
 TEST(Calibration, CalibTxtHasIntrinsicsOnly) {
   TempFolder folder;
-  const Calibration nine = load_calibration(folder.write("calib.txt", "199 198 132 110 -0.368 0.15 -0.0003 -0.00076 0.0\n"));
+  const Calibration nine =
+      load_calibration(folder.write("calib.txt", "199 198 132 110 -0.368 0.15 -0.0003 -0.00076 0.0\n"));
   EXPECT_FALSE(nine.has_extrinsics);
   EXPECT_EQ(nine.rig.camera("events").model.width(), 240);
   EXPECT_EQ(nine.rig.camera("frames").model.distortion(), DistortionModel::RadTan);

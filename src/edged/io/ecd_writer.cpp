@@ -88,8 +88,8 @@ class EcdWriter {
     for (const StampedPose& pose : trajectory) {
       const Eigen::Vector3d& p = pose.T.translation();
       const Eigen::Quaterniond& q = pose.T.rotation();
-      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
-              q.w());
+      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(),
+              q.z(), q.w());
     }
     out.flush();
     counts.poses = trajectory.size();
@@ -133,8 +133,8 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
   const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
   if (m.distortion() != DistortionModel::Equidistant) {
     const auto& k = m.coefficients();
-    std::ofstream(folder / "calib.txt") << fmt::format("{} {} {} {} {} {} {} {} {}\n", m.fx(), m.fy(), m.cx(), m.cy(), k[0],
-                                                       k[1], k[2], k[3], k[4]);
+    std::ofstream(folder / "calib.txt") << fmt::format("{} {} {} {} {} {} {} {} {}\n", m.fx(), m.fy(), m.cx(), m.cy(),
+                                                       k[0], k[1], k[2], k[3], k[4]);
   }
   if (named.has_extrinsics) std::ofstream(folder / "calibration.yaml") << to_yaml(named);
 }
@@ -143,8 +143,9 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
 Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Calibration>& calibration) {
   if (!calibration || !calibration->has_extrinsics) {
     if (truth.frame == "body")
-      throw InputError("groundtruth.txt holds the pose of the camera, the ground truth is of the body: a calibration with "
-                       "extrinsics is needed to write it");
+      throw InputError(
+          "groundtruth.txt holds the pose of the camera, the ground truth is of the body: a calibration with "
+          "extrinsics is needed to write it");
     return truth.trajectory;
   }
   const Rig& rig = calibration->rig;
@@ -165,7 +166,8 @@ EcdWriteCounts write_ecd(Dataset& dataset, const fs::path& folder, const EcdWrit
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
-  if (is_ecd_folder(folder)) throw InputError::format("{}: holds a recording already: give another folder", folder.string());
+  if (is_ecd_folder(folder))
+    throw InputError::format("{}: holds a recording already: give another folder", folder.string());
 
   EcdWriter writer(folder);
   if (options.calibration) write_calibration(*options.calibration, folder);

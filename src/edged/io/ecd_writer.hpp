@@ -14,8 +14,8 @@
 namespace edged {
 
 struct EcdWriteOptions {
-  /// Written as calib.txt (event camera) and calibration.yaml (everything); also turns body ground truth into that of the
-  /// camera, which is what groundtruth.txt holds.
+  /// Written as calib.txt (event camera) and calibration.yaml (everything); also turns body ground truth into that of
+  /// the camera, which is what groundtruth.txt holds.
   std::optional<Calibration> calibration;
   std::function<void(Timestamp)> progress;  ///< called now and then with the stamp reached
 };
@@ -25,9 +25,9 @@ struct EcdWriteCounts {
 };
 
 /// Reads `dataset` to its end and writes events.txt, images.txt with images/, imu.txt and groundtruth.txt, each only if
-/// there is something in it. Read back, every stamp, event, pixel and number is the same to the last bit. The data set must
-/// hold at most one event camera and one frame camera. Throws InputError when the folder cannot be written, already holds a
-/// recording, or the ground truth is of the body and no calibration is given.
+/// there is something in it. Read back, every stamp, event, pixel and number is the same to the last bit. The data set
+/// must hold at most one event camera and one frame camera. Throws InputError when the folder cannot be written,
+/// already holds a recording, or the ground truth is of the body and no calibration is given.
 EcdWriteCounts write_ecd(Dataset& dataset, const std::filesystem::path& folder, const EcdWriteOptions& options = {});
 
 }  // namespace edged

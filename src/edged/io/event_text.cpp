@@ -16,7 +16,7 @@ namespace {
 constexpr Duration kLateness = std::chrono::milliseconds(1);  // events this late are still sorted in
 constexpr std::size_t kMaxHeld = 200'000;                     // events kept back for sorting
 constexpr std::uint64_t kMaxSeconds = kMaxStampNs / 1'000'000'000 - 1;
-constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,         10'000,
+constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,       10'000,
                                                   100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
 
 unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsigned>('0'); }
@@ -147,7 +147,8 @@ void EventTextStream::parse_block(std::string_view block) {
 void EventTextStream::place_late(const Event& event) {
   const auto first = events_.begin() + static_cast<std::ptrdiff_t>(begin_);
   if (newest_ - event.t < kLateness && event.t >= taken_) {
-    const auto place = std::upper_bound(first, events_.end(), event.t, [](Timestamp t, const Event& e) { return t < e.t; });
+    const auto place =
+        std::upper_bound(first, events_.end(), event.t, [](Timestamp t, const Event& e) { return t < e.t; });
     events_.insert(place, event);
     damage_.mended(line_, "out of order, sorted in", "stamp up to 1 ms before the line above");
     return;

@@ -13,15 +13,16 @@
 
 namespace edged {
 
-/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1. There must be
-/// a '\n' at or after p. Returns the start of the next line, or null when the line is not of that form.
+/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1. There
+/// must be a '\n' at or after p. Returns the start of the next line, or null when the line is not of that form.
 const char* parse_event_line(const char* p, Event& event);
 
 /// The same for any layout of numbers (commas, exponents, `96.0`): slow, false when it is no event.
 bool parse_event_fields(std::string_view line, Event& event);
 
 /// The events of a file in time order. Memory stays bounded: a block of text and the events in it.
-/// Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines are left out. All counted.
+/// Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines are left out. All
+/// counted.
 class EventTextStream {
  public:
   EventTextStream(const std::filesystem::path& file, int width, int height, Repairs& repairs);
@@ -42,9 +43,9 @@ class EventTextStream {
   LineDamage damage_;
   int width_, height_;
   std::size_t line_ = 0;
-  std::vector<Event> events_;  ///< sorted
-  std::size_t begin_ = 0;      ///< first event not yet taken
-  std::size_t ready_ = 0;      ///< events before this index can no longer change
+  std::vector<Event> events_;           ///< sorted
+  std::size_t begin_ = 0;               ///< first event not yet taken
+  std::size_t ready_ = 0;               ///< events before this index can no longer change
   Timestamp taken_ = Timestamp::min();  ///< stamp of the last event taken
   Timestamp newest_ = Timestamp::min();
   bool at_end_ = false;

@@ -56,9 +56,9 @@ TEST(EventLine, IsReadExactly) {
 }
 
 TEST(EventLine, RefusesWhatIsNoEvent) {
-  for (const std::string text :
-       {"\n", "0.1\n", "0.1 2\n", "0.1 2 3\n", "0.1 2 3 \n", "0.1 2 3 2\n", "0.1 2 3 1 4\n", "nan 2 3 1\n", "0.1 nan 3 1\n",
-        "0.1 -2 3 1\n", "0.1 70000 3 1\n", "0.1 2 123456 1\n", "99999999999 2 3 1\n", "x\n", "0.1 2 3 10\n", " \t\n"}) {
+  for (const std::string text : {"\n", "0.1\n", "0.1 2\n", "0.1 2 3\n", "0.1 2 3 \n", "0.1 2 3 2\n", "0.1 2 3 1 4\n",
+                                 "nan 2 3 1\n", "0.1 nan 3 1\n", "0.1 -2 3 1\n", "0.1 70000 3 1\n", "0.1 2 123456 1\n",
+                                 "99999999999 2 3 1\n", "x\n", "0.1 2 3 10\n", " \t\n"}) {
     Event e;
     EXPECT_EQ(parse_event_line(text.data(), e), nullptr) << text;
     EXPECT_FALSE(parse_event_fields(text.substr(0, text.size() - 1), e)) << text;
@@ -93,7 +93,8 @@ Stream read_stream(const std::filesystem::path& file, Duration step = std::chron
     EXPECT_FALSE(batch.empty());
     out.events.insert(out.events.end(), batch.begin(), batch.end());
   }
-  EXPECT_TRUE(std::is_sorted(out.events.begin(), out.events.end(), [](const Event& a, const Event& b) { return a.t < b.t; }));
+  EXPECT_TRUE(
+      std::is_sorted(out.events.begin(), out.events.end(), [](const Event& a, const Event& b) { return a.t < b.t; }));
   out.repairs = repairs.counts();
   return out;
 }
@@ -104,7 +105,8 @@ TEST(EventStream, GivesEveryEventOnceWhateverTheSteps) {
   for (const auto step : {Duration(1), Duration(25'000), Duration(5'000'000), Duration(1'000'000'000)}) {
     const Stream s = read_stream(file, step);
     ASSERT_EQ(s.events.size(), 60'000u);
-    for (std::size_t i = 0; i < s.events.size(); ++i) ASSERT_EQ(to_ns(s.events[i].t), static_cast<std::int64_t>(i) * 10'000);
+    for (std::size_t i = 0; i < s.events.size(); ++i)
+      ASSERT_EQ(to_ns(s.events[i].t), static_cast<std::int64_t>(i) * 10'000);
     EXPECT_TRUE(s.repairs.empty());
   }
 }

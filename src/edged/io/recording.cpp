@@ -12,7 +12,8 @@ Recording open_recording(const std::filesystem::path& folder, const Rig* rig) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder, ignored)) throw InputError::format("{}: no such folder", folder.string());
   if (!std::filesystem::is_directory(folder, ignored))
-    throw InputError::format("{}: is a file; give the folder of the recording (unpack an archive first)", folder.string());
+    throw InputError::format("{}: is a file; give the folder of the recording (unpack an archive first)",
+                             folder.string());
   if (is_ecd_folder(folder)) return open_ecd(folder, rig);
   if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);
   throw InputError::format(

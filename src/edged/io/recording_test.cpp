@@ -90,7 +90,8 @@ TEST(Recording, EventBatchesAloneSpanAtMostFiveMilliseconds) {
 TEST(Recording, ReadsTwiceToTheSame) {
   TempFolder folder;
   write_small(folder);
-  const Contents a = read_all(*open_recording(folder.path()).dataset), b = read_all(*open_recording(folder.path()).dataset);
+  const Contents a = read_all(*open_recording(folder.path()).dataset),
+                 b = read_all(*open_recording(folder.path()).dataset);
   EXPECT_EQ(a.events, b.events);
   EXPECT_EQ(a.all.size(), b.all.size());
 }
@@ -98,9 +99,10 @@ TEST(Recording, ReadsTwiceToTheSame) {
 TEST(Recording, DamageIsMendedAndCounted) {
   TempFolder folder;
   write_small(folder);
-  folder.write("imu.txt",
-               "0.000 0 0 9.8 0 0 0\n0.001 0 0 9.8 0 0 0\n0.001 1 1 1 1 1 1\n0.002 nan 0 9.8 0 0 0\n0.0005 0 0 9.8 0 0 0\n"
-               "77.0 0 0 9.8 0 0 0\n0.003 0 0 9.8 0 0 0\n0.004 0 0 9.8 0 0\n0.005 0 0 9.8 0 0 0\n0.006 0 0 9.8 0 0 0.12");
+  folder.write(
+      "imu.txt",
+      "0.000 0 0 9.8 0 0 0\n0.001 0 0 9.8 0 0 0\n0.001 1 1 1 1 1 1\n0.002 nan 0 9.8 0 0 0\n0.0005 0 0 9.8 0 0 0\n"
+      "77.0 0 0 9.8 0 0 0\n0.003 0 0 9.8 0 0 0\n0.004 0 0 9.8 0 0\n0.005 0 0 9.8 0 0 0\n0.006 0 0 9.8 0 0 0.12");
   std::filesystem::remove(folder.path() / "images" / "1.png");
   folder.write("images/2.png", "not a picture");
   folder.write_image("images/3.png", 100, 100);
@@ -112,8 +114,9 @@ TEST(Recording, DamageIsMendedAndCounted) {
   EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 2u);
   EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 2u);
   const std::map<std::string, std::size_t> expected{
-      {"imu: duplicate stamp", 1},      {"imu: unreadable line", 2},     {"imu: out of order, dropped", 2},
-      {"imu: last line cut", 1},        {"frames: image missing", 1},    {"frames: image unreadable", 1},
+      {"imu: duplicate stamp", 1},          {"imu: unreadable line", 2},
+      {"imu: out of order, dropped", 2},    {"imu: last line cut", 1},
+      {"frames: image missing", 1},         {"frames: image unreadable", 1},
       {"frames: image of another size", 1}, {"groundtruth: bad line", 1}};
   EXPECT_EQ(r.dataset->repairs(), expected);
 }
@@ -140,7 +143,8 @@ TEST(Recording, RandomDamageIsMendedOrRefusedButNeverWorse) {
   folder.write("calibration.yaml", to_yaml(load_rig("davis240c_ecd")));
   const std::string bytes = "0123456789.-+e \n\r,#:[]{}naif\x01\xff";
   std::mt19937_64 random(3);
-  for (const std::string name : {"events.txt", "imu.txt", "images.txt", "groundtruth.txt", "calibration.yaml", "images/1.png"}) {
+  for (const std::string name :
+       {"events.txt", "imu.txt", "images.txt", "groundtruth.txt", "calibration.yaml", "images/1.png"}) {
     const std::string whole = read_text(folder.path() / name);
     for (int round = 0; round < 40; ++round) {
       std::string text = whole;
@@ -168,7 +172,8 @@ TEST(Recording, EmptyFilesAreCountedUntilNothingRemains) {
   EXPECT_EQ(r.dataset->repairs().at("events: empty file"), 1u);
   folder.write("imu.txt", "");
   folder.write("images.txt", "# nothing\n");
-  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("nothing to read: events.txt, images.txt, imu.txt"));
+  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }),
+              HasSubstr("nothing to read: events.txt, images.txt, imu.txt"));
 }
 
 TEST(Recording, UnknownFoldersAreRefusedWithWhatWasLookedFor) {
@@ -182,7 +187,9 @@ TEST(Recording, UnknownFoldersAreRefusedWithWhatWasLookedFor) {
 TEST(Recording, SensorSizeComesFromTheRigElseTheImagesElseTheDavis) {
   TempFolder folder;
   folder.write("events.txt", "0.1 300 200 1\n0.2 1 1 0\n");
-  const auto events = [&](const Rig* rig) { return read_all(*open_recording(folder.path(), rig).dataset).events.size(); };
+  const auto events = [&](const Rig* rig) {
+    return read_all(*open_recording(folder.path(), rig).dataset).events.size();
+  };
   EXPECT_EQ(events(nullptr), 1u);
   Rig rig;
   rig.cameras.push_back({"events", Modality::Events, CameraModel(320, 240, 200, 200, 160, 120), SE3(), Duration(0)});

@@ -19,8 +19,8 @@ class Repairs {
   std::map<std::string, std::size_t> counts_;
 };
 
-/// The damaged lines of one file. Throws InputError, naming the first, when there are more than 1000 and more than 1 % of
-/// the lines read so far.
+/// The damaged lines of one file. Throws InputError, naming the first, when there are more than 1000 and more than 1 %
+/// of the lines read so far.
 class LineDamage {
  public:
   /// subject: begins each kind, e.g. "events".

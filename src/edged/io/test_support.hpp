@@ -75,7 +75,8 @@ struct Contents {
 inline Contents read_all(Dataset& dataset) {
   Contents c;
   while (auto m = dataset.next()) {
-    if (const auto* b = std::get_if<EventBatch>(&*m)) c.events.insert(c.events.end(), b->events.begin(), b->events.end());
+    if (const auto* b = std::get_if<EventBatch>(&*m))
+      c.events.insert(c.events.end(), b->events.begin(), b->events.end());
     if (const auto* f = std::get_if<Frame>(&*m)) c.frames.push_back(*f);
     if (const auto* s = std::get_if<ImuSample>(&*m)) c.imu.push_back(*s);
     c.all.push_back(std::move(*m));

@@ -155,7 +155,8 @@ std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
 
 std::string format_seconds(Timestamp t) {
   const std::int64_t ns = to_ns(t);
-  const std::uint64_t size = ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+  const std::uint64_t size =
+      ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
   return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", size / 1'000'000'000, size % 1'000'000'000);
 }
 

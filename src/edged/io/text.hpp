@@ -43,9 +43,9 @@ class BlockReader {
 };
 
 struct TextLine {
-  std::string_view text;    ///< without its end; valid until the next call
-  std::size_t number = 0;   ///< from 1
-  bool terminated = true;   ///< false: the last line of a file that does not end with '\n'
+  std::string_view text;   ///< without its end; valid until the next call
+  std::size_t number = 0;  ///< from 1
+  bool terminated = true;  ///< false: the last line of a file that does not end with '\n'
 };
 
 /// A file line by line; blank lines and those that start with '#' are left out.
@@ -79,8 +79,8 @@ inline constexpr std::int64_t kMaxStampNs = 4'600'000'000'000'000'000;
 /// A finite number that fills the whole field, or nothing.
 std::optional<double> parse_number(std::string_view field);
 
-/// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a number
-/// or does not fit.
+/// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a
+/// number or does not fit.
 std::optional<Timestamp> parse_seconds(std::string_view field);
 
 /// Whole nanoseconds.

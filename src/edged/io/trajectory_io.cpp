@@ -121,8 +121,8 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   const bool whole = parse_nanoseconds(first).has_value() && to_ns(*parse_nanoseconds(first)) > 1'000'000'000'000;
   if (columns >= 8 && whole) return read_euroc_csv(file);
   if (columns == 8) return read_tum(file);
-  throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12", file.string(),
-                           line->number, columns);
+  throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12",
+                           file.string(), line->number, columns);
 }
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
@@ -138,13 +138,15 @@ void TrajectoryWriter::add(const StampedPose& pose) {
   const Eigen::Vector3d& p = pose.T.translation();
   const Eigen::Quaterniond& q = pose.T.rotation();
   if (format_ == TrajectoryFormat::Tum) {
-    out_ << fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    out_ << fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
+                        q.w());
   } else {
     out_ << fmt::format("{},{},{},{},{},{},{},{}\n", to_ns(pose.t), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
   }
 }
 
-void write_tum(const std::filesystem::path& file, const Trajectory& trajectory, const std::vector<std::string>& comments) {
+void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
+               const std::vector<std::string>& comments) {
   TrajectoryWriter writer(file, TrajectoryFormat::Tum, comments);
   for (const StampedPose& pose : trajectory) writer.add(pose);
 }

@@ -18,7 +18,8 @@ using DamageHandler = std::function<void(std::size_t line, const std::string& de
 
 /// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments. Stamps are exact to the nanosecond, exponents included, and rise
 /// strictly in what is returned. A bad line (unreadable, not finite, no unit quaternion, stamp not after the one above)
-/// goes to on_damage; without it, InputError naming file and line, but a repeated stamp only keeps the first pose (logged).
+/// goes to on_damage; without it, InputError naming file and line, but a repeated stamp only keeps the first pose
+/// (logged).
 Trajectory read_tum(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
 /// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Damage as read_tum.
@@ -36,7 +37,8 @@ enum class TrajectoryFormat { Tum, EurocCsv };
 class TrajectoryWriter {
  public:
   /// comments: each becomes a line that starts with "# ". Throws InputError when the file cannot be made.
-  TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format, const std::vector<std::string>& comments);
+  TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
+                   const std::vector<std::string>& comments);
   void add(const StampedPose& pose);
   void flush() { out_.flush(); }
 

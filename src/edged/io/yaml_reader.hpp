@@ -31,8 +31,8 @@ class YamlReader {
   std::string text() const;
   std::vector<double> numbers() const;  ///< of a sequence, nested ones in one row
 
-  /// A rigid transform: 4x4 or 3x4 rows, a flat row of 16 or 12, or {rows, cols, data}. InputError with the deviation when
-  /// the rotation is not orthonormal to 1e-3.
+  /// A rigid transform: 4x4 or 3x4 rows, a flat row of 16 or 12, or {rows, cols, data}. InputError with the deviation
+  /// when the rotation is not orthonormal to 1e-3.
   SE3 transform() const;
 
   /// InputError when there is a key that is not in the list.
