@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "log.hpp"
+#include "overview.hpp"
 #include "run_folder.hpp"
 #include "run_summary.hpp"
 #include "source.hpp"
@@ -46,6 +48,7 @@ class Run {
   void process_ready_packets();
   void show_status(Timestamp now, const OdometryOutput& output);
   RunSummary summarize();
+  void write_overview(const RunSummary& summary, const std::optional<GroundTruth>& truth) const;
 
   const RunOptions& options_;
   Source source_;
@@ -57,6 +60,7 @@ class Run {
   Odometry odometry_;
   std::optional<RunWriter> writer_;
   RunStatistics statistics_;
+  LiveliestMoment moment_;
   StatusLine status_line_;
   ResourceMeter meter_;
 };
@@ -157,6 +161,7 @@ void Run::process_ready_packets() {
       const auto timer = program_timings_.measure("write");
       statistics_.add(packet->t, output);
       writer_->add(packet->t, output);
+      moment_.consider(*packet, output, odometry_.event_frame());
     }
     if (status_line_.due()) show_status(packet->t, output);
   }
@@ -247,15 +252,33 @@ RunSummary Run::summarize() {
   summary.poses = writer_->poses();
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
-  if (const auto truth = source_.dataset->ground_truth(); truth && writer_->poses() > 0) {
-    evaluate_run(summary, writer_->body(), source_.calibration.rig, *truth);
-  }
+  const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
+  if (truth && writer_->poses() > 0) evaluate_run(summary, writer_->body(), source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_text_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_text_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
+  write_overview(summary, truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   return summary;
+}
+
+void Run::write_overview(const RunSummary& summary, const std::optional<GroundTruth>& truth) const {
+  OverviewContent content;
+  content.title = fmt::format("{}, {}", summary.recording, summary.mode);
+  content.moment = moment_;
+  content.estimate = writer_->body();
+  if (summary.evaluation) {
+    const Evaluation& e = *summary.evaluation;
+    content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
+    content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(writer_->body());
+    for (const StampedPose& pose : truth->trajectory) {
+      if (pose.t >= content.estimate.front().t && pose.t <= content.estimate.back().t) {
+        content.truth.push_back({pose.t, e.alignment.T.inverse() * pose.T});
+      }
+    }
+  }
+  cv::imwrite((folder_ / "overview.png").string(), draw_overview(content));
 }
 
 int run(const RunOptions& options) {

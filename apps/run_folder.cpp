@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t kPacketsPerFlush = 30;
 
 // The first is written before anything else and marks a folder as a run's.
-constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "trajectory.tum", "trajectory_euroc.csv",
-                                  "states.csv",           "metrics.json",     "timing.json",    "run.log"};
+constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "trajectory.tum",
+                                  "trajectory_euroc.csv", "states.csv",       "metrics.json",
+                                  "timing.json",          "overview.png",     "run.log"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
