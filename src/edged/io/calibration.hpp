@@ -22,9 +22,8 @@ struct Calibration {
 
 /// Reads a calibration, the format found by content:
 /// - our own yaml (docs/calibration.md, `edged_rig: 1`),
-/// - Event-Camera Dataset calib.txt (4 or 9 numbers: intrinsics only, cameras "events" and "frames"; the size is that
-/// of
-///   the first image beside it, else 240 x 180),
+/// - Event-Camera Dataset calib.txt (4 or 9 numbers: intrinsics only, cameras "events" and "frames"; the size is
+///   that of the first image beside it, else 240 x 180),
 /// - EuRoC: a mav0 folder or its parent, or one sensor.yaml of a camera (with imu0 beside it),
 /// - Kalibr camchain-imucam yaml, its IMU noise from imu_file.
 /// A folder is searched for calibration.yaml, mav0, camchain*.yaml with imu*.yaml, calib.txt, in that order.
