@@ -19,7 +19,7 @@ struct Recording {
 
 /// Opens a folder, its format found by content:
 /// - Event-Camera Dataset text (events.txt, images.txt, imu.txt, groundtruth.txt, calib.txt; one sensor is enough).
-///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours beside them is the calibration.
+///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours there counts.
 /// - EuRoC ASL (mav0 or its parent): camera "cam0", ground truth of "body".
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
 /// contradicts the recording's own calib.txt. Throws InputError that lists what was looked for.
