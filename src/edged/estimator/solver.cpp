@@ -66,6 +66,8 @@ SolveSummary solve(Window& window, int max_iterations) {
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.linear_solver_ordering.reset(ordering);
   solver.max_num_iterations = max_iterations;
+  // Close to Gauss-Newton: the default damping leaves the scale, which many blocks share, far from converged.
+  solver.initial_trust_region_radius = 1e9;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   solver.function_tolerance = 1e-6;

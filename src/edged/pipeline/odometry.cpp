@@ -83,7 +83,7 @@ struct Odometry::Impl {
 
   FeatureId next_feature = 1;
   NavState now;                     ///< predicted, then optimised; before the start attitude by gyro only
-  std::vector<StampedPose> T_W_B;   ///< predicted body poses that the packet's events are warped with
+  std::vector<StampedPose> T_W_B;   ///< body poses at the IMU samples, back to the oldest event of a packet's window
   bool quiet = false;               ///< the event camera sees nothing move
   double scene_depth;
   std::optional<Timestamp> last_keyframe, last_frame, last_supported;
@@ -133,7 +133,8 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
 
 void Odometry::Impl::predict(const Packet& packet) {
   const auto timer = timings.measure("predict");
-  T_W_B.clear();
+  const Timestamp oldest = packet.t - duration_from_seconds(config.packets.max_age_s);
+  std::erase_if(T_W_B, [&](const StampedPose& pose) { return pose.t < oldest || pose.t >= packet.imu.front().t; });
   if (estimator.initialized()) {
     for (const NavState& state : propagate_all(now, packet.imu)) T_W_B.push_back({state.t, state.T_W_B});
     now = propagate(now, Preintegration(packet.imu, now.bias_gyro, now.bias_accel, noise));
@@ -160,9 +161,9 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   const double pixels = static_cast<double>(renderer->camera().width()) * renderer->camera().height();
   quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
   channels.front().image.release();
-  if (static_cast<double>(packet.events.size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
+  if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
   const CameraMotion motion = camera_motion(T_W_B, now.T_W_B, channels.front().camera.T_B_C);
-  event_frame = renderer->render(packet.events, motion, scene_depth);
+  event_frame = renderer->render(packet.window(), motion, scene_depth);
   channels.front().image = event_frame;
 }
 
@@ -237,9 +238,10 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   const EstimatorResult result = estimator.add(input);
   for (Channel& channel : channels) channel.tracker.remove(result.outliers);
   if (!estimator.initialized()) return result;
-  const SE3 predicted = now.T_W_B;
+  const SE3 correction = estimator.newest().T_W_B * now.T_W_B.inverse();
   now = estimator.newest();
-  if (!started) move_world(now.T_W_B * predicted.inverse());
+  for (StampedPose& pose : T_W_B) pose.T = correction * pose.T;
+  if (!started) move_world(correction);
   for (Channel& channel : channels) {
     if (!channel.image.empty()) channel.T_W_Blast = now.T_W_B;
     if (!channel.image.empty() && keyframe) channel.T_W_Bkeyframe = now.T_W_B;
