@@ -5,13 +5,12 @@
 
 namespace edged {
 
-enum ExitCode : int {
-  kExitOk = 0,
-  kExitBug = 1,          ///< a bug of ours: a failed check or an unexpected exception
-  kExitUsage = 2,        ///< the command line
-  kExitInput = 3,        ///< recording, calibration or configuration
-  kExitNeverGood = 4,    ///< ran to the end, but there never was a Good pose
-  kExitSignalBase = 128  ///< + the signal's number: 130 after Ctrl-C, 143 after SIGTERM; files are complete
-};
+constexpr int kExitOk = 0;
+constexpr int kExitBug = 1;        ///< a bug of ours: a failed check or an unexpected exception
+constexpr int kExitUsage = 2;      ///< the command line
+constexpr int kExitInput = 3;      ///< recording, calibration or configuration
+constexpr int kExitNeverGood = 4;  ///< ran to the end, but there never was a Good pose
+constexpr int kExitSignalBase =
+    128;  ///< + the signal's number: 130 after Ctrl-C, 143 after SIGTERM; files are complete
 
 }  // namespace edged

@@ -31,13 +31,9 @@ constexpr const char* kFooter =
     "  4 ran, but never got a good pose, 130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
     "`edged COMMAND --help` tells more.";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// Reads the command line and runs what it asks for.
+int run_program(int argc, char** argv) {
   using namespace edged;
-  cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
-  start_logging();
-
   CLI::App app{"Edged USLAM: visual-inertial odometry from events, frames and an IMU", "edged"};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("edged {}", kVersion));
@@ -52,14 +48,21 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kExitOk : kExitUsage;
   }
+  return chosen();
+}
 
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return chosen();
-  } catch (const InputError& e) {
-    fmt::print(stderr, "edged: {}\n", e.what());
-    return kExitInput;
+    cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
+    edged::start_logging();
+    return run_program(argc, argv);
+  } catch (const edged::InputError& e) {
+    std::fprintf(stderr, "edged: %s\n", e.what());
+    return edged::kExitInput;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "edged: a bug, please report it with this line: {}\n", e.what());
-    return kExitBug;
+    std::fprintf(stderr, "edged: a bug, please report it with this line: %s\n", e.what());
+    return edged::kExitBug;
   }
 }

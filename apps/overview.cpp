@@ -83,13 +83,13 @@ class PathView {
 void draw_grid(cv::Mat& canvas, const PathView& view, cv::Rect area) {
   const double step = nice_step(view.extent());
   for (int axis = 0; axis < 2; ++axis) {
-    const double high = view.low(axis) + view.extent();
-    for (double value = std::ceil(view.low(axis) / step) * step; value < high; value += step) {
+    const int last = static_cast<int>(std::floor((view.low(axis) + view.extent()) / step));
+    for (int i = static_cast<int>(std::ceil(view.low(axis) / step)); i <= last; ++i) {
+      const double value = i * step;
       const cv::Point2d p = axis == 0 ? view.at(value, view.low(1)) : view.at(view.low(0), value);
       const cv::Point2d end = axis == 0 ? cv::Point2d(p.x, area.y) : cv::Point2d(area.x + area.width, p.y);
       cv::line(canvas, p, end, kGrid, 1);
-      put_text(canvas, fmt::format("{:.3g}", std::abs(value) < 1e-9 * step ? 0.0 : value),
-               cv::Point(cvRound(p.x) + 3, cvRound(p.y) - 4), 0.38);
+      put_text(canvas, fmt::format("{:.3g}", value), cv::Point(cvRound(p.x) + 3, cvRound(p.y) - 4), 0.38);
     }
   }
   cv::rectangle(canvas, area, kGrid, 1);

@@ -100,7 +100,7 @@ void for_each_scalar(const YAML::Node& node, const std::string& prefix, const st
   }
   for (const auto& entry : node) {
     const std::string name = entry.first.Scalar();
-    for_each_scalar(entry.second, prefix.empty() ? name : prefix + "." + name, file, use);
+    for_each_scalar(entry.second, prefix.empty() ? name : fmt::format("{}.{}", prefix, name), file, use);
   }
 }
 
@@ -115,7 +115,7 @@ std::vector<std::string> split_key(const std::string& key) {
 }
 
 std::string yaml_scalar(const ConfigField& field) {
-  const std::string value = field.get();
+  std::string value = field.get();
   if (field.type != "text") return value;
   std::string quoted = "\"";
   for (const char c : value) {
@@ -147,11 +147,12 @@ std::string yaml_comment(const ConfigField& field) {
 
 void ConfigFields::add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,
                              std::function<std::string()> get, std::function<void(const std::string&)> set) {
+  const std::string default_value = get();
   ConfigField field{.key = prefix_ + std::string(name),
                     .type = std::move(type),
                     .unit = std::string(doc.unit),
                     .range = numeric ? range_text(doc) : "any",
-                    .default_value = get(),
+                    .default_value = default_value,
                     .effect = std::string(doc.effect),
                     .get = std::move(get),
                     .set = std::move(set)};
@@ -198,8 +199,8 @@ void ConfigFields::add_choice(std::string_view name, const std::vector<std::stri
   const std::string key = prefix_ + std::string(name);
   const std::string choices = fmt::format("{}", fmt::join(names, " | "));
   add_field(
-      name, choices, doc, false, [get, names] { return names[get()]; },
-      [set, names, key, choices](const std::string& text) {
+      name, choices, doc, false, [get = std::move(get), names] { return names[get()]; },
+      [set = std::move(set), names, key, choices](const std::string& text) {
         const auto found = std::find(names.begin(), names.end(), text);
         if (found == names.end()) throw InputError::format("option '{}' is '{}', but wants {}", key, text, choices);
         set(static_cast<std::size_t>(found - names.begin()));

@@ -39,7 +39,7 @@ constexpr double kRankTolerance = 1e-12;
 
 Similarity umeyama(const Moments& m, bool with_scale) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d d = svd.singularValues();
+  const Eigen::Vector3d& d = svd.singularValues();
   if (!(d(1) > kRankTolerance * d(0))) {
     throw InputError(
         "cannot align: the positions lie on a point or a line and leave the rotation free; "
