@@ -54,10 +54,10 @@ double RunStatistics::coverage() const {
 ResourceMeter::ResourceMeter() : wall_(std::chrono::steady_clock::now()), cpu_s_(process_cpu_s()) {}
 
 double ResourceMeter::wall_s() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count() - paused_wall_s_;
 }
 
-double ResourceMeter::cpu_s() const { return process_cpu_s() - cpu_s_; }
+double ResourceMeter::cpu_s() const { return process_cpu_s() - cpu_s_ - paused_cpu_s_; }
 
 double ResourceMeter::peak_rss_mb() { return static_cast<double>(usage().ru_maxrss) / 1024.0; }
 

@@ -43,7 +43,7 @@ class RunStatistics {
   TrackingStatus last_status_ = TrackingStatus::Initializing;
 };
 
-/// Wall and processor time since construction; peak memory since the process began.
+/// Wall and processor time since construction, without the pauses; peak memory since the process began.
 class ResourceMeter {
  public:
   ResourceMeter();
@@ -51,9 +51,20 @@ class ResourceMeter {
   double cpu_s() const;  ///< user + system, all threads
   static double peak_rss_mb();
 
+  /// Calls work() and leaves out what it uses.
+  template <typename Work>
+  auto without(Work work) {
+    const double wall = wall_s(), cpu = cpu_s();
+    auto result = work();
+    paused_wall_s_ += wall_s() - wall;
+    paused_cpu_s_ += cpu_s() - cpu;
+    return result;
+  }
+
  private:
   std::chrono::steady_clock::time_point wall_;
   double cpu_s_;
+  double paused_wall_s_ = 0.0, paused_cpu_s_ = 0.0;
 };
 
 }  // namespace edged

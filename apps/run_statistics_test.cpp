@@ -57,5 +57,18 @@ TEST(ResourceMeter, SeesProcessorTimeAndMemory) {
   EXPECT_GT(ResourceMeter::peak_rss_mb(), 1.0);
 }
 
+TEST(ResourceMeter, LeavesOutWhatItIsToldTo) {
+  ResourceMeter meter;
+  const ResourceMeter whole;
+  const double waited = meter.without([&whole] {
+    while (whole.wall_s() < 0.02) {
+    }
+    return whole.wall_s();
+  });
+  EXPECT_LT(meter.wall_s(), whole.wall_s());
+  EXPECT_GE(waited, 0.02);
+  EXPECT_LT(meter.cpu_s(), whole.cpu_s());
+}
+
 }  // namespace
 }  // namespace edged
