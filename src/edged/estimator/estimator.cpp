@@ -232,12 +232,11 @@ void Estimator::append(const EstimatorInput& input) {
 void Estimator::optimize(EstimatorResult& result, int iterations) {
   solve(window_, iterations);
   result.outliers = remove_outliers(window_, config_.landmarks);
-  const StateId newest = window_.states.rbegin()->first;
   result.landmarks = result.landmarks_seen = 0;
   for (const auto& [id, feature] : window_.features) {
     if (!feature.anchor) continue;
     ++result.landmarks;
-    if (feature.seen.contains(newest)) ++result.landmarks_seen;
+    if (window_.alive(feature)) ++result.landmarks_seen;
   }
 }
 
@@ -249,11 +248,7 @@ void Estimator::slide() {
   }
   while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) drop_oldest_keyframe();
   // Tracks that ended before they became landmarks.
-  const StateId newest = window_.states.rbegin()->first;
-  std::erase_if(window_.features, [&](const auto& entry) {
-    const Feature& feature = entry.second;
-    return feature.seen.empty() || (!feature.anchor && !feature.seen.contains(newest));
-  });
+  std::erase_if(window_.features, [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
 }
 
 void Estimator::drop_recent(StateId id) {

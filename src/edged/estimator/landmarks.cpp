@@ -64,7 +64,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
   for (auto& [id, feature] : window.features) {
     if (feature.anchor) {
       ++landmarks[feature.camera];
-    } else if (feature.seen.contains(window.states.rbegin()->first)) {
+    } else if (window.alive(feature)) {
       candidates.push_back(&feature);
     }
   }
@@ -77,7 +77,6 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
 }
 
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {
-  const StateId newest = window.states.rbegin()->first;
   std::vector<FeatureId> wrong;
   for (auto it = window.features.begin(); it != window.features.end();) {
     Feature& feature = it->second;
@@ -90,13 +89,13 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
       std::erase_if(feature.seen, [&](const auto& sight) {
         if (sight.first == *feature.anchor) return false;
         const bool bad = residual_sigmas(window, feature, sight.first) > config.max_residual_sigma;
-        if (bad && sight.first == newest) wrong.push_back(it->first);
+        if (bad && window.alive(feature) && sight.first == feature.last_seen) wrong.push_back(it->first);
         return bad;
       });
       dropped = feature.seen.size() < 2;
     }
     if (dropped) {
-      if (feature.seen.contains(newest)) wrong.push_back(it->first);
+      if (window.alive(feature)) wrong.push_back(it->first);
       it = window.features.erase(it);
     } else {
       ++it;

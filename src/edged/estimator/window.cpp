@@ -21,7 +21,9 @@ NavState WindowState::nav() const {
 }
 
 Window::Window(const Rig& rig, double cauchy_scale)
-    : cameras(rig.cameras), visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {}
+    : cameras(rig.cameras),
+      last_image_(rig.cameras.size(), 0),
+      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {}
 
 StateId Window::add_state(WindowState state) {
   states.emplace(next_state_, std::move(state));
@@ -32,9 +34,12 @@ void Window::add_observations(StateId id, const std::vector<CameraObservations>&
   for (const CameraObservations& view : observations) {
     const auto camera = std::find_if(cameras.begin(), cameras.end(), [&](const auto& c) { return c.name == view.camera; });
     EDGED_CHECK(camera != cameras.end(), "no camera '{}' in the rig", view.camera);
+    const auto index = static_cast<std::size_t>(camera - cameras.begin());
+    last_image_[index] = id;
     for (const FeatureObservation& observation : view.features) {
       Feature& feature = features[observation.id];
-      feature.camera = static_cast<std::size_t>(camera - cameras.begin());
+      feature.camera = index;
+      feature.last_seen = id;
       feature.seen.insert_or_assign(id, observation);
     }
   }

@@ -39,6 +39,7 @@ struct WindowState {
 struct Feature {
   std::size_t camera = 0;                           ///< index into Window::cameras
   std::map<StateId, FeatureObservation> seen;       ///< in the window
+  StateId last_seen = 0;                            ///< the newest sight, even if its state has been dropped since
   std::optional<StateId> anchor;                    ///< set when it is a landmark
   double inverse_depth = 0.0;                       ///< [1/m] along z of the anchor camera
 };
@@ -65,6 +66,9 @@ class Window {
   StateId add_state(WindowState state);
   void add_observations(StateId id, const std::vector<CameraObservations>& observations);
 
+  /// True while the newest image of its camera still showed the feature. Not every state has an image of every camera.
+  bool alive(const Feature& feature) const { return feature.last_seen == last_image_[feature.camera]; }
+
   const WindowState& newest() const { return states.rbegin()->second; }
   SE3 T_W_C(StateId state, std::size_t camera) const { return states.at(state).T_W_B() * cameras[camera].T_B_C; }
   /// The landmark's position in the world; the feature must have an anchor.
@@ -85,6 +89,7 @@ class Window {
   void add_visual_factors(std::vector<Factor>& out);
 
   StateId next_state_ = 0;
+  std::vector<StateId> last_image_;  ///< newest state with an image, one a camera
   std::unique_ptr<ceres::LossFunction> visual_loss_;
 };
 
