@@ -252,20 +252,25 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
 }
 
 double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise) {
-  if (frames.size() < 2) return 0.0;
-  const Matrix3d R =
-      between(frames, 0, frames.size() - 1, Vector3d::Zero(), noise).dR(Vector3d::Zero()).toRotationMatrix();
-  std::vector<double> angles;
-  for (const RigCamera& camera : rig.cameras) {
-    for (const RayPair& rays : common_rays(frames.front(), frames.back(), camera)) {
-      const Vector3d turned = R * rays.ray_1;
-      angles.push_back(std::atan2(rays.ray_0.cross(turned).norm(), rays.ray_0.dot(turned)));
+  for (std::size_t first = 0; first + 1 < frames.size(); ++first) {
+    std::vector<RayPair> rays;
+    for (const RigCamera& camera : rig.cameras) {
+      const std::vector<RayPair> more = common_rays(frames[first], frames.back(), camera);
+      rays.insert(rays.end(), more.begin(), more.end());
     }
+    if (rays.size() < kMinPairCorners) continue;
+    const Matrix3d R =
+        between(frames, first, frames.size() - 1, Vector3d::Zero(), noise).dR(Vector3d::Zero()).toRotationMatrix();
+    std::vector<double> angles;
+    for (const RayPair& pair : rays) {
+      const Vector3d turned = R * pair.ray_1;
+      angles.push_back(std::atan2(pair.ray_0.cross(turned).norm(), pair.ray_0.dot(turned)));
+    }
+    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+    std::nth_element(angles.begin(), middle, angles.end());
+    return *middle;
   }
-  if (angles.size() < kMinPairCorners) return 0.0;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return 0.0;
 }
 
 }  // namespace edged

@@ -39,8 +39,8 @@ std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& fra
 /// States of all frames. Nothing when the linear system is not determined (too few tracks, no translation).
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
 
-/// Median angle between the first and last ray of the corners common to both ends of the buffer, rotation taken out with
-/// the gyro [rad]; zero with fewer than 10 of them.
+/// Median angle between the rays of the newest view's corners and their rays in the oldest view that shows enough of
+/// them, rotation taken out with the gyro [rad]; zero when no view does.
 double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
 
 }  // namespace edged

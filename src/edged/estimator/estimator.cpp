@@ -83,7 +83,8 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
   fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
   fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the views of a start in motion"});
-  fields.add("init_views", init_views, {"", 5, 30, "views a start in motion is made from"});
+  fields.add("init_min_views", init_min_views, {"", 5, 30, "views a start in motion needs at least"});
+  fields.add("init_max_views", init_max_views, {"", 5, 60, "views a start in motion looks back on at most"});
   fields.add("init_parallax_deg", init_parallax_deg, {"deg", 0.1, 30, "parallax a start in motion waits for"});
   fields.group("landmarks", landmarks);
   fields.group("standstill", standstill);
@@ -137,15 +138,15 @@ std::string Estimator::try_to_start(const EstimatorInput& input) {
   if (due) {
     buffer_.push_back({input.t, std::move(pending_imu_), input.observations});
     pending_imu_.clear();
-    if (buffer_.size() > static_cast<std::size_t>(config_.init_views)) buffer_.erase(buffer_.begin());
+    if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) buffer_.erase(buffer_.begin());
   }
   if (standstill_.still()) {
     start_at_rest(input);
     return "";
   }
   const std::string not_rest = "rest (" + standstill_.reason() + ")";
-  if (buffer_.size() < static_cast<std::size_t>(config_.init_views)) {
-    return fmt::format("{} or {} of {} views in motion", not_rest, buffer_.size(), config_.init_views);
+  if (buffer_.size() < static_cast<std::size_t>(config_.init_min_views)) {
+    return fmt::format("{} or {} of {} views in motion", not_rest, buffer_.size(), config_.init_min_views);
   }
   const double parallax = median_parallax(buffer_, rig_, noise_) / kDeg;
   if (parallax < config_.init_parallax_deg) {

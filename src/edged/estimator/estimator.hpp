@@ -25,7 +25,8 @@ struct EstimatorConfig {
   double accel_bias_sigma = 0.15;
   double zero_velocity_sigma = 0.01;
   double init_spacing_s = 0.08;    ///< between the views of the start-up buffer
-  int init_views = 12;
+  int init_min_views = 12;         ///< fewer views do not separate scale from accelerometer bias
+  int init_max_views = 20;         ///< the buffer's length: slow motion needs the time
   double init_parallax_deg = 2.5;
   LandmarkConfig landmarks;
   StandstillConfig standstill;
