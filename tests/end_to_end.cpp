@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "end_to_end.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <utility>
+
+#include "edged/core/check.hpp"
+#include "edged/sim/simulator.hpp"
+#include "output_frame.hpp"
+
+namespace edged {
+namespace {
+
+bool has_pose(const OdometryOutput& output) {
+  return output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded;
+}
+
+/// The body's velocity in its own frame, from two poses around an instant.
+Eigen::Vector3d body_velocity(const StampedPose& before, const StampedPose& after) {
+  const SE3 middle = interpolate(before.T, after.T, 0.5);
+  return middle.rotation().conjugate() * (after.T.translation() - before.T.translation()) /
+         to_seconds(after.t - before.t);
+}
+
+void note_visual(RunStatistics& statistics, const Measurement& measurement, const Rig& rig, Mode mode) {
+  const auto note = [&](Modality modality, Timestamp first, Timestamp last) {
+    const Duration offset = rig.find(modality)->time_offset;
+    statistics.add_visual(first + offset, last + offset);
+  };
+  if (const auto* batch = std::get_if<EventBatch>(&measurement); batch != nullptr && mode != Mode::Frames) {
+    if (!batch->events.empty()) note(Modality::Events, batch->events.front().t, batch->events.back().t);
+  } else if (const auto* frame = std::get_if<Frame>(&measurement); frame != nullptr && mode != Mode::Events) {
+    note(Modality::Frames, frame->t, frame->t);
+  }
+}
+
+}  // namespace
+
+Flight read_flight(Dataset& dataset, const Calibration& calibration) {
+  Flight flight{calibration, {}, {}};
+  while (std::optional<Measurement> measurement = dataset.next()) {
+    flight.measurements.push_back(std::move(*measurement));
+  }
+  flight.truth = dataset.ground_truth();
+  return flight;
+}
+
+Flight simulate_flight(const std::string& preset, int seed, double duration_s) {
+  SimulatorConfig config = simulator_preset(preset);
+  config.seed = seed;
+  config.duration_s = duration_s;
+  Simulator simulator(config);
+  return read_flight(simulator, simulator.calibration());
+}
+
+FlightRun run_flight(const Calibration& calibration, std::span<const Measurement> measurements, Mode mode,
+                     const OdometryConfig& config) {
+  Packetizer packetizer(calibration.rig, mode, config.packets);
+  Odometry odometry(calibration.rig, calibration.imu, mode, config);
+  FlightRun run;
+  const auto process_ready_packets = [&] {
+    while (const std::optional<Packet> packet = packetizer.next()) {
+      run.outputs.push_back(odometry.process(*packet));
+      run.statistics.add(packet->t, run.outputs.back());
+      const cv::Mat& picture = odometry.event_frame();
+      run.event_frame_sums.push_back(picture.empty() ? 0.0 : cv::sum(picture)[0]);
+    }
+  };
+  for (const Measurement& measurement : measurements) {
+    note_visual(run.statistics, measurement, calibration.rig, mode);
+    packetizer.add(measurement);
+    process_ready_packets();
+  }
+  packetizer.finish();
+  process_ready_packets();
+  return run;
+}
+
+FlightScore score(const Flight& flight, const FlightRun& run) {
+  EDGED_CHECK(flight.truth.has_value(), "the recording has no ground truth");
+  const OutputFrame frame(flight.calibration.rig, flight.truth->frame);
+  const Trajectory& truth = flight.truth->trajectory;
+  FlightScore result;
+  Trajectory estimate;
+  double velocity_sum = 0.0;
+  int velocities = 0;
+  // The true body, whatever frame the truth is of: T_W_B = T_W_X * T_X_B, on the IMU's clock.
+  const StampedPose X_in_B = frame({Timestamp(), SE3()});
+  const auto true_body = [&](const StampedPose& X) {
+    return StampedPose{X.t - X_in_B.t + Timestamp(), X.T * X_in_B.T.inverse()};
+  };
+  for (const OdometryOutput& output : run.outputs) {
+    if (!has_pose(output)) continue;
+    estimate.push_back(frame({output.state.t, output.state.T_W_B}));
+    const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
+                                        [](const StampedPose& pose, Timestamp t) { return pose.t < t; });
+    if (after - truth.begin() < 2 || truth.end() - after < 2) continue;
+    const StampedPose before = true_body(*(after - 2)), later = true_body(*(after + 1));
+    const SE3& T_W_B = output.state.T_W_B;
+    const double share = to_seconds(output.state.t - before.t) / to_seconds(later.t - before.t);
+    const SE3 true_T_W_B = interpolate(before.T, later.T, share);
+    const double cosine = T_W_B.R().row(2).dot(true_T_W_B.R().row(2));
+    result.max_tilt_deg = std::max(result.max_tilt_deg, std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi);
+    velocity_sum += (T_W_B.rotation().conjugate() * output.state.v_W - body_velocity(before, later)).squaredNorm();
+    ++velocities;
+  }
+  result.rms_velocity_error = velocities == 0 ? 0.0 : std::sqrt(velocity_sum / velocities);
+  result.evaluation = evaluate(associate(truth, estimate), protocol("P3"));
+  return result;
+}
+
+std::string to_string(Mode mode) { return mode == Mode::Events ? "events" : mode == Mode::Frames ? "frames" : "fused"; }
+
+std::string describe(const FlightScore& s, const RunStatistics& statistics) {
+  return fmt::format(
+      "ATE {:.4f} m, mean {:.3f} %, scale {:.4f}, rotation {:.2f} deg, tilt at most {:.2f} deg, velocity {:.3f} m/s, "
+      "coverage {:.3f}, lost {} times",
+      s.evaluation.ate_m.rmse, s.evaluation.mpe_percent, s.evaluation.scale, s.evaluation.rotation_deg.mean,
+      s.max_tilt_deg, s.rms_velocity_error, statistics.coverage(), statistics.times_lost());
+}
+
+}  // namespace edged
