@@ -86,6 +86,11 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("init_min_views", init_min_views, {"", 5, 30, "views a start in motion needs at least"});
   fields.add("init_max_views", init_max_views, {"", 5, 60, "views a start in motion looks back on at most"});
   fields.add("init_parallax_deg", init_parallax_deg, {"deg", 0.1, 30, "parallax a start in motion waits for"});
+  fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
+  fields.add("noise_inflation", noise_inflation,
+             {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});
+  fields.add("min_noise_scale", min_noise_scale, {"", 0.01, 1, "least adapted noise over the configured one"});
+  fields.add("max_noise_scale", max_noise_scale, {"", 1, 100, "largest adapted noise over the configured one"});
   fields.group("landmarks", landmarks);
   fields.group("standstill", standstill);
 }
@@ -104,6 +109,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   append(input);
   triangulate_features(window_, config_.landmarks);
   optimize(result, config_.iterations);
+  adapt_noise();
   slide();
   return result;
 }
@@ -238,6 +244,17 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
     if (!feature.anchor) continue;
     ++result.landmarks;
     if (window_.alive(feature)) ++result.landmarks_seen;
+  }
+}
+
+void Estimator::adapt_noise() {
+  constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
+  for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
+    const std::optional<double> median = median_residual(window_, camera);
+    if (!median) continue;
+    const double wanted = std::max(*median, 1e-3) / kMedianOfNorm * config_.noise_inflation;
+    double& scale = window_.noise_scale[camera];
+    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain), config_.min_noise_scale, config_.max_noise_scale);
   }
 }
 

@@ -28,6 +28,10 @@ struct EstimatorConfig {
   int init_min_views = 12;         ///< fewer views do not separate scale from accelerometer bias
   int init_max_views = 20;         ///< the buffer's length: slow motion needs the time
   double init_parallax_deg = 2.5;
+  double noise_gain = 0.05;        ///< adaptation of each camera's noise to its residuals, a packet
+  double noise_inflation = 2.5;    ///< sigma over the spread of the residuals: their errors last from image to image
+  double min_noise_scale = 0.3;    ///< bounds of the adapted noise over the configured one
+  double max_noise_scale = 4.0;
   LandmarkConfig landmarks;
   StandstillConfig standstill;
   void visit(ConfigFields& fields);
@@ -76,6 +80,7 @@ class Estimator {
   bool start_in_motion();
   void append(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
+  void adapt_noise();
   void slide();
   void drop_oldest_keyframe();
   void drop_recent(StateId id);

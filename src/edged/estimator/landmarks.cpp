@@ -104,6 +104,21 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   return wrong;
 }
 
+std::optional<double> median_residual(const Window& window, std::size_t camera) {
+  constexpr std::size_t kMinSights = 12;
+  std::vector<double> residuals;
+  for (const auto& [id, feature] : window.features) {
+    if (feature.camera != camera || !feature.anchor) continue;
+    for (const auto& [state, sight] : feature.seen) {
+      if (state != *feature.anchor) residuals.push_back(residual_sigmas(window, feature, state));
+    }
+  }
+  if (residuals.size() < kMinSights) return std::nullopt;
+  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+  std::nth_element(residuals.begin(), middle, residuals.end());
+  return *middle;
+}
+
 bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config) {
   const double depth = (window.T_W_C(to, feature.camera).inverse() * window.position(feature)).z();
   feature.anchor.reset();

@@ -22,6 +22,7 @@ NavState WindowState::nav() const {
 
 Window::Window(const Rig& rig, double cauchy_scale)
     : cameras(rig.cameras),
+      noise_scale(rig.cameras.size(), 1.0),
       last_image_(rig.cameras.size(), 0),
       visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {}
 
@@ -40,7 +41,8 @@ void Window::add_observations(StateId id, const std::vector<CameraObservations>&
       Feature& feature = features[observation.id];
       feature.camera = index;
       feature.last_seen = id;
-      feature.seen.insert_or_assign(id, observation);
+      FeatureObservation& sight = feature.seen.insert_or_assign(id, observation).first->second;
+      sight.sigma *= noise_scale[index];
     }
   }
 }

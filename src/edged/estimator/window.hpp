@@ -61,6 +61,7 @@ class Window {
   LinearPrior prior;
   std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
   std::vector<RigCamera> cameras;
+  std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
 
   /// Appends a state; ids are given in order of time.
   StateId add_state(WindowState state);
