@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/events/enhance.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+// OpenCV's kernels are not normalised: what a slope of one grey level per pixel gives.
+constexpr double kSobelPerSlope = 8.0, kScharrPerSlope = 32.0;
+
+cv::Mat gaussian(const cv::Mat& image, double sigma_px) {
+  cv::Mat blurred;
+  cv::GaussianBlur(image, blurred, cv::Size(), sigma_px, sigma_px, cv::BORDER_REFLECT_101);
+  return blurred;
+}
+
+cv::Mat equalise(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat equalised;
+  cv::createCLAHE(config.clahe_clip, cv::Size(config.clahe_tiles, config.clahe_tiles))->apply(image, equalised);
+  return equalised;
+}
+
+cv::Mat sharpen(const cv::Mat& clahe, const cv::Mat& blurred, const EnhanceConfig& config) {
+  const bool paper = config.sharpening == Sharpening::Paper;
+  const cv::Mat minus = paper ? blurred : gaussian(clahe, config.unsharp_sigma_px);
+  cv::Mat sharpened;
+  cv::addWeighted(clahe, 1.0 + config.sharpen_lambda, minus, -config.sharpen_lambda, 0.0, sharpened);
+  return sharpened;
+}
+
+/// gain * |gradient|, saturating.
+cv::Mat magnitude(const cv::Mat& gx, const cv::Mat& gy, MagnitudeNorm norm, double gain) {
+  cv::Mat sum, scaled;
+  if (norm == MagnitudeNorm::L1) {
+    cv::add(cv::abs(gx), cv::abs(gy), sum);
+  } else {
+    cv::magnitude(gx, gy, sum);
+  }
+  sum.convertTo(scaled, CV_8U, gain);
+  return scaled;
+}
+
+cv::Mat find_edges(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat gx, gy, edges;
+  switch (config.method) {
+    case EdgeMethod::Clahe:
+      return image;
+    case EdgeMethod::Canny:
+      cv::Canny(image, edges, kSobelPerSlope * config.canny_low, kSobelPerSlope * config.canny_high, 3,
+                config.norm == MagnitudeNorm::L2);
+      return edges;
+    case EdgeMethod::Laplacian:
+      cv::Laplacian(image, gx, CV_32F, 1);
+      cv::Mat(cv::abs(gx)).convertTo(edges, CV_8U, config.edge_gain);
+      return edges;
+    case EdgeMethod::Sobel:
+      cv::Sobel(image, gx, CV_32F, 1, 0, 3);
+      cv::Sobel(image, gy, CV_32F, 0, 1, 3);
+      return magnitude(gx, gy, config.norm, config.edge_gain / kSobelPerSlope);
+    case EdgeMethod::Scharr:
+      cv::Scharr(image, gx, CV_32F, 1, 0);
+      cv::Scharr(image, gy, CV_32F, 0, 1);
+      return magnitude(gx, gy, config.norm, config.edge_gain / kScharrPerSlope);
+    case EdgeMethod::None:
+      break;
+  }
+  EDGED_CHECK(false, "edge method {}", static_cast<int>(config.method));
+}
+
+cv::Mat erode(const cv::Mat& edges, int kernel_px) {
+  cv::Mat thin;
+  cv::erode(edges, thin, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(kernel_px, kernel_px)));
+  return thin;
+}
+
+/// Algorithm 1; calls note(name, image) after each of its steps.
+template <typename Note>
+cv::Mat run_algorithm(const cv::Mat& event_frame, const EnhanceConfig& config, Note&& note) {
+  EDGED_CHECK(event_frame.type() == CV_8UC1, "event frame of type {}", event_frame.type());
+  note("event_frame", event_frame);
+  if (config.method == EdgeMethod::None) {
+    note("result", event_frame);
+    return event_frame;
+  }
+  cv::Mat blurred = event_frame;
+  if (config.blur_sigma_px > 0.0) note("blur", blurred = gaussian(event_frame, config.blur_sigma_px));
+  cv::Mat image = blurred;
+  if (config.clahe_clip > 0.0) note("clahe", image = equalise(blurred, config));
+  if (config.sharpening != Sharpening::None) note("sharpened", image = sharpen(image, blurred, config));
+  cv::Mat edges = find_edges(image, config);
+  note("edge", edges);
+  if (config.erosion_px > 0) note("eroded", edges = erode(edges, config.erosion_px));
+  cv::Mat result;
+  cv::addWeighted(event_frame, config.event_weight, edges, config.edge_weight, 0.0, result);
+  note("result", result);
+  return result;
+}
+
+}  // namespace
+
+void EnhanceConfig::visit(ConfigFields& fields) {
+  fields.choice(
+      "method", method,
+      {{"none", EdgeMethod::None},
+       {"clahe", EdgeMethod::Clahe},
+       {"canny", EdgeMethod::Canny},
+       {"laplacian", EdgeMethod::Laplacian},
+       {"sobel", EdgeMethod::Sobel},
+       {"scharr", EdgeMethod::Scharr}},
+      {.effect = "enhancement of the event frame (Algorithm 1) by this edge map; none switches all of it off"});
+  fields.add("blur_sigma_px", blur_sigma_px, {"px", 0, 10, "Gaussian before the equalisation; 0 is off"});
+  fields.add("clahe_clip", clahe_clip,
+             {"", 0, 100, "contrast-limited equalisation: limit of its gain; 1 is weak, 4 strong, 0 is off"});
+  fields.add("clahe_tiles", clahe_tiles, {"", 1, 32, "the image is equalised in this many tiles each way"});
+  fields.choice(
+      "sharpening", sharpening,
+      {{"none", Sharpening::None}, {"paper", Sharpening::Paper}, {"unsharp", Sharpening::Unsharp}},
+      {.effect = "sharpening after the equalisation: the paper's form (clahe minus blur) or unsharp masking"});
+  fields.add("sharpen_lambda", sharpen_lambda, {"", 0, 10, "strength of the sharpening"});
+  fields.add("unsharp_sigma_px", unsharp_sigma_px, {"px", 0.3, 20, "Gaussian of unsharp masking"});
+  fields.add("edge_gain", edge_gain,
+             {"px", 0.01, 100,
+              "grey levels of the edge map per slope of 1 grey/px (Sobel, Scharr) or curvature of 1 grey/px^2 "
+              "(Laplacian)"});
+  fields.choice("norm", norm, {{"l2", MagnitudeNorm::L2}, {"l1", MagnitudeNorm::L1}},
+                {.effect = "slope from its two components (Sobel, Scharr, Canny): root of squares, or sum"});
+  fields.add("canny_low", canny_low, {"grey/px", 0, 255, "slope down to which Canny follows an edge"});
+  fields.add("canny_high", canny_high, {"grey/px", 0, 255, "slope that starts a Canny edge"});
+  fields.add("erosion_px", erosion_px,
+             {"px", 0, 15, "edge thinning: side of the square that erodes the edge map, odd; 0 is off"});
+  fields.add("event_weight", event_weight, {"", 0, 4, "alpha of Algorithm 1: share of the event frame in the result"});
+  fields.add("edge_weight", edge_weight,
+             {"", 0, 4, "beta of Algorithm 1: share of the edge map; sums above 1 saturate"});
+}
+
+void EnhanceConfig::validate(const std::string& group) const {
+  const auto refuse = [&group](bool contradiction, const char* text) {
+    if (contradiction) throw InputError(fmt::format(fmt::runtime(text), fmt::arg("g", group)));
+  };
+  refuse(erosion_px > 0 && erosion_px % 2 == 0,
+         "{g}.erosion_px is even, which would shift the edges by half a pixel: give an odd number, or 0 for none");
+  if (method == EdgeMethod::None) return;
+  refuse(event_weight + edge_weight <= 0.0,
+         "{g}.event_weight and {g}.edge_weight are both 0, which leaves a black image: raise one of them");
+  refuse(method == EdgeMethod::Canny && erosion_px > 0,
+         "{g}.erosion_px with {g}.method = canny: Canny's edges are one pixel wide and erosion would delete them all; "
+         "set {g}.erosion_px = 0 or take sobel, scharr or laplacian");
+  refuse(method == EdgeMethod::Clahe && erosion_px > 0,
+         "{g}.erosion_px with {g}.method = clahe: there is no edge map to thin; set {g}.erosion_px = 0 or take sobel, "
+         "scharr or laplacian");
+  refuse(method == EdgeMethod::Canny && canny_low > canny_high,
+         "{g}.canny_low is above {g}.canny_high: every edge that starts must be one that can be followed; swap them");
+  refuse(method == EdgeMethod::Clahe && clahe_clip <= 0.0,
+         "{g}.method = clahe with {g}.clahe_clip = 0: the equalisation is off; raise clahe_clip or set method = none");
+  refuse(sharpening == Sharpening::Paper && clahe_clip <= 0.0,
+         "{g}.sharpening = paper with {g}.clahe_clip = 0: without equalisation clahe minus blur is zero; raise "
+         "clahe_clip or take sharpening = unsharp");
+  refuse(sharpening != Sharpening::None && sharpen_lambda <= 0.0,
+         "{g}.sharpening with {g}.sharpen_lambda = 0 sharpens nothing: raise it, or set sharpening = none");
+}
+
+cv::Mat enhance(const cv::Mat& event_frame, const EnhanceConfig& config) {
+  return run_algorithm(event_frame, config, [](const char*, const cv::Mat&) {});
+}
+
+std::vector<EnhanceStage> enhancement_stages(const cv::Mat& event_frame, const EnhanceConfig& config) {
+  std::vector<EnhanceStage> stages;
+  run_algorithm(event_frame, config, [&stages](const char* name, const cv::Mat& image) {
+    stages.push_back({name, image.clone()});
+  });
+  return stages;
+}
+
+}  // namespace edged
