@@ -22,6 +22,7 @@ struct Channel {
   RigCamera camera;
   FeatureTracker tracker;
   cv::Mat image;      ///< of the present packet; empty when it brought none
+  cv::Mat corners;    ///< the image to find corners on: the same, or an enhanced one
   SE3 T_W_Blast;      ///< at the last image
   SE3 T_W_Bkeyframe;  ///< at the last keyframe
   bool any_image = false;
@@ -96,6 +97,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
       noise(imu_noise),
       estimator(rig_of_mode(rig, used_mode), imu_noise, used_config.estimator),
       scene_depth(used_config.initial_depth_m) {
+  config.validate();
   for (const RigCamera& camera : rig_of_mode(rig, mode).cameras) {
     if (camera.modality == Modality::Events) {
       const CameraModel ideal = ideal_pinhole(camera.model);
@@ -164,12 +166,14 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
   const CameraMotion motion = camera_motion(T_W_B, now.T_W_B, channels.front().camera.T_B_C);
   event_frame = renderer->render(packet.window(), motion, scene_depth);
-  channels.front().image = event_frame;
+  const cv::Mat enhanced = enhance(event_frame, config.enhance);
+  channels.front().image = config.enhance_track ? enhanced : event_frame;
+  channels.front().corners = config.enhance_detect ? enhanced : event_frame;
 }
 
 void Odometry::Impl::take_frame(const Packet& packet) {
   if (mode == Mode::Events) return;
-  channels.back().image = packet.frame ? packet.frame->image : cv::Mat();
+  channels.back().image = channels.back().corners = packet.frame ? packet.frame->image : cv::Mat();
   if (packet.frame) last_frame = packet.t;
 }
 
@@ -219,7 +223,7 @@ void Odometry::Impl::mark_keyframe(Timestamp t) {
   const auto timer = timings.measure("detect");
   for (Channel& channel : channels) {
     if (channel.image.empty()) continue;
-    channel.tracker.detect(channel.image, next_feature);
+    channel.tracker.detect(channel.corners, next_feature);
     channel.tracker.mark_keyframe();
     channel.T_W_Bkeyframe = now.T_W_B;
   }

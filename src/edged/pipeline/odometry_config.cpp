@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/odometry_config.hpp"
 
+#include "edged/core/check.hpp"
+
 namespace edged {
 
 OdometryConfig::OdometryConfig() {
@@ -11,6 +13,9 @@ OdometryConfig::OdometryConfig() {
 void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
+  fields.group("enhance", enhance);
+  fields.add("enhance.detect", enhance_detect, {.effect = "find new corners on the enhanced event frame, not the plain one"});
+  fields.add("enhance.track", enhance_track, {.effect = "follow corners on the enhanced event frame, not the plain one"});
   fields.group("event_tracker", event_tracker);
   fields.group("frame_tracker", frame_tracker);
   fields.group("keyframes", keyframes);
@@ -22,6 +27,15 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.add("degraded_after_s", degraded_after_s, {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
   fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
   fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
+}
+
+void OdometryConfig::validate() const {
+  enhance.validate("enhance");
+  if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
+    throw InputError(
+        "enhance.method with enhance.detect and enhance.track both off: nothing would use the enhanced frame; turn one "
+        "on, or set enhance.method = none");
+  }
 }
 
 }  // namespace edged

@@ -6,6 +6,7 @@
 #include "edged/core/config.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/events/accumulate.hpp"
+#include "edged/events/enhance.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/tracker.hpp"
 #include "edged/pipeline/packetizer.hpp"
@@ -17,6 +18,9 @@ struct OdometryConfig {
 
   PacketizerConfig packets;
   EventFrameConfig event_frame;
+  EnhanceConfig enhance;
+  bool enhance_detect = true;  ///< find corners on the enhanced event frame
+  bool enhance_track = false;  ///< follow them on it too
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
@@ -29,6 +33,9 @@ struct OdometryConfig {
   int min_landmarks = 8;             ///< seen by the newest state, for a Good pose
 
   void visit(ConfigFields& fields);
+
+  /// Throws InputError with the reason when options contradict each other.
+  void validate() const;
 };
 
 }  // namespace edged
