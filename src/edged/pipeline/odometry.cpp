@@ -85,6 +85,7 @@ struct Odometry::Impl {
   FeatureId next_feature = 1;
   NavState now;                     ///< predicted, then optimised; before the start attitude by gyro only
   std::vector<StampedPose> T_W_B;   ///< body poses at the IMU samples, back to the oldest event of a packet's window
+  bool gyro_saturated = false;      ///< since the last keyframe
   bool quiet = false;               ///< the event camera sees nothing move
   double scene_depth;
   std::optional<Timestamp> last_keyframe, last_frame, last_supported;
@@ -135,6 +136,9 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
 
 void Odometry::Impl::predict(const Packet& packet) {
   const auto timer = timings.measure("predict");
+  gyro_saturated |= std::any_of(packet.imu.begin(), packet.imu.end(), [this](const ImuSample& sample) {
+    return sample.gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation;
+  });
   const Timestamp oldest = packet.t - duration_from_seconds(config.packets.max_age_s);
   std::erase_if(T_W_B, [&](const StampedPose& pose) { return pose.t < oldest || pose.t >= packet.imu.front().t; });
   if (estimator.initialized()) {
@@ -196,7 +200,8 @@ void Odometry::Impl::reject(Channel& channel) {
   const auto timer = timings.measure("reject");
   const Eigen::Matrix3d R_Bkf_B = (channel.T_W_Bkeyframe.rotation().conjugate() * now.T_W_B.rotation()).toRotationMatrix();
   const Eigen::Matrix3d R_B_C = channel.camera.T_B_C.R();
-  channel.tracker.reject_outliers(FeatureTracker::Reference::Keyframe, R_B_C.transpose() * R_Bkf_B * R_B_C);
+  const std::optional<Eigen::Matrix3d> R_Ckf_C = R_B_C.transpose() * R_Bkf_B * R_B_C;
+  channel.tracker.reject_outliers(FeatureTracker::Reference::Keyframe, gyro_saturated ? std::nullopt : R_Ckf_C);
 }
 
 bool Odometry::Impl::is_keyframe(const Packet& packet) const {
@@ -228,6 +233,7 @@ void Odometry::Impl::mark_keyframe(Timestamp t) {
     channel.T_W_Bkeyframe = now.T_W_B;
   }
   last_keyframe = t;
+  gyro_saturated = false;
 }
 
 EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
