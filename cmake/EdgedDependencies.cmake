@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Every library comes from Debian 12; scripts/setup.sh installs them.
 find_package(Eigen3 3.4 REQUIRED)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs video features2d calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs video features2d calib3d dnn)
 find_package(Ceres 2.1 REQUIRED)
 find_package(opengv REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Landmarks and network together: the landmarks give the scale, the network carries on where they are missing.
+#pragma once
+
+#include <memory>
+
+#include "edged/depth/landmark_depth.hpp"
+#include "edged/depth/network_depth.hpp"
+
+namespace edged {
+
+/// The scale s of a depth source, as ln s: a Kalman filter over one number with a prior and a slow random walk.
+struct ScaleConfig {
+  double prior_sigma = 0.5;         ///< of ln s around 0
+  double walk = 0.05;               ///< random walk of ln s [1/sqrt(s)]
+  double measurement_sigma = 0.35;  ///< of one window's ln ratio: error of the network that changes with time
+
+  void visit(ConfigFields& fields);
+};
+
+class ScaleEstimate {
+ public:
+  explicit ScaleEstimate(const ScaleConfig& config) : config_(config), sigma_(config.prior_sigma) {}
+
+  /// ln of the true depth over the source's; beyond two sigma it weighs less, so that an outlier moves ln s little.
+  void update(Timestamp t, double ln_ratio);
+
+  double ln_scale() const { return ln_scale_; }
+  double sigma() const { return sigma_; }
+
+ private:
+  ScaleConfig config_;
+  double ln_scale_ = 0.0, sigma_;
+  std::optional<Timestamp> t_;
+};
+
+/// The mean of ln depth, weighted by inverse variance, of the landmarks and of s times the network; without either, the
+/// constant. s is learned wherever both are there.
+class FusedDepth : public DepthPrior {
+ public:
+  FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network,
+             const ScaleConfig& scale);
+
+  void add_events(std::span<const Event> events) override;
+  void add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) override {
+    landmarks_.add_landmarks(t, landmarks);
+  }
+  std::optional<DepthEstimate> at(Timestamp t) const override;
+
+  const ScaleEstimate& scale() const { return scale_; }
+  const NetworkDepth& network() const { return *network_; }
+
+ private:
+  ConstantDepth constant_;
+  LandmarkDepth landmarks_;
+  std::unique_ptr<NetworkDepth> network_;
+  ScaleEstimate scale_;
+};
+
+}  // namespace edged

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/depth/landmark_depth.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "edged/depth/robust.hpp"
+#include "edged/events/voxel_grid.hpp"
+
+namespace edged {
+
+void LandmarkDepthConfig::visit(ConfigFields& fields) {
+  fields.add("min_landmarks", min_landmarks, {"", 1, 1000, "in the central region, for a measurement of its depth"});
+}
+
+LandmarkDepth::LandmarkDepth(const CameraModel& camera, double region_share, const LandmarkDepthConfig& config,
+                             const DepthFilterConfig& filter)
+    : config_(config), filter_(filter) {
+  const cv::Rect region = central_region(cv::Size(camera.width(), camera.height()), region_share);
+  low_ = camera.pixel_to_point(Eigen::Vector2d(region.x - 0.5, region.y - 0.5));
+  high_ = camera.pixel_to_point(Eigen::Vector2d(region.x + region.width - 0.5, region.y + region.height - 0.5));
+}
+
+void LandmarkDepth::add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) {
+  std::vector<double> logs;
+  for (const SeenDepth& seen : landmarks) {
+    const bool inside = (seen.point.array() >= low_.array()).all() && (seen.point.array() <= high_.array()).all();
+    if (inside && seen.depth_m > 0.0) logs.push_back(std::log(seen.depth_m));
+  }
+  if (static_cast<int>(logs.size()) < config_.min_landmarks) return;
+  const double middle = upper_median(logs), spread = robust_deviation(logs, middle);
+  // The median of n values is known to 1.25 spread / sqrt(n); a twentieth for what they have in common.
+  const double sigma = std::hypot(0.05, 1.25 * spread / std::sqrt(static_cast<double>(logs.size())));
+  filter_.add({t, std::exp(middle), sigma, spread});
+}
+
+}  // namespace edged

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/depth/network.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+
+#include "edged/core/check.hpp"
+#include "edged/events/voxel_grid.hpp"
+
+namespace edged {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// OpenCV writes what it throws to the terminal as well; the exception is enough.
+class QuietOpenCv {
+ public:
+  QuietOpenCv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietOpenCv() { cv::utils::logging::setLogLevel(before_); }
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel before_;
+};
+
+std::string first_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.substr(0, 160);
+}
+
+DepthModel parse_model(const nlohmann::json& json) {
+  DepthModel model;
+  model.name = json.at("name").get<std::string>();
+  model.note = json.value("note", "");
+  model.bins = json.at("bins").get<int>();
+  model.multiple = json.at("multiple").get<int>();
+  model.d_max_m = json.at("d_max_m").get<double>();
+  model.alpha = json.at("alpha").get<double>();
+  model.focal_px = json.value("focal_px", 0.0);
+  model.window_s = json.value("window_s", model.window_s);
+  model.sigma_ln = json.value("sigma_ln", model.sigma_ln);
+  for (const nlohmann::json& state : json.value("states", nlohmann::json::array()))
+    model.states.push_back(
+        {state.at("name").get<std::string>(), state.at("channels").get<int>(), state.at("divisor").get<int>()});
+  return model;
+}
+
+void check_ranges(const DepthModel& m, const fs::path& file) {
+  const auto want = [&file](bool good, const char* key, const char* range) {
+    if (!good) throw InputError::format("{}: '{}' is out of range; it must be {}", file.string(), key, range);
+  };
+  want(m.bins >= 2 && m.bins <= 64, "bins", "2 .. 64");
+  want(m.multiple >= 1 && m.multiple <= 64, "multiple", "1 .. 64");
+  want(m.d_max_m > 0.0 && std::isfinite(m.d_max_m), "d_max_m", "positive");
+  want(m.alpha > 0.0 && m.alpha < 100.0, "alpha", "positive");
+  want(m.focal_px >= 0.0, "focal_px", "the focal length in training, or 0");
+  want(m.window_s > 0.0 && m.window_s < 10.0, "window_s", "positive");
+  want(m.sigma_ln > 0.0, "sigma_ln", "positive");
+  for (const DepthModel::State& state : m.states)
+    want(state.channels > 0 && state.divisor > 0 && m.multiple % state.divisor == 0, "states",
+         "channels > 0 and a divisor of 'multiple'");
+}
+
+}  // namespace
+
+struct DepthNetwork::Runtime {
+  cv::dnn::Net net;
+};
+
+fs::path find_depth_model(const std::string& name_or_path) {
+  if (fs::path(name_or_path).has_extension()) return name_or_path;
+  const fs::path folder = EDGED_DEPTH_FOLDER;
+  const fs::path file = folder / (name_or_path + ".onnx");
+  if (fs::exists(file)) return file;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".onnx") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  throw InputError::format("there is no depth model '{}' in {}; choose one of {} or give the path of an .onnx file",
+                           name_or_path, folder.string(), fmt::join(names, ", "));
+}
+
+DepthModel read_depth_model(const fs::path& onnx) {
+  const fs::path file = fs::path(onnx).replace_extension(".json");
+  std::ifstream stream(file);
+  if (!stream)
+    throw InputError::format("{}: cannot be read; a depth model needs it beside its .onnx (docs/depth_model.md)",
+                             file.string());
+  try {
+    const DepthModel model = parse_model(nlohmann::json::parse(stream));
+    check_ranges(model, file);
+    return model;
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError::format("{}: {}; docs/depth_model.md lists the keys", file.string(), first_line(e.what()));
+  }
+}
+
+DepthNetwork::DepthNetwork(const fs::path& onnx) : file_(onnx), runtime_(std::make_unique<Runtime>()) {
+  if (!fs::is_regular_file(onnx))
+    throw InputError::format("{}: there is no such file; `edged depth` tells where models come from", onnx.string());
+  model_ = read_depth_model(onnx);
+  const QuietOpenCv quiet;
+  try {
+    runtime_->net = cv::dnn::readNetFromONNX(onnx.string());
+    runtime_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    runtime_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    const int side = 2 * model_.multiple;
+    infer(cv::Mat(std::vector<int>{1, model_.bins, side, side}, CV_32FC1, cv::Scalar(0)));
+  } catch (const cv::Exception& e) {
+    throw InputError::format("{}: cannot be used as a depth network ({}); make it with tools/depth", onnx.string(),
+                             first_line(e.err));
+  }
+  reset();
+}
+
+DepthNetwork::~DepthNetwork() = default;
+
+cv::Mat DepthNetwork::forward(const cv::Mat& padded) {
+  cv::dnn::Net& net = runtime_->net;
+  const int height = padded.size[2], width = padded.size[3];
+  std::vector<cv::String> names{"depth"};
+  net.setInput(padded, "events");
+  for (std::size_t i = 0; i < model_.states.size(); ++i) {
+    const DepthModel::State& state = model_.states[i];
+    const std::vector<int> size{1, state.channels, height / state.divisor, width / state.divisor};
+    if (states_.size() <= i) states_.emplace_back();
+    if (states_[i].dims != 4 || states_[i].size[2] != size[2] || states_[i].size[3] != size[3])
+      states_[i] = cv::Mat(size, CV_32FC1, cv::Scalar(0));
+    net.setInput(states_[i], state.name + "_in");
+    names.push_back(state.name + "_out");
+  }
+  std::vector<cv::Mat> outputs;
+  net.forward(outputs, names);
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    states_[i] = outputs[i + 1].clone();  // the network reuses its memory
+  return outputs[0];
+}
+
+cv::Mat DepthNetwork::infer(const cv::Mat& grid) {
+  EDGED_CHECK(grid.dims == 4 && grid.size[1] == model_.bins, "a grid of {} dimensions for {} bins", grid.dims,
+              model_.bins);
+  const int height = grid.size[2], width = grid.size[3];
+  const cv::Mat padded = pad_voxels(grid, model_.multiple);
+  const cv::Mat output = forward(padded);
+  if (output.dims != 4 || output.size[1] != 1 || output.size[2] != padded.size[2] || output.size[3] != padded.size[3])
+    throw InputError::format("{}: its output 'depth' does not have the size of its input; make it with tools/depth",
+                             file_.string());
+  const cv::Mat full(output.size[2], output.size[3], CV_32FC1, const_cast<float*>(output.ptr<float>()));
+  const Padding x = padding_to_multiple(width, model_.multiple), y = padding_to_multiple(height, model_.multiple);
+  cv::Mat depth(height, width, CV_32FC1);
+  for (int row = 0; row < height; ++row) {
+    const float* from = full.ptr<float>(row + y.before) + x.before;
+    float* to = depth.ptr<float>(row);
+    for (int column = 0; column < width; ++column)
+      to[column] = static_cast<float>(model_.d_max_m * std::exp(model_.alpha * (from[column] - 1.0)));
+  }
+  return depth;
+}
+
+}  // namespace edged

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A depth network from an ONNX file: voxel grid in, z-depth in metres out. One thread, deterministic.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+namespace edged {
+
+/// What the json file beside the model says of it.
+struct DepthModel {
+  std::string name, note;
+  int bins = 5;
+  int multiple = 8;       ///< sides of the input are multiples of this
+  double d_max_m = 80.0;  ///< depth = d_max exp(-alpha (1 - output))
+  double alpha = 3.70378;
+  double focal_px = 0.0;   ///< of the camera it was trained with; 0: not known, depths are not scaled
+  double window_s = 0.05;  ///< of events it was trained with
+  double sigma_ln = 0.7;   ///< rms error of ln depth to expect
+  struct State {
+    std::string name;  ///< input NAME_in, output NAME_out
+    int channels = 0;
+    int divisor = 1;  ///< of the input's sides
+  };
+  std::vector<State> states;  ///< empty: not recurrent
+};
+
+/// NAME (config/depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models there are.
+std::filesystem::path find_depth_model(const std::string& name_or_path);
+
+/// Reads MODEL.json for MODEL.onnx. Throws InputError naming the file and key.
+DepthModel read_depth_model(const std::filesystem::path& onnx);
+
+class DepthNetwork {
+ public:
+  /// Throws InputError when a file is missing, is no ONNX or does not fit its json.
+  explicit DepthNetwork(const std::filesystem::path& onnx);
+  ~DepthNetwork();
+
+  const DepthModel& model() const { return model_; }
+
+  /// z-depth [m], CV_32FC1, of every pixel of a normalised grid (events/voxel_grid.hpp) of any size that is at least
+  /// `multiple` on both sides. A recurrent network goes on from the state of the window before, unless the size
+  /// changed.
+  cv::Mat infer(const cv::Mat& grid);
+
+  /// Forgets the state.
+  void reset() { states_.clear(); }
+
+ private:
+  cv::Mat forward(const cv::Mat& padded);
+
+  struct Runtime;  // cv::dnn stays in network.cpp
+
+  DepthModel model_;
+  std::filesystem::path file_;
+  std::unique_ptr<Runtime> runtime_;
+  std::vector<cv::Mat> states_;
+};
+
+}  // namespace edged

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/depth/network_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+#include "edged/depth/robust.hpp"
+#include "edged/events/voxel_grid.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kForgetAfter = std::chrono::seconds(5);  // a recurrent network starts afresh
+
+}  // namespace
+
+void NetworkDepthConfig::visit(ConfigFields& fields) {
+  fields.add("model", model, {.effect = "name of a network in config/depth, or the path of an .onnx file"});
+  fields.add("margin_px", margin_px, {"px", 0, 4096, "the network sees that much more than the region on each side"});
+  fields.add("min_events_per_pixel", min_events_per_pixel,
+             {"", 0, 100, "a window with fewer events around the region gives no depth"});
+}
+
+NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,
+                           const DepthFilterConfig& filter)
+    : config_(config),
+      network_(find_depth_model(config.model)),
+      window_(duration_from_seconds(network_.model().window_s)),
+      filter_(filter) {
+  const cv::Size image(camera.width(), camera.height());
+  const cv::Rect region = central_region(image, region_share);
+  seen_ = grown_region(region, config.margin_px, image);
+  region_ = region - seen_.tl();
+  const int least = network_.model().multiple;
+  if (seen_.width < least || seen_.height < least)
+    throw InputError::format(
+        "option 'network.margin_px' leaves {} x {} pixels to the depth network, which wants {} x {}", seen_.width,
+        seen_.height, least, least);
+  if (network_.model().focal_px > 0.0) scale_ = camera.mean_focal() / network_.model().focal_px;
+}
+
+void NetworkDepth::add_events(std::span<const Event> events) {
+  for (const Event& event : events) {
+    if (!events_.empty() && event.t < events_.back().t) continue;
+    if (!events_.empty() && event.t - events_.front().t >= window_) {
+      const Timestamp end = events_.back().t;
+      end_window();
+      if (event.t - end > kForgetAfter) network_.reset();
+    }
+    events_.push_back(event);
+  }
+}
+
+void NetworkDepth::end_window() {
+  const std::vector<Event> window = std::exchange(events_, {});
+  const auto is_seen = [this](const Event& event) { return seen_.contains(cv::Point(event.x, event.y)); };
+  if (static_cast<double>(std::count_if(window.begin(), window.end(), is_seen)) <
+      config_.min_events_per_pixel * seen_.area())
+    return;
+  cv::Mat grid = voxel_grid(window, seen_, network_.model().bins);
+  normalise_voxels(grid);
+  const cv::Mat depth = network_.infer(grid)(region_);
+  ++inferences_;
+  std::vector<double> logs;
+  logs.reserve(depth.total());
+  for (int y = 0; y < depth.rows; ++y)
+    for (int x = 0; x < depth.cols; ++x) logs.push_back(std::log(scale_ * static_cast<double>(depth.at<float>(y, x))));
+  const double middle = upper_median(logs);
+  measured_ = {window.back().t, std::exp(middle), network_.model().sigma_ln, robust_deviation(logs, middle)};
+  filter_.add(*measured_);
+}
+
+}  // namespace edged

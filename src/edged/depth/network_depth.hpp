@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The scene depth of the central region by a network, from windows of events.
+#pragma once
+
+#include <opencv2/core/types.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/camera/camera_model.hpp"
+#include "edged/depth/depth_filter.hpp"
+#include "edged/depth/network.hpp"
+
+namespace edged {
+
+struct NetworkDepthConfig {
+  std::string model = "small";         ///< of config/depth, or the path of an ONNX file
+  int margin_px = 16;                  ///< the network sees that much more than the region on each side
+  double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
+
+  void visit(ConfigFields& fields);
+};
+
+/// Cuts the events into windows of the model's length and runs the network at the end of each, within add_events. Only
+/// the pixels around the central region reach it. Depths are scaled by the ratio of the focal lengths, for which an
+/// image looks the same.
+class NetworkDepth : public DepthPrior {
+ public:
+  /// Throws InputError when the model cannot be used or the image is too small for it.
+  NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,
+               const DepthFilterConfig& filter);
+
+  void add_events(std::span<const Event> events) override;
+  std::optional<DepthEstimate> at(Timestamp t) const override { return filter_.at(t); }
+
+  const DepthModel& model() const { return network_.model(); }
+  /// The last measurement, before validity and smoothing.
+  const std::optional<DepthEstimate>& measured() const { return measured_; }
+  /// Windows the network has seen.
+  int inferences() const { return inferences_; }
+
+ private:
+  void end_window();
+
+  NetworkDepthConfig config_;
+  DepthNetwork network_;
+  cv::Rect seen_, region_;  // of the image; region_ within seen_
+  double scale_ = 1.0;
+  Duration window_;
+  std::vector<Event> events_;  // of the open window
+  std::optional<DepthEstimate> measured_;
+  DepthFilter filter_;
+  int inferences_ = 0;
+};
+
+}  // namespace edged
