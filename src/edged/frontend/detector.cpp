@@ -133,13 +133,56 @@ std::vector<Candidate> strongest_apart(std::vector<Candidate> found) {
   return kept;
 }
 
+/// The image at one scale; factor: its pixels in pixels of the image itself.
+struct Scale {
+  cv::Mat image;
+  double factor = 1.0;
+};
+
+std::vector<Scale> scales_of(const cv::Mat& image, int levels) {
+  std::vector<Scale> scales{{image, 1.0}};
+  for (int level = 1; level < levels; ++level) {
+    const double factor = scales.back().factor * DetectorConfig::kLevelFactor;
+    cv::Mat smaller;
+    const cv::Size size(cvRound(image.cols / factor), cvRound(image.rows / factor));
+    if (size.empty()) break;
+    cv::resize(scales.back().image, smaller, size, 0, 0, cv::INTER_LINEAR_EXACT);
+    scales.push_back({smaller, factor});
+  }
+  return scales;
+}
+
+/// The corners of all scales in a cell, in pixels of the image. On a smooth corner the Harris score grows with the
+/// scale's factor to the fourth, as a scale-normalised one does: the scores compare.
+std::vector<Candidate> corners_at(const std::vector<Scale>& scales, const cv::Rect& cell,
+                                  const DetectorConfig& config) {
+  std::vector<Candidate> found = corners_in(scales.front().image, cell, config);
+  constexpr int kBorder = kHarrisHalf + 2;
+  for (std::size_t level = 1; level < scales.size(); ++level) {
+    const auto& [image, factor] = scales[level];
+    const cv::Point first(cvCeil(cell.x / factor), cvCeil(cell.y / factor));
+    const cv::Point end(cvCeil(cell.br().x / factor), cvCeil(cell.br().y / factor));
+    const cv::Rect inner(kBorder, kBorder, image.cols - 2 * kBorder, image.rows - 2 * kBorder);
+    if (inner.width <= 0 || inner.height <= 0) break;
+    const cv::Rect visible = cv::Rect(first, end) & inner;
+    if (visible.empty()) continue;
+    for (Candidate& c : corners_in(image, visible, config)) {
+      c.x = std::clamp(cvRound((c.x + 0.5) * factor - 0.5), cell.x, cell.br().x - 1);
+      c.y = std::clamp(cvRound((c.y + 0.5) * factor - 0.5), cell.y, cell.br().y - 1);
+      found.push_back(c);
+    }
+  }
+  return found;
+}
+
 std::vector<Candidate> candidates(const cv::Mat& image, const Grid& grid, const cv::Rect& inner,
                                   const DetectorConfig& config) {
+  const std::vector<Scale> scales = scales_of(image, config.levels);
   std::vector<Candidate> all;
   for (int cell = 0; cell < grid.count(); ++cell) {
     const cv::Rect visible = grid.rectangle(cell) & inner;
     if (grid.taken(cell) || visible.empty()) continue;
-    for (Candidate& c : strongest_apart(corners_in(image, visible, config))) c.cell = cell, all.push_back(c);
+    for (Candidate& c : strongest_apart(corners_at(scales, visible, config))) c.cell = cell, all.push_back(c);
   }
   std::sort(all.begin(), all.end(), stronger);
   return all;
@@ -170,6 +213,8 @@ void DetectorConfig::visit(ConfigFields& fields) {
               .min = 6,
               .max = 120,
               .effect = "side of a grid cell in an image 240 px wide; grows with the width"});
+  fields.add("levels", levels,
+             {.unit = "1", .min = 1, .max = 8, .effect = "scales to find corners at, each 1.2 times coarser (as ORB)"});
   fields.add("separation_px", separation_px,
              {.unit = "px",
               .min = 0,

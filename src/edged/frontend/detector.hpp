@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Corner detection on a grid: the strongest corner of every cell that holds no live track (paper Eq. 3).
+// Corner detection on a grid: the strongest corner of every cell that holds no live track (paper Eq. 3, "grid ORB").
+// The grid has C = round(width / cell) columns and R = round(height / cell) rows, with cell = cell_px * width / 240;
+// cells differ by at most a pixel, and none of the image is left over.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,20 +15,26 @@
 namespace edged {
 
 enum class CornerKind {
-  FastHarris,  ///< FAST-9 candidates ranked by the Harris score, as in ORB (Rublee et al., 2011)
-  ShiTomasi,   ///< local maxima of the smaller eigenvalue of the structure tensor (Shi and Tomasi, 1994)
+  /// FAST-9 candidates ranked by the Harris score: the detector of ORB (Rublee et al., 2011), so there is no kind Orb
+  /// beside it. What ORB adds are scales (DetectorConfig::levels), a cut to the strongest of the whole image, which
+  /// would come before the grid and defeat it, and descriptors, which tracking by optical flow does not use.
+  FastHarris,
+  ShiTomasi,  ///< local maxima of the smaller eigenvalue of the structure tensor (Shi and Tomasi, 1994)
 };
 
 struct DetectorConfig {
   CornerKind corners = CornerKind::FastHarris;
   int max_features = 120;
   double cell_px = 20.0;
+  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
   double separation_px = 8.0;
   int border_px = 8;
   int fast_threshold = 20;
   int fast_threshold_low = 8;
   double min_gradient = 2.0;
   bool subpixel = false;
+
+  static constexpr double kLevelFactor = 1.2;  ///< as ORB
 
   void visit(ConfigFields& fields);
 };

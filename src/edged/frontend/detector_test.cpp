@@ -93,6 +93,30 @@ TEST_P(Detector, StaysOffTheBorder) {
   }
 }
 
+TEST_P(Detector, MeetsTheSameRulesOnSeveralScales) {
+  config_.levels = 4;
+  const auto corners = detect_corners(random_texture(240, 180), {}, 1000, config_);
+  EXPECT_GT(corners.size(), 70U);
+  std::set<int> cells;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_TRUE(cells.insert(cell_of(corners[i].pixel)).second);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT((corners[i].pixel - corners[j].pixel).norm(), config_.separation_px);
+  }
+  EXPECT_NO_THROW(detect_corners(random_texture(14, 12), {}, 100, config_));
+}
+
+TEST(DetectorLevels, FindBlurredCornersNearTheirPlace) {
+  cv::Mat image = squares({{94, 74}});
+  cv::GaussianBlur(image, image, cv::Size(), 3.0);
+  DetectorConfig config;
+  config.fast_threshold = config.fast_threshold_low = 40;
+  EXPECT_TRUE(detect_corners(image, {}, 100, config).empty());  // too smooth for a circle of 3 px
+  config.levels = 6;
+  const auto corners = detect_corners(image, {}, 100, config);
+  EXPECT_GE(corners.size(), 2U);
+  for (const Corner& c : corners) EXPECT_LT((c.pixel - Eigen::Vector2d(99.5, 79.5)).cwiseAbs().maxCoeff(), 9.0);
+}
+
 TEST_P(Detector, ScalesTheGridWithTheWidth) {
   const auto corners = detect_corners(random_texture(752, 480), {}, 1000, config_);
   EXPECT_GT(corners.size(), 60U);
