@@ -11,6 +11,7 @@
 
 #include "config_command.hpp"
 #include "edged/core/check.hpp"
+#include "enhance_command.hpp"
 #include "eval_command.hpp"
 #include "exit_code.hpp"
 #include "log.hpp"
@@ -42,6 +43,7 @@ int run_program(int argc, char** argv) {
   add_run_command(app, chosen);
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
+  add_enhance_command(app, chosen);
   add_config_command(app, chosen);
   try {
     app.parse(argc, argv);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "config_source.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
@@ -28,8 +29,7 @@ namespace {
 
 struct RunOptions {
   SourceOptions source;
-  std::filesystem::path config_file;
-  std::vector<std::string> assignments;
+  ConfigSource config;
   std::string mode = "auto";
   std::string frame = "auto";
   std::filesystem::path out;
@@ -90,14 +90,6 @@ Mode choose_mode(const std::string& wanted, const DatasetInfo& info) {
     throw InputError::format("{}: has no frames; use --mode events", info.name);
   }
   return mode;
-}
-
-OdometryConfig load_config(const RunOptions& options) {
-  OdometryConfig config;
-  ConfigFields fields = ConfigFields::of(config);
-  if (!options.config_file.empty()) fields.load(options.config_file);
-  for (const std::string& assignment : options.assignments) fields.set(assignment);
-  return config;
 }
 
 std::filesystem::path run_folder_path(const RunOptions& options, const DatasetInfo& info, Mode mode) {
@@ -286,7 +278,7 @@ void Run::write_overview(const RunSummary& summary, const std::optional<GroundTr
 }
 
 int run(const RunOptions& options) {
-  const OdometryConfig config = load_config(options);
+  const OdometryConfig config = load_config(options.config);
   const RunSummary summary = Run(options, open_source(options.source), config).go();
   fmt::print("{}", options.json ? to_json(summary).dump(2) + "\n" : to_table(summary));
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
@@ -303,10 +295,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::Option* rig =
       run_app->add_option("--rig", options->source.rig, "Calibration that ships with the program, by name");
   run_app->add_option("--calib", options->source.calib, "Calibration file or folder")->excludes(rig);
-  run_app->add_option("--config", options->config_file, "Options file (yaml); `edged config --yaml` prints one");
-  run_app->add_option("--set", options->assignments, "One option as key=value; may be repeated")
-      ->allow_extra_args(false);
-  run_app->add_option("KEY=VALUE", options->assignments, "More options, as with --set");
+  add_config_options(*run_app, options->config);
+  run_app->add_option("KEY=VALUE", options->config.assignments, "More options, as with --set");
   run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
       ->capture_default_str();

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "config_source.hpp"
+
+namespace edged {
+
+void add_config_options(CLI::App& command, ConfigSource& source) {
+  command.add_option("--config", source.file, "Options file (yaml); `edged config --yaml` prints one");
+  command.add_option("--set", source.assignments, "One option as key=value; may be repeated")->allow_extra_args(false);
+}
+
+OdometryConfig load_config(const ConfigSource& source) {
+  OdometryConfig config;
+  ConfigFields fields = ConfigFields::of(config);
+  if (!source.file.empty()) fields.load(source.file);
+  for (const std::string& assignment : source.assignments) fields.set(assignment);
+  return config;
+}
+
+}  // namespace edged

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Options of the odometry as the command line gives them: a file, then single values on top of it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "edged/pipeline/odometry_config.hpp"
+
+namespace edged {
+
+struct ConfigSource {
+  std::filesystem::path file;
+  std::vector<std::string> assignments;  ///< "key=value"
+};
+
+/// Adds --config and --set.
+void add_config_options(CLI::App& command, ConfigSource& source);
+
+/// Throws InputError that names the file and line, or the key.
+OdometryConfig load_config(const ConfigSource& source);
+
+}  // namespace edged

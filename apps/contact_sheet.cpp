@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "contact_sheet.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace edged {
+namespace {
+
+const cv::Scalar kPaper(255, 255, 255), kInk(60, 50, 40);
+constexpr int kMargin = 14, kCellWidth = 400, kCaption = 22, kTitleLine = 24;
+
+void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size) {
+  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
+}
+
+int scaled_height(const cv::Mat& image) {
+  return image.empty() ? 0 : cvRound(1.0 * kCellWidth * image.rows / image.cols);
+}
+
+int row_height(const SheetRow& row) {
+  int height = 0;
+  for (const SheetCell& cell : row) height = std::max(height, scaled_height(cell.image));
+  return kCaption + height + kMargin;
+}
+
+void draw_cell(cv::Mat& canvas, const SheetCell& cell, cv::Point at) {
+  if (cell.image.empty()) return;
+  put_text(canvas, cell.caption, at + cv::Point(0, kCaption - 7), 0.45);
+  cv::Mat colour, sized;
+  cv::cvtColor(cell.image, colour, cv::COLOR_GRAY2BGR);
+  const cv::Size size(kCellWidth, scaled_height(cell.image));
+  cv::resize(colour, sized, size, 0, 0, size.width < colour.cols ? cv::INTER_AREA : cv::INTER_NEAREST);
+  sized.copyTo(canvas(cv::Rect(at + cv::Point(0, kCaption), size)));
+}
+
+}  // namespace
+
+cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows) {
+  std::size_t columns = 1;
+  int height = kMargin + kTitleLine * static_cast<int>(title.size());
+  for (const SheetRow& row : rows) columns = std::max(columns, row.size()), height += row_height(row);
+  const int width = kMargin + static_cast<int>(columns) * (kCellWidth + kMargin);
+  cv::Mat canvas(height, width, CV_8UC3, kPaper);
+  int y = kMargin;
+  for (const std::string& line : title) put_text(canvas, line, {kMargin, y + 14}, 0.5), y += kTitleLine;
+  for (const SheetRow& row : rows) {
+    int x = kMargin;
+    for (const SheetCell& cell : row) draw_cell(canvas, cell, {x, y}), x += kCellWidth + kMargin;
+    y += row_height(row);
+  }
+  return canvas;
+}
+
+}  // namespace edged
