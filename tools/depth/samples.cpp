@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Training samples of the depth network: random simulated scenes, voxel grids of a central region, and its true z-depth.
+// Training samples of the depth network: random simulated scenes, voxel grids of a central region, and its true
+// z-depth.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,14 +18,14 @@
 namespace edged {
 namespace {
 
-constexpr int kSide = 128;                   // of the region [px]
+constexpr int kSide = 128;  // of the region [px]
 constexpr int kBins = 5;
-constexpr int kDepthStride = 4;              // the depth map is that much smaller
+constexpr int kDepthStride = 4;  // the depth map is that much smaller
 constexpr Duration kWindow = std::chrono::milliseconds(50);
 constexpr int kMinEvents = kSide * kSide / 20;
-constexpr double kMaxMotionPx = 0.7;         // between renders
+constexpr double kMaxMotionPx = 0.7;  // between renders
 constexpr double kLongestStep_s = 3e-3;
-constexpr float kVoxelScale = 16.0F;         // int8 voxels are 1/16 of a standard deviation
+constexpr float kVoxelScale = 16.0F;  // int8 voxels are 1/16 of a standard deviation
 
 /// Before the samples in the file; all little endian. tools/depth/train.py reads it.
 struct FileHeader {
@@ -43,9 +44,7 @@ struct Options {
   int scenes = 10, first = 0, windows = 24;
 };
 
-double log_uniform(Random& random, double low, double high) {
-  return low * std::pow(high / low, random.uniform());
-}
+double log_uniform(Random& random, double low, double high) { return low * std::pow(high / low, random.uniform()); }
 
 /// A room or wall of random size, seen on a random path; scale multiplies all lengths of both.
 struct World {
@@ -87,7 +86,13 @@ World random_world(int seed, double duration_s) {
 /// The DAVIS240C, of which only the region exists.
 CameraModel region_camera(const SimulatedCameraConfig& camera) {
   const cv::Rect region((camera.width - kSide) / 2, (camera.height - kSide) / 2, kSide, kSide);
-  return {kSide, kSide, camera.fx, camera.fy, camera.cx - region.x, camera.cy - region.y, DistortionModel::RadTan,
+  return {kSide,
+          kSide,
+          camera.fx,
+          camera.fy,
+          camera.cx - region.x,
+          camera.cy - region.y,
+          DistortionModel::RadTan,
           {camera.k1, camera.k2, camera.p1, camera.p2, 0.0}};
 }
 
@@ -179,8 +184,8 @@ std::vector<std::uint16_t> block_depths(const std::vector<float>& inverse_depth)
       double log_sum = 0.0;
       for (int y = 0; y < kDepthStride; ++y)
         for (int x = 0; x < kDepthStride; ++x)
-          log_sum -= std::log(inverse_depth[static_cast<std::size_t>((by * kDepthStride + y) * kSide +
-                                                                     bx * kDepthStride + x)]);
+          log_sum -= std::log(
+              inverse_depth[static_cast<std::size_t>((by * kDepthStride + y) * kSide + bx * kDepthStride + x)]);
       const double depth = std::exp(log_sum / (kDepthStride * kDepthStride));
       out.push_back(std::isfinite(depth) && depth < 65.0 ? static_cast<std::uint16_t>(std::lround(1e3 * depth)) : 0);
     }

@@ -41,6 +41,7 @@ DepthModel parse_model(const nlohmann::json& json) {
   model.name = json.at("name").get<std::string>();
   model.note = json.value("note", "");
   model.bins = json.at("bins").get<int>();
+  model.shrink = json.value("shrink", model.shrink);
   model.multiple = json.at("multiple").get<int>();
   model.d_max_m = json.at("d_max_m").get<double>();
   model.alpha = json.at("alpha").get<double>();
@@ -58,6 +59,7 @@ void check_ranges(const DepthModel& m, const fs::path& file) {
     if (!good) throw InputError::format("{}: '{}' is out of range; it must be {}", file.string(), key, range);
   };
   want(m.bins >= 2 && m.bins <= 64, "bins", "2 .. 64");
+  want(m.shrink >= 1 && m.shrink <= 16, "shrink", "1 .. 16");
   want(m.multiple >= 1 && m.multiple <= 64, "multiple", "1 .. 64");
   want(m.d_max_m > 0.0 && std::isfinite(m.d_max_m), "d_max_m", "positive");
   want(m.alpha > 0.0 && m.alpha < 100.0, "alpha", "positive");
@@ -113,7 +115,7 @@ DepthNetwork::DepthNetwork(const fs::path& onnx) : file_(onnx), runtime_(std::ma
     runtime_->net = cv::dnn::readNetFromONNX(onnx.string());
     runtime_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     runtime_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-    const int side = 2 * model_.multiple;
+    const int side = 2 * model_.shrink * model_.multiple;
     infer(cv::Mat(std::vector<int>{1, model_.bins, side, side}, CV_32FC1, cv::Scalar(0)));
   } catch (const cv::Exception& e) {
     throw InputError::format("{}: cannot be used as a depth network ({}); make it with tools/depth", onnx.string(),
@@ -148,20 +150,21 @@ cv::Mat DepthNetwork::forward(const cv::Mat& padded) {
 cv::Mat DepthNetwork::infer(const cv::Mat& grid) {
   EDGED_CHECK(grid.dims == 4 && grid.size[1] == model_.bins, "a grid of {} dimensions for {} bins", grid.dims,
               model_.bins);
-  const int height = grid.size[2], width = grid.size[3];
-  const cv::Mat padded = pad_voxels(grid, model_.multiple);
-  const cv::Mat output = forward(padded);
-  if (output.dims != 4 || output.size[1] != 1 || output.size[2] != padded.size[2] || output.size[3] != padded.size[3])
+  const int height = grid.size[2], width = grid.size[3], multiple = model_.shrink * model_.multiple;
+  const cv::Mat padded = pad_voxels(grid, multiple);
+  const cv::Mat input = model_.shrink > 1 ? shrink_voxels(padded, model_.shrink) : padded;
+  const cv::Mat output = forward(input);
+  if (output.dims != 4 || output.size[1] != 1 || output.size[2] != input.size[2] || output.size[3] != input.size[3])
     throw InputError::format("{}: its output 'depth' does not have the size of its input; make it with tools/depth",
                              file_.string());
-  const cv::Mat full(output.size[2], output.size[3], CV_32FC1, const_cast<float*>(output.ptr<float>()));
-  const Padding x = padding_to_multiple(width, model_.multiple), y = padding_to_multiple(height, model_.multiple);
+  const cv::Mat log_depth(output.size[2], output.size[3], CV_32FC1, const_cast<float*>(output.ptr<float>()));
+  const int left = padding_to_multiple(width, multiple).before, top = padding_to_multiple(height, multiple).before;
   cv::Mat depth(height, width, CV_32FC1);
-  for (int row = 0; row < height; ++row) {
-    const float* from = full.ptr<float>(row + y.before) + x.before;
-    float* to = depth.ptr<float>(row);
-    for (int column = 0; column < width; ++column)
-      to[column] = static_cast<float>(model_.d_max_m * std::exp(model_.alpha * (from[column] - 1.0)));
+  for (int y = 0; y < height; ++y) {
+    const float* from = log_depth.ptr<float>((y + top) / model_.shrink);
+    for (int x = 0; x < width; ++x)
+      depth.at<float>(y, x) =
+          static_cast<float>(model_.d_max_m * std::exp(model_.alpha * (from[(x + left) / model_.shrink] - 1.0)));
   }
   return depth;
 }

@@ -15,7 +15,8 @@ namespace edged {
 struct DepthModel {
   std::string name, note;
   int bins = 5;
-  int multiple = 8;       ///< sides of the input are multiples of this
+  int shrink = 1;         ///< the network sees the mean of shrink x shrink pixels of the grid
+  int multiple = 8;       ///< sides of what it sees are multiples of this
   double d_max_m = 80.0;  ///< depth = d_max exp(-alpha (1 - output))
   double alpha = 3.70378;
   double focal_px = 0.0;   ///< of the camera it was trained with; 0: not known, depths are not scaled
@@ -44,8 +45,8 @@ class DepthNetwork {
   const DepthModel& model() const { return model_; }
 
   /// z-depth [m], CV_32FC1, of every pixel of a normalised grid (events/voxel_grid.hpp) of any size that is at least
-  /// `multiple` on both sides. A recurrent network goes on from the state of the window before, unless the size
-  /// changed.
+  /// `shrink` times `multiple` on both sides. A recurrent network goes on from the state of the window before, unless
+  /// the size changed.
   cv::Mat infer(const cv::Mat& grid);
 
   /// Forgets the state.

@@ -33,7 +33,7 @@ NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const
   const cv::Rect region = central_region(image, region_share);
   seen_ = grown_region(region, config.margin_px, image);
   region_ = region - seen_.tl();
-  const int least = network_.model().multiple;
+  const int least = network_.model().shrink * network_.model().multiple;
   if (seen_.width < least || seen_.height < least)
     throw InputError::format(
         "option 'network.margin_px' leaves {} x {} pixels to the depth network, which wants {} x {}", seen_.width,

@@ -106,16 +106,16 @@ TEST(DepthNetwork, GivesTheSameBitsAgain) {
   EXPECT_EQ(cv::norm(first, a.infer(fixed_grid(1, 90, 122)), cv::NORM_INF), 0.0);
 }
 
-/// A folder with a copy of the tiny model, to be damaged.
-class DamagedModel : public ::testing::Test {
+/// A folder with a copy of the tiny model, to be changed or damaged.
+class ChangedModel : public ::testing::Test {
  protected:
-  DamagedModel()
+  ChangedModel()
       : folder_(fs::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     for (const char* file : {"tiny.onnx", "tiny.json"}) fs::copy_file(kData / file, folder_ / file);
   }
-  ~DamagedModel() override { fs::remove_all(folder_); }
+  ~ChangedModel() override { fs::remove_all(folder_); }
 
   void change(const std::string& key, const nlohmann::json& value) const {
     std::ifstream in(folder_ / "tiny.json");
@@ -129,42 +129,57 @@ class DamagedModel : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(DamagedModel, ThatIsMissingIsNamed) {
+TEST_F(ChangedModel, ThatShrinksSeesTheMeansOfBlocks) {
+  const cv::Mat small = fixed_grid(1);
+  cv::Mat large(std::vector<int>{1, 5, 32, 48}, CV_32FC1);
+  for (int b = 0; b < 5; ++b)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 48; ++x) large.ptr<float>(0, b, y)[x] = small.ptr<float>(0, b, y / 2)[x / 2];
+  DepthNetwork plain(folder_ / "tiny.onnx");
+  change("shrink", 2);
+  DepthNetwork shrunk(folder_ / "tiny.onnx");
+  const cv::Mat want = plain.infer(small), depth = shrunk.infer(large);
+  ASSERT_EQ(depth.size(), cv::Size(48, 32));
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 48; ++x) ASSERT_EQ(depth.at<float>(y, x), want.at<float>(y / 2, x / 2));
+}
+
+TEST_F(ChangedModel, ThatIsMissingIsNamed) {
   fs::remove(folder_ / "tiny.onnx");
   EXPECT_THAT(load(), ::testing::HasSubstr("tiny.onnx: there is no such file"));
 }
 
-TEST_F(DamagedModel, WithoutItsJsonIsRefused) {
+TEST_F(ChangedModel, WithoutItsJsonIsRefused) {
   fs::remove(folder_ / "tiny.json");
   EXPECT_THAT(load(), ::testing::HasSubstr("tiny.json: cannot be read"));
 }
 
-TEST_F(DamagedModel, WithBadJsonIsRefused) {
+TEST_F(ChangedModel, WithBadJsonIsRefused) {
   std::ofstream(folder_ / "tiny.json") << "{ \"name\": ";
   EXPECT_THAT(load(), ::testing::HasSubstr("tiny.json"));
 }
 
-TEST_F(DamagedModel, WithoutAKeyIsRefused) {
+TEST_F(ChangedModel, WithoutAKeyIsRefused) {
   std::ofstream(folder_ / "tiny.json") << R"({"name": "x", "bins": 5, "multiple": 8, "alpha": 3.7})";
   EXPECT_THAT(load(), ::testing::HasSubstr("d_max_m"));
 }
 
-TEST_F(DamagedModel, WithAValueOutOfRangeIsRefused) {
+TEST_F(ChangedModel, WithAValueOutOfRangeIsRefused) {
   change("alpha", -1.0);
   EXPECT_THAT(load(), ::testing::HasSubstr("'alpha' is out of range"));
 }
 
-TEST_F(DamagedModel, OfAnotherNumberOfBinsIsRefused) {
+TEST_F(ChangedModel, OfAnotherNumberOfBinsIsRefused) {
   change("bins", 10);
   EXPECT_THAT(load(), ::testing::HasSubstr("cannot be used as a depth network"));
 }
 
-TEST_F(DamagedModel, WithAStateThatIsNotThereIsRefused) {
+TEST_F(ChangedModel, WithAStateThatIsNotThereIsRefused) {
   change("states", {{{"name", "h1"}, {"channels", 2}, {"divisor", 2}}});
   EXPECT_THAT(load(), ::testing::HasSubstr("cannot be used as a depth network"));
 }
 
-TEST_F(DamagedModel, ThatIsCutShortOrNoiseIsRefused) {
+TEST_F(ChangedModel, ThatIsCutShortOrNoiseIsRefused) {
   fs::resize_file(folder_ / "tiny.onnx", 9000);
   EXPECT_THAT(load(), ::testing::HasSubstr("tiny.onnx: cannot be used as a depth network"));
   std::ofstream(folder_ / "tiny.onnx", std::ios::binary) << std::string(500, 'x');

@@ -76,7 +76,8 @@ Padding padding_to_multiple(int n, int multiple) {
 cv::Mat pad_voxels(const cv::Mat& grid, int multiple) {
   check_grid(grid);
   const int bins = grid.size[1], height = grid.size[2], width = grid.size[3];
-  EDGED_CHECK(height >= multiple && width >= multiple, "a grid of {} x {} pixels, multiple {}", width, height, multiple);
+  EDGED_CHECK(height >= multiple && width >= multiple, "a grid of {} x {} pixels, multiple {}", width, height,
+              multiple);
   const Padding x = padding_to_multiple(width, multiple), y = padding_to_multiple(height, multiple);
   cv::Mat padded(std::vector<int>{1, bins, height + y.before + y.after, width + x.before + x.after}, CV_32FC1);
   for (int bin = 0; bin < bins; ++bin) {
@@ -84,6 +85,22 @@ cv::Mat pad_voxels(const cv::Mat& grid, int multiple) {
     cv::copyMakeBorder(plane(grid, bin), out, y.before, y.after, x.before, x.after, cv::BORDER_REFLECT_101);
   }
   return padded;
+}
+
+cv::Mat shrink_voxels(const cv::Mat& grid, int factor) {
+  check_grid(grid);
+  const int bins = grid.size[1], height = grid.size[2], width = grid.size[3];
+  EDGED_CHECK(factor >= 1 && height % factor == 0 && width % factor == 0, "a grid of {} x {} pixels, factor {}", width,
+              height, factor);
+  cv::Mat small(std::vector<int>{1, bins, height / factor, width / factor}, CV_32FC1, cv::Scalar(0));
+  const float share = 1.0F / static_cast<float>(factor * factor);
+  for (int bin = 0; bin < bins; ++bin) {
+    const cv::Mat from = plane(grid, bin);
+    cv::Mat to = plane(small, bin);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) to.at<float>(y / factor, x / factor) += share * from.at<float>(y, x);
+  }
+  return small;
 }
 
 cv::Rect central_region(const cv::Size& image, double share) {

@@ -34,6 +34,9 @@ Padding padding_to_multiple(int n, int multiple);
 /// grid must be at least `multiple` long.
 cv::Mat pad_voxels(const cv::Mat& grid, int multiple);
 
+/// The mean of every block of factor x factor pixels; height and width must be multiples of factor.
+cv::Mat shrink_voxels(const cv::Mat& grid, int factor);
+
 /// The part in the middle with this share (0..1] of each side, at least one pixel.
 cv::Rect central_region(const cv::Size& image, double share);
 

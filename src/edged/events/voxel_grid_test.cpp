@@ -129,6 +129,15 @@ TEST(VoxelPadding, ReflectsAtTheBorderPixel) {
 
 TEST(VoxelPadding, RefusesAGridSmallerThanTheMultiple) { EXPECT_THROW(pad_voxels(filled(5, 8, 7), 8), CheckError); }
 
+TEST(VoxelShrinking, TakesTheMeanOfEachBlock) {
+  const cv::Mat small = shrink_voxels(filled(2, 4, 6), 2);
+  ASSERT_EQ(small.size[2], 2);
+  ASSERT_EQ(small.size[3], 3);
+  EXPECT_FLOAT_EQ(at(small, 0, 0, 0), 5.5F);    // 0, 1, 10, 11
+  EXPECT_FLOAT_EQ(at(small, 1, 1, 2), 129.5F);  // 124, 125, 134, 135
+  EXPECT_THROW(shrink_voxels(filled(2, 4, 5), 2), CheckError);
+}
+
 TEST(Region, LiesInTheMiddleAndGrowsWhereThereIsRoom) {
   EXPECT_EQ(central_region(cv::Size(240, 180), 0.5), cv::Rect(60, 45, 120, 90));
   EXPECT_EQ(central_region(cv::Size(240, 180), 1.0), cv::Rect(0, 0, 240, 180));
