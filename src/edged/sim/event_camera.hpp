@@ -13,16 +13,19 @@
 
 namespace edged {
 
-/// The model of Hu, Liu, Delbruck, "v2e" (CVPRW 2021), without hot pixels: threshold mismatch, refractory time,
-/// one-pole bandwidth, leak and shot noise.
+/// The model of Hu, Liu, Delbruck, "v2e" (CVPRW 2021): threshold mismatch, refractory time, one-pole bandwidth
+/// that grows with the light, leak and shot noise, hot pixels.
 struct EventCameraConfig {
   double threshold_on = 0.3;
   double threshold_off = 0.3;
   double threshold_sigma = 0.03;
   double refractory_us = 300.0;
   double bandwidth_hz = 0.0;
+  double bandwidth_per_radiance_hz = 0.0;
   double leak_hz = 0.1;
   double shot_hz = 0.03;
+  int hot_pixels = 0;
+  double hot_hz = 200.0;
   double dark_radiance = 0.003;
 
   void visit(ConfigFields& fields);
@@ -43,14 +46,24 @@ class EventCamera {
   };
   void step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events);
   void add_shot_noise(const Interval& interval, std::vector<Event>& events);
+  void add_hot_pixels(const Interval& interval, std::vector<Event>& events);
+  /// level_: from before_ towards target_ for dt seconds.
+  void follow(std::span<const float> radiance, double dt);
   Event make_event(std::size_t pixel, std::int64_t t_ns, bool positive) const;
 
   EventCameraConfig config_;
   int width_;
   Random random_;
+  Random hot_random_;
+  struct HotPixel {
+    std::size_t pixel;
+    double hz;
+  };
+  std::vector<HotPixel> hot_;
   std::vector<float> on_, off_;           // thresholds
   std::vector<float> level_, reference_;  // log brightness: now, and at the last event
   std::vector<float> target_;             // before the bandwidth
+  std::vector<float> before_;             // level_ at the picture before
   std::vector<std::int64_t> last_ns_;     // of the last event
   Timestamp t_;
   bool started_ = false;

@@ -98,5 +98,32 @@ TEST(EventCamera, FollowsSlowlyWithALowBandwidth) {
   EXPECT_LT(ramp(config, 3.0).size(), ramp(quiet(), 3.0).size());
 }
 
+TEST(EventCamera, FollowsFasterInMoreLight) {
+  EventCameraConfig config = quiet();
+  config.bandwidth_per_radiance_hz = 2.0;
+  const auto events_after_step = [&](float from) {
+    EventCamera camera(config, kSide, kSide, 1);
+    std::size_t count = 0;
+    for (int i = 0; i <= 20; ++i) {
+      const std::vector<float> radiance(kSide * kSide, i == 0 ? from : 4.0F * from);
+      count += camera.update(timestamp_from_seconds(0.005 * i), radiance).size();
+    }
+    return count;
+  };
+  EXPECT_GT(events_after_step(1.0F), 3 * kSide * kSide);
+  EXPECT_LT(events_after_step(0.01F), kSide * kSide);
+}
+
+TEST(EventCamera, HasHotPixelsThatFireAtTheirRate) {
+  EventCameraConfig config = quiet();
+  config.hot_pixels = 1;
+  config.hot_hz = 100.0;
+  const std::vector<Event> events = ramp(config, 0.0);
+  EXPECT_GE(events.size(), 10U);
+  EXPECT_LE(events.size(), 110U);
+  EXPECT_TRUE(std::all_of(events.begin(), events.end(),
+                          [&](const Event& e) { return e.x == events.front().x && e.y == events.front().y; }));
+}
+
 }  // namespace
 }  // namespace edged

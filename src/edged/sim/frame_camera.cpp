@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
 
@@ -12,6 +13,10 @@ namespace edged {
 void FrameCameraConfig::visit(ConfigFields& fields) {
   fields.add("rate_hz", rate_hz, {"Hz", 0.1, 1000, "frames per second"});
   fields.add("exposure_ms", exposure_ms, {"ms", 0.01, 1000, "time of exposure; the stamp is its middle"});
+  fields.add("auto_exposure", auto_exposure, {.effect = "exposure_ms is only that of the first frame"});
+  fields.add("min_exposure_ms", min_exposure_ms, {"ms", 0.01, 1000, "auto exposure: shortest"});
+  fields.add("max_exposure_ms", max_exposure_ms, {"ms", 0.01, 1000, "auto exposure: longest"});
+  fields.add("target_level", target_level, {"", 1, 254, "auto exposure: wanted mean grey level"});
   fields.add("electrons_per_ms", electrons_per_ms, {"1/ms", 1, 1e9, "signal of a white spot in good light"});
   fields.add("electrons_per_level", electrons_per_level, {"", 0.01, 1e6, "inverse gain: electrons for one grey level"});
   fields.add("read_noise_electrons", read_noise_electrons, {"", 0, 1e5, "noise that does not depend on light"});
@@ -22,6 +27,7 @@ FrameCamera::FrameCamera(const FrameCameraConfig& config, int width, int height,
       width_(width),
       height_(height),
       random_(seed, 4),
+      exposure_ms_(config.exposure_ms),
       light_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F) {}
 
 void FrameCamera::expose(std::span<const float> begin, std::span<const float> end, double dt_s) {
@@ -43,7 +49,15 @@ cv::Mat FrameCamera::read_out() {
     }
   }
   std::fill(light_.begin(), light_.end(), 0.0F);
+  if (config_.auto_exposure) adapt(image);
   return image;
+}
+
+void FrameCamera::adapt(const cv::Mat& image) {
+  // A part of the way in log exposure, at most by a factor of two a frame: what cameras do so as not to pump.
+  const double factor = std::pow(config_.target_level / std::max(1.0, cv::mean(image)[0]), 0.6);
+  exposure_ms_ = std::clamp(exposure_ms_ * std::clamp(factor, 0.5, 2.0), config_.min_exposure_ms,
+                            std::max(config_.min_exposure_ms, config_.max_exposure_ms));
 }
 
 }  // namespace edged

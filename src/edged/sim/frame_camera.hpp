@@ -16,6 +16,9 @@ namespace edged {
 struct FrameCameraConfig {
   double rate_hz = 24.0;
   double exposure_ms = 8.0;
+  bool auto_exposure = false;
+  double min_exposure_ms = 0.1, max_exposure_ms = 25.0;
+  double target_level = 90.0;
   double electrons_per_ms = 2500.0;
   double electrons_per_level = 80.0;
   double read_noise_electrons = 45.0;
@@ -34,10 +37,17 @@ class FrameCamera {
   /// CV_8UC1 of the light collected since the last one.
   cv::Mat read_out();
 
+  /// Of the next frame [ms]. With auto_exposure it follows the mean grey level of the last frame, a part of the way and
+  /// within its bounds.
+  double exposure_ms() const { return exposure_ms_; }
+
  private:
   FrameCameraConfig config_;
+  void adapt(const cv::Mat& image);
+
   int width_, height_;
   Random random_;
+  double exposure_ms_;
   std::vector<float> light_;  // radiance times seconds
 };
 

@@ -102,6 +102,15 @@ Trajectory recorded_poses(const MotionConfig& config, double duration_s) {
 
 void MotionConfig::visit(ConfigFields& fields) {
   fields.add("file", file, {.effect = "TUM trajectory to follow; empty: random motion"});
+  fields.choice("flight", flight,
+                {{"none", Manoeuvre::None},
+                 {"circle", Manoeuvre::Circle},
+                 {"aggressive", Manoeuvre::Aggressive},
+                 {"square", Manoeuvre::Square},
+                 {"line", Manoeuvre::Line},
+                 {"turned", Manoeuvre::Turned},
+                 {"free", Manoeuvre::Free}},
+                {.effect = "a quadrotor's flight from take-off to landing in place of random motion; without blend"});
   fields.add("start_s", start_s, {"s", 0, 1e6, "where in the file to start"});
   fields.choice("pose_of", pose_of, {{"camera", PoseOf::Camera}, {"body", PoseOf::Body}},
                 {.effect = "whose pose the file holds"});
@@ -116,6 +125,9 @@ void MotionConfig::visit(ConfigFields& fields) {
 }
 
 ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, const SE3& T_B_C, std::uint64_t seed) {
+  if (config.flight != Manoeuvre::None)
+    return {PoseSpline::fit(fly(config.flight, seed), {.knot_s = config.knot_s, .reweightings = 0}), config.rest_s,
+            0.0};
   // The clock loses half of the blend; a little more than needed keeps the end of the spline out of sight.
   const double moving_s = std::max(1.0, duration_s - config.rest_s - 0.5 * config.blend_s + 0.1);
   const bool random = config.file.empty();

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which way the simulated body moves: smooth random motion, or a recorded one.
+// Which way the simulated body moves: smooth random motion, a recorded one, or the flight of a quadrotor.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "edged/core/config.hpp"
+#include "edged/sim/flight.hpp"
 #include "edged/sim/trajectory.hpp"
 
 namespace edged {
@@ -15,6 +16,7 @@ enum class PoseOf { Camera, Body };
 
 struct MotionConfig {
   std::string file;  ///< TUM trajectory to follow; empty: random motion
+  Manoeuvre flight = Manoeuvre::None;
   double start_s = 0.0;
   PoseOf pose_of = PoseOf::Camera;
   double rest_s = 1.0;
@@ -29,7 +31,8 @@ struct MotionConfig {
 };
 
 /// The motion of the body for duration_s seconds. Random motion sways the camera around a point 1.3 m above the ground,
-/// its axis level and along +x on average. Throws InputError when the file is shorter than asked for.
+/// its axis level and along +x on average. A flight is over when it is over, however long duration_s is. Throws
+/// InputError when the file is shorter than asked for.
 ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, const SE3& T_B_C, std::uint64_t seed);
 
 }  // namespace edged

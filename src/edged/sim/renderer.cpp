@@ -55,7 +55,8 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
     : width_(camera.width()),
       height_(camera.height()),
       focal_(static_cast<float>(camera.mean_focal())),
-      scene_(std::move(scene)) {
+      scene_(std::move(scene)),
+      light_(scene_) {
   const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   constexpr float kMax = std::numeric_limits<float>::max();
   row_min_y_.assign(static_cast<std::size_t>(height_), kMax), row_max_y_.assign(row_min_y_.size(), -kMax);
@@ -88,7 +89,8 @@ Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
   return {x_0, x_1, y_0, y_1};
 }
 
-const Rendering& Renderer::render(const SE3& T_W_C) {
+const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
+  light_.update(t_s);
   std::fill(seen_.begin(), seen_.end(), -1);
   std::fill(out_.inverse_depth.begin(), out_.inverse_depth.end(), 0.0F);
   const SE3 T_C_W = T_W_C.inverse();
@@ -141,8 +143,9 @@ void Renderer::shade() {
       scratch_[i] = kBackground;
       continue;
     }
-    const Face& face = scene_.faces[static_cast<std::size_t>(seen_[i])];
-    const View& view = views_[static_cast<std::size_t>(seen_[i])];
+    const std::size_t index = static_cast<std::size_t>(seen_[i]);
+    const Face& face = scene_.faces[index];
+    const View& view = views_[index];
     const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
     const float w = out_.inverse_depth[i], z = 1.0F / w;
     const float texels = face.texels_per_m;
@@ -150,8 +153,9 @@ void Renderer::shade() {
     const float pitch = texels * z / focal_;
     const float area = pitch * pitch * std::sqrt(b.squaredNorm()) * z / view.distance;
     const Texture& texture = scene_.textures[face.texture];
-    scratch_[i] = face.brightness * texture.sample(view.u.dot(b) * z * texels + face.offset_u,
-                                                   view.v.dot(b) * z * texels + face.offset_v, rough_log2(area));
+    const float u = view.u.dot(b) * z, v = view.v.dot(b) * z;
+    scratch_[i] = face.brightness * light_.at(index, u, v) *
+                  texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edged/camera/camera_model.hpp"
+#include "edged/sim/light_field.hpp"
 #include "edged/sim/scene.hpp"
 
 namespace edged {
@@ -21,8 +22,8 @@ class Renderer {
  public:
   Renderer(const CameraModel& camera, Scene scene);
 
-  /// The picture from T_W_C. The reference is valid until the next call.
-  const Rendering& render(const SE3& T_W_C);
+  /// The picture from T_W_C in the light of t_s seconds after the start. The reference is valid until the next call.
+  const Rendering& render(const SE3& T_W_C, double t_s = 0.0);
 
   const Rendering& last() const { return out_; }
 
@@ -53,6 +54,7 @@ class Renderer {
   int width_, height_;
   float focal_;
   Scene scene_;
+  LightField light_;
   std::vector<float> bearing_x_, bearing_y_;
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
   std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row

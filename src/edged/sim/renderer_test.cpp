@@ -72,7 +72,7 @@ double largest_motion(const CameraModel& camera, const Rendering& picture, const
 }
 
 TEST(Simulator, MovesNoPixelMoreThanHalfAPixelBetweenRenders) {
-  SimulatorConfig config = simulator_preset("aggressive");
+  SimulatorConfig config = simulator_preset("handheld-fast");
   config.duration_s = 2.5;
   config.imu.rate_hz = 5000.0;  // so that next() comes back after nearly every picture
   Simulator simulator(config);

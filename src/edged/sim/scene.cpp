@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kTextures = 6;
 constexpr int kTextureSize = 1024;
+const Eigen::Vector3d kHall(6.0, 6.0, 3.0);  // [m]
 
 Eigen::Quaterniond random_rotation(Random& random) {
   const Eigen::Vector3d vector = random.normal3();
@@ -86,6 +87,58 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   }
 }
 
+/// A square on a wall that glows.
+Face glowing_face(const Eigen::Vector3d& centre_W, const Eigen::Vector3d& normal_W, double half) {
+  Face face;
+  face.normal_W = normal_W;
+  face.centre_W = centre_W;
+  face.u_W = normal_W.unitOrthogonal();
+  face.v_W = face.u_W.cross(normal_W);
+  face.half_u = face.half_v = half;
+  face.glows = true;
+  return face;
+}
+
+/// The lamps and the window, as bright as they look.
+void add_light_sources(Scene& scene) {
+  for (std::size_t i = 0; i < scene.lighting->lamps.size(); ++i) {
+    const Lamp& lamp = scene.lighting->lamps[i];
+    Face face = glowing_face(lamp.centre_W, lamp.axis_W, 0.12);
+    face.lamp = static_cast<int>(i);
+    face.brightness = static_cast<float>(2.0 * lamp.power);
+    scene.faces.push_back(face);
+  }
+  if (!scene.lighting->sun) return;
+  const SunWindow& sun = *scene.lighting->sun;
+  Face outside = glowing_face(sun.centre_W, -Eigen::Vector3d::UnitY(), 0.0);
+  outside.centre_W -= 0.01 * Eigen::Vector3d::UnitY();
+  outside.u_W = sun.u_W, outside.v_W = sun.u_W.cross(outside.normal_W);
+  outside.half_u = sun.half_u, outside.half_v = sun.half_v;
+  outside.brightness = static_cast<float>(0.5 * sun.power);
+  scene.faces.push_back(outside);
+}
+
+void add_hall(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random) {
+  const Cuboid hall{SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.5 * kHall.z()}), 0.5 * kHall, true};
+  const double light = config.lighting == LightingKind::Even ? config.light : 1.0;
+  add_cuboid(scene, hall, light, random);
+  int placed = 0;
+  for (int tries = 0; placed < config.objects && tries < 200 * config.objects; ++tries) {
+    Cuboid box;
+    box.half = {random.uniform(0.15, 0.4), random.uniform(0.15, 0.4), random.uniform(0.2, 0.9)};
+    const double x = random.uniform(-0.46, 0.46) * kHall.x(), y = random.uniform(-0.46, 0.46) * kHall.y();
+    const double yaw = random.uniform(0.0, std::numbers::pi);
+    box.T_W_O = SE3(Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())), {x, y, box.half.z()});
+    if (!keeps_clear(box, config.clearance_m, path_W_C)) continue;
+    add_cuboid(scene, box, light, random);
+    ++placed;
+  }
+  // Poses are 20 ms apart.
+  const double duration_s = 0.02 * static_cast<double>(path_W_C.size());
+  scene.lighting = make_lighting(config.lighting, kHall, config.light, duration_s, random);
+  if (scene.lighting) add_light_sources(scene);
+}
+
 void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C) {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (const SE3& T_W_C : path_W_C) {
@@ -108,9 +161,14 @@ void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
 }  // namespace
 
 void SceneConfig::visit(ConfigFields& fields) {
-  fields.choice("kind", kind,
-                {{"boxes", SceneKind::Boxes}, {"poster", SceneKind::Poster}, {"shapes", SceneKind::Shapes}},
-                {.effect = "a room with boxes, one rich wall, or a white wall with dark shapes"});
+  fields.choice(
+      "kind", kind,
+      {{"boxes", SceneKind::Boxes},
+       {"poster", SceneKind::Poster},
+       {"shapes", SceneKind::Shapes},
+       {"hall", SceneKind::Hall}},
+      {.effect =
+           "a room with boxes, one rich wall, a white wall with dark shapes, or a furnished hall of 6 x 6 x 3 m"});
   fields.add("objects", objects, {"", 0, 200, "boxes in the room"});
   fields.add("clearance_m", clearance_m, {"m", 0.05, 10, "distance of the boxes from the camera's path"});
   fields.add("wall_m", wall_m,
@@ -118,6 +176,13 @@ void SceneConfig::visit(ConfigFields& fields) {
   fields.add("poster_distance_m", poster_distance_m,
              {"m", 0.1, 30, "distance of a single wall from the nearest camera"});
   fields.add("light", light, {"", 1e-4, 10, "1: a well lit room; 0.03: frames nearly black"});
+  fields.choice("lighting", lighting,
+                {{"even", LightingKind::Even},
+                 {"lamps", LightingKind::Lamps},
+                 {"switched", LightingKind::Switched},
+                 {"sun", LightingKind::Sun}},
+                {.effect = "of the hall: the same everywhere, panels at the ceiling, lamps on the walls that go on and "
+                           "off, or the sun through a window"});
 }
 
 Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed) {
@@ -127,6 +192,10 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
     case SceneKind::Boxes:
       for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_rich_texture(kTextureSize, random));
       add_room(scene, config, path_W_C, random);
+      break;
+    case SceneKind::Hall:
+      for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_plain_texture(kTextureSize, random));
+      add_hall(scene, config, path_W_C, random);
       break;
     case SceneKind::Poster:
       scene.textures.push_back(make_rich_texture(2 * kTextureSize, random));

@@ -5,11 +5,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "edged/core/config.hpp"
 #include "edged/core/lie.hpp"
+#include "edged/sim/light.hpp"
 #include "edged/sim/texture.hpp"
 
 namespace edged {
@@ -21,15 +23,18 @@ struct Face {
   std::size_t texture = 0;                       ///< index into the scene
   float texels_per_m = 256.0F;
   float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
-  float brightness = 1.0F;                 ///< radiance of a white spot
+  float brightness = 1.0F;                 ///< radiance of a white spot in light 1
+  bool glows = false;                      ///< by itself, whatever light falls on it
+  int lamp = -1;                           ///< a face that glows does so with this lamp of the scene; -1: always
 };
 
 struct Scene {
   std::vector<Texture> textures;
   std::vector<Face> faces;
+  std::optional<Lighting> lighting;  ///< none: light 1 everywhere
 };
 
-enum class SceneKind { Boxes, Poster, Shapes };
+enum class SceneKind { Boxes, Poster, Shapes, Hall };
 
 struct SceneConfig {
   SceneKind kind = SceneKind::Boxes;
@@ -38,12 +43,14 @@ struct SceneConfig {
   double wall_m = 1.6;
   double poster_distance_m = 1.3;
   double light = 1.0;
+  LightingKind lighting = LightingKind::Even;
 
   void visit(ConfigFields& fields);
 };
 
-/// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, or a wall in
-/// front of all of it, square to the mean optical axis.
+/// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, a wall in
+/// front of all of it, square to the mean optical axis, or a hall that does not depend on the path but for where its
+/// furniture stands.
 Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed);
 
 }  // namespace edged

@@ -17,10 +17,14 @@ constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(const SimulatorConfig& config) {
-  if (config.frames.exposure_ms * 1e-3 >= 1.0 / config.frames.rate_hz)
-    throw InputError::format(
-        "option 'frames.exposure_ms' is {}, but frames come every {} ms; lower it or frames.rate_hz",
-        config.frames.exposure_ms, 1e3 / config.frames.rate_hz);
+  const FrameCameraConfig& frames = config.frames;
+  const auto check = [&frames](const char* key, double exposure_ms) {
+    if (exposure_ms * 1e-3 >= 1.0 / frames.rate_hz)
+      throw InputError::format("option 'frames.{}' is {}, but frames come every {} ms; lower it or frames.rate_hz", key,
+                               exposure_ms, 1e3 / frames.rate_hz);
+  };
+  check("exposure_ms", frames.exposure_ms);
+  if (frames.auto_exposure) check("max_exposure_ms", frames.max_exposure_ms);
   return config;
 }
 
@@ -37,6 +41,9 @@ Scene scene_of(const ContinuousTrajectory& trajectory, const SimulatorConfig& co
 Timestamp whole_microseconds(double s) {
   return timestamp_from_ns(static_cast<std::int64_t>(std::llround(s * 1e6)) * 1000);
 }
+
+/// An even number of microseconds, so that its middle is a whole one.
+Duration exposure_of(double ms) { return whole_microseconds(ms * 1e-3).time_since_epoch() / 2000 * 2000; }
 
 }  // namespace
 
@@ -77,39 +84,6 @@ SE3 SimulatorConfig::davis240c_extrinsics() {
   return {R, Eigen::Vector3d(0.006746964, 0.000727922, 0.034257361)};
 }
 
-const std::vector<std::string>& simulator_presets() {
-  static const std::vector<std::string> names{"room", "poster", "shapes", "aggressive", "dark"};
-  return names;
-}
-
-SimulatorConfig simulator_preset(const std::string& name) {
-  SimulatorConfig config;
-  config.name = name;
-  if (name == "room") return config;
-  if (name == "poster" || name == "shapes") {
-    config.scene.kind = name == "poster" ? SceneKind::Poster : SceneKind::Shapes;
-    config.motion.max_angle_deg = 20.0;
-    config.motion.max_rate_deg_s = 30.0;
-    return config;
-  }
-  if (name == "aggressive") {
-    config.motion.extent_m = 0.8;
-    config.motion.max_speed = 2.0;
-    config.motion.max_angle_deg = 45.0;
-    config.motion.max_rate_deg_s = 180.0;
-    return config;
-  }
-  if (name == "dark") {
-    config.scene.light = 0.03;
-    config.events.bandwidth_hz = 60.0;
-    config.events.shot_hz = 0.8;
-    config.frames.exposure_ms = 25.0;
-    return config;
-  }
-  throw InputError::format("there is no simulator preset '{}'; choose one of {}", name,
-                           fmt::join(simulator_presets(), ", "));
-}
-
 Simulator::Simulator(const SimulatorConfig& config)
     : config_(checked(config)),
       trajectory_(make_motion(config.motion, config.duration_s, config.T_B_C, static_cast<std::uint64_t>(config.seed))),
@@ -118,7 +92,7 @@ Simulator::Simulator(const SimulatorConfig& config)
       frame_camera_(config.frames, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
       imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),
       time_offset_(duration_from_seconds(config.imu.time_offset_ms * 1e-3)),
-      exposure_(whole_microseconds(config.frames.exposure_ms * 1e-3).time_since_epoch() / 2000 * 2000),
+      exposure_(exposure_of(config.frames.exposure_ms)),
       end_(whole_microseconds(config.duration_s)) {
   info_.name = config.name;
   info_.format = "simulator";
@@ -149,8 +123,7 @@ std::optional<Measurement> Simulator::next() {
     prepare_imu();
     // All that is stamped before `complete` has been rendered: a frame appears after the events of its second half.
     const bool finished = t_ && *t_ >= end_;
-    const Timestamp complete =
-        finished ? kForever : (t_ ? std::min(*t_, exposure_middle(frame_count_)) : Timestamp::min());
+    const Timestamp complete = finished ? kForever : (t_ ? std::min(*t_, exposure_middle()) : Timestamp::min());
     const Timestamp imu = imu_ ? imu_->t : kForever;
     const Timestamp event = events_.empty() ? kForever : events_.front().t;
     const Timestamp frame = frames_.empty() ? kForever : frames_.front().t;
@@ -189,10 +162,9 @@ void Simulator::prepare_imu() {
   ++imu_count_;
 }
 
-Timestamp Simulator::exposure_begin(int frame) const {
-  return whole_microseconds((frame + 0.1) / config_.frames.rate_hz);
+Timestamp Simulator::exposure_begin() const {
+  return whole_microseconds((frame_count_ + 0.1) / config_.frames.rate_hz);
 }
-Timestamp Simulator::exposure_middle(int frame) const { return exposure_begin(frame) + exposure_ / 2; }
 
 double Simulator::image_speed(Timestamp t) const {
   const Kinematics k = truth(t);
@@ -208,7 +180,7 @@ Timestamp Simulator::next_render_time() const {
   double step = std::min(kLongestStep_s, reach / speed);
   step = std::min(step, reach / std::max(image_speed(*t_ + duration_from_seconds(step)), 1e-3));
   Timestamp t = *t_ + std::max(kMicrosecond, whole_microseconds(step).time_since_epoch());
-  const Timestamp begin = exposure_begin(frame_count_), stop = begin + exposure_;
+  const Timestamp begin = exposure_begin(), stop = begin + exposure_;
   if (*t_ < begin) t = std::min(t, begin);
   if (*t_ < stop) t = std::min(t, stop);
   return std::min(t, end_);
@@ -216,7 +188,7 @@ Timestamp Simulator::next_render_time() const {
 
 void Simulator::advance() {
   const Timestamp t = t_ ? next_render_time() : Timestamp();
-  const Rendering& picture = renderer_.render(truth(t).T_W_B * config_.T_B_C);
+  const Rendering& picture = renderer_.render(truth(t).T_W_B * config_.T_B_C, to_seconds(t));
   ++renderings_;
   const std::vector<Event> events = event_camera_.update(t, picture.radiance);
   events_.insert(events_.end(), events.begin(), events.end());
@@ -226,12 +198,13 @@ void Simulator::advance() {
 }
 
 void Simulator::collect_light(Timestamp from, Timestamp to) {
-  if (from < exposure_begin(frame_count_)) return;
+  if (from < exposure_begin()) return;
   // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
   frame_camera_.expose(previous_, renderer_.last().radiance, to_seconds(to - from));
-  if (to < exposure_begin(frame_count_) + exposure_) return;
-  frames_.push_back({exposure_middle(frame_count_), "frames", frame_camera_.read_out()});
+  if (to < exposure_begin() + exposure_) return;
+  frames_.push_back({exposure_middle(), "frames", frame_camera_.read_out()});
   ++frame_count_;
+  exposure_ = exposure_of(frame_camera_.exposure_ms());
 }
 
 }  // namespace edged

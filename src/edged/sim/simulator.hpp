@@ -49,12 +49,17 @@ struct SimulatorConfig {
   static SE3 davis240c_extrinsics();
 };
 
-/// "room" (default), "poster", "shapes", "aggressive" or "dark". Throws InputError that lists them.
+/// One of simulator_presets(). Throws InputError that lists them.
 SimulatorConfig simulator_preset(const std::string& name);
+
+/// A DAVIS240C in the hand ("room" is the default), then flight_presets().
 const std::vector<std::string>& simulator_presets();
 
+/// The eleven flights of the paper's Table III in its order: a DAVIS346 on a quadrotor in a hall.
+const std::vector<std::string>& flight_presets();
+
 /// Deterministic by config and seed. Renders as next() is called; holds the measurements of one exposure at most.
-/// Stamps start at 0 on the camera's clock; the first second is at rest. Cameras "events" and "frames".
+/// Stamps start at 0 on the camera's clock; motion.rest_s from there are at rest. Cameras "events" and "frames".
 class Simulator : public Dataset {
  public:
   /// Throws InputError for impossible values, or a motion file that is missing or too short.
@@ -79,8 +84,9 @@ class Simulator : public Dataset {
   Timestamp next_render_time() const;
   void prepare_imu();
   void collect_light(Timestamp from, Timestamp to);
-  Timestamp exposure_begin(int frame) const;
-  Timestamp exposure_middle(int frame) const;
+  /// Of the frame that is exposed next.
+  Timestamp exposure_begin() const;
+  Timestamp exposure_middle() const { return exposure_begin() + exposure_ / 2; }
   EventBatch take_events(Timestamp before);
   double image_speed(Timestamp t) const;
   Kinematics truth(Timestamp t) const { return trajectory_.at(to_seconds(t)); }
@@ -92,10 +98,10 @@ class Simulator : public Dataset {
   EventCamera event_camera_;
   FrameCamera frame_camera_;
   ImuModel imu_model_;
-  Duration time_offset_, exposure_;
-  Timestamp end_;               // of the cameras
-  std::optional<Timestamp> t_;  // rendered up to here
-  int frame_count_ = 0;         // read out so far
+  Duration time_offset_, exposure_;  // the latter of the next frame
+  Timestamp end_;                    // of the cameras
+  std::optional<Timestamp> t_;       // rendered up to here
+  int frame_count_ = 0;              // read out so far
   std::int64_t imu_count_ = 0;
   std::vector<float> previous_;  // the picture before the last one
   std::deque<Event> events_;     // rendered but not handed out, as frames_

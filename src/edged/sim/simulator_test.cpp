@@ -102,7 +102,7 @@ double sharpness(const cv::Mat& image) {
 }
 
 TEST(Simulator, BlursFramesInMotionButNotAtRest) {
-  SimulatorConfig config = small("aggressive", 1.2);
+  SimulatorConfig config = small("handheld-fast", 1.2);
   config.frames.read_noise_electrons = 0.0;
   config.frames.electrons_per_ms *= 1e3, config.frames.electrons_per_level *= 1e3;
   config.frames.exposure_ms = 25.0;
@@ -119,7 +119,7 @@ TEST(Simulator, BlursFramesInMotionButNotAtRest) {
 TEST(Simulator, PresetsLookLikeTheirNames) {
   EXPECT_THROW(simulator_preset("submarine"), InputError);
   std::map<std::string, double> brightness, rate;
-  for (const std::string& name : simulator_presets()) {
+  for (const std::string name : {"room", "poster", "shapes", "handheld-fast", "dark"}) {
     const Recorded recorded = record(small(name, 1.5));
     brightness[name] = cv::mean(recorded.frames.back().image)[0];
     rate[name] = static_cast<double>(recorded.events.size()) / 1.2;
@@ -129,7 +129,35 @@ TEST(Simulator, PresetsLookLikeTheirNames) {
   EXPECT_GT(brightness["shapes"], brightness["room"]);
   EXPECT_GT(brightness["room"], 40.0);
   EXPECT_LT(brightness["dark"], 20.0);
-  EXPECT_GT(rate["aggressive"], rate["room"]);
+  EXPECT_GT(rate["handheld-fast"], rate["room"]);
+}
+
+TEST(Simulator, PresetsOfFlightsAreTheElevenOfThePaper) {
+  const std::vector<std::string> eleven{"circle",     "aggressive",  "aggressive-lowlit", "square",
+                                        "line",       "turned",      "low-lit",           "30-percent",
+                                        "60-percent", "dynamic-hdr", "constant-hdr"};
+  EXPECT_EQ(flight_presets(), eleven);
+  for (const std::string& name : flight_presets()) {
+    EXPECT_NE(std::find(simulator_presets().begin(), simulator_presets().end(), name), simulator_presets().end());
+    const SimulatorConfig config = simulator_preset(name);
+    EXPECT_EQ(config.name, name);
+    EXPECT_EQ(config.camera.width, 346);
+    EXPECT_EQ(config.camera.height, 260);
+    EXPECT_NEAR(config.T_B_C.R().determinant(), 1.0, 1e-12);
+    EXPECT_NEAR(config.T_B_C.translation().norm(), 0.05, 0.005);
+  }
+  for (const char* dark : {"low-lit", "aggressive-lowlit"})
+    EXPECT_LT(simulator_preset(dark).scene.light, 0.1 * simulator_preset("30-percent").scene.light) << dark;
+}
+
+TEST(Simulator, StampsFramesInTheMiddleOfExposuresThatAdaptToTheLight) {
+  SimulatorConfig config = small("low-lit", 1.0);
+  const Recorded recorded = record(config);
+  ASSERT_EQ(recorded.frames.size(), 25U);
+  // Frame k begins at (k + 0.1) / rate; exposed for 8 ms at first, as long as allowed soon.
+  EXPECT_EQ(recorded.frames.front().t, timestamp_from_seconds(0.004 + 0.004));
+  EXPECT_EQ(recorded.frames.back().t, timestamp_from_seconds(24.1 / 25.0 + 0.0125));
+  EXPECT_LT(cv::mean(recorded.frames.back().image)[0], 25.0);
 }
 
 TEST(Simulator, GroundTruthIsTheBodyOnTheClockOfTheImu) {

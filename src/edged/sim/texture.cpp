@@ -34,11 +34,11 @@ void add_octave(cv::Mat_<float>& image, int cell, float amplitude, Random& rando
   }
 }
 
-cv::Mat clouds(int size, Random& random) {
+cv::Mat clouds(int size, float contrast, Random& random) {
   cv::Mat_<float> sum(size, size, 0.0F);
   for (int cell = size / 4; cell >= 2; cell /= 2)
     add_octave(sum, cell, std::pow(static_cast<float>(cell), 0.45F), random);
-  const float scale = 130.0F / std::pow(static_cast<float>(size), 0.45F);
+  const float scale = contrast / std::pow(static_cast<float>(size), 0.45F);
   const float base = static_cast<float>(random.uniform(80.0, 150.0));
   cv::Mat_<std::uint8_t> image(size, size);
   for (int y = 0; y < size; ++y)
@@ -97,6 +97,14 @@ void draw_mark(cv::Mat& image, double size, Random& random) {
   }
 }
 
+/// Large marks first, small ones over them; as many of each as keep their covered area alike.
+void draw_marks(cv::Mat& image, double cover, Random& random) {
+  for (double mark = 160.0; mark >= 10.0; mark *= 0.7) {
+    const int count = static_cast<int>(cover * image.rows * image.cols / (mark * mark));
+    for (int i = 0; i < count; ++i) draw_mark(image, mark, random);
+  }
+}
+
 }  // namespace
 
 Texture::Texture(const cv::Mat& image) {
@@ -122,12 +130,14 @@ Texture::Texture(const cv::Mat& image) {
 }
 
 Texture make_rich_texture(int size, Random& random) {
-  cv::Mat image = clouds(size, random);
-  // Large marks first, small ones over them; as many of each as keep their covered area alike.
-  for (double mark = 160.0; mark >= 10.0; mark *= 0.7) {
-    const int count = static_cast<int>(0.15 * size * size / (mark * mark));
-    for (int i = 0; i < count; ++i) draw_mark(image, mark, random);
-  }
+  cv::Mat image = clouds(size, 130.0F, random);
+  draw_marks(image, 0.15, random);
+  return Texture(image);
+}
+
+Texture make_plain_texture(int size, Random& random) {
+  cv::Mat image = clouds(size, 60.0F, random);
+  draw_marks(image, 0.015, random);
   return Texture(image);
 }
 

@@ -65,6 +65,9 @@ class Texture {
 /// Clouds of many octaves with checker pieces, strokes, discs, polygons and letters on them: corners at every scale.
 Texture make_rich_texture(int size, Random& random);
 
+/// The same with less of everything: a painted wall with a mark here and there.
+Texture make_plain_texture(int size, Random& random);
+
 /// White with a few dark polygons, discs and stars, none touching another.
 Texture make_shapes_texture(int size, Random& random);
 

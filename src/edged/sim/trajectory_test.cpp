@@ -99,6 +99,40 @@ TEST(ImuModel, MeasuresGravityUpwardsAtRestWithItsBiases) {
   EXPECT_LT((sample.accel_B - bias_accel - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-12);
 }
 
+TEST(ImuModel, ShakesWithItsMotorsAtTheirFrequencyOnly) {
+  ImuModelConfig config;
+  config.gyro_noise = config.accel_noise = config.accel_walk = config.gyro_walk = 0.0;
+  config.accel_vibration = 2.0;
+  config.motors_on_s = 1.0, config.motors_off_s = 5.0;
+  ImuModel imu(config, 2);
+  const Eigen::Vector3d still = imu.bias_accel() + Eigen::Vector3d(0, 0, 9.81);
+  double squares = 0.0, sum = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    const Timestamp t = timestamp_from_seconds(1e-3 * i + 0.0024);
+    const Eigen::Vector3d shaken = imu.measure(t, Kinematics()).accel_B - still;
+    if (i < 1000 || i >= 5003) {
+      ASSERT_LT(shaken.norm(), 1e-9) << i;
+    } else if (i >= 1500 && i < 4500) {
+      squares += shaken.squaredNorm() / 3.0, sum += shaken.x();
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / 3000.0), 2.0 * std::sqrt(1.25), 0.4);
+  EXPECT_NEAR(sum / 3000.0, 0.0, 0.05);  // which integrates to nothing
+}
+
+TEST(ImuModel, ReadsNoMoreThanItsRange) {
+  ImuModelConfig config;
+  config.gyro_range = 2.0;
+  ImuModel imu(config, 2);
+  Kinematics spinning;
+  spinning.omega_B = {5.0, -5.0, 0.5};
+  const ImuSample sample = imu.measure(Timestamp(), spinning);
+  EXPECT_EQ(sample.gyro_B.x(), 2.0);
+  EXPECT_EQ(sample.gyro_B.y(), -2.0);
+  EXPECT_NEAR(sample.gyro_B.z(), 0.5, 0.1);
+  EXPECT_EQ(config.noise().gyro_saturation, 2.0);
+}
+
 TEST(RecordedMotion, StaysCloseToItsSourceWithSaneAccelerations) {
   const char* data = std::getenv("EDGED_DATA");
   const std::filesystem::path folder =

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/frame_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+namespace edged {
+namespace {
+
+constexpr int kSide = 32;
+
+/// Exposure and mean level of the last of a number of frames of an even wall.
+struct Settled {
+  double exposure_ms, level;
+};
+
+Settled settle(FrameCamera& camera, float radiance, int frames) {
+  const std::vector<float> picture(kSide * kSide, radiance);
+  Settled settled{};
+  for (int i = 0; i < frames; ++i) {
+    settled.exposure_ms = camera.exposure_ms();
+    camera.expose(picture, picture, 1e-3 * settled.exposure_ms);
+    settled.level = cv::mean(camera.read_out())[0];
+  }
+  return settled;
+}
+
+FrameCameraConfig automatic() {
+  FrameCameraConfig config;
+  config.auto_exposure = true;
+  return config;
+}
+
+TEST(FrameCamera, KeepsItsExposureUnlessToldToAdaptIt) {
+  FrameCamera camera({}, kSide, kSide, 1);
+  EXPECT_EQ(settle(camera, 0.1F, 5).exposure_ms, 8.0);
+  EXPECT_EQ(settle(camera, 1.0F, 5).exposure_ms, 8.0);
+}
+
+TEST(FrameCamera, SettlesOnTheWantedLevelWhereItsBoundsAllow) {
+  FrameCamera camera(automatic(), kSide, kSide, 1);
+  for (const float radiance : {0.3F, 2.0F, 0.15F})
+    EXPECT_NEAR(settle(camera, radiance, 20).level, 90.0, 3.0) << radiance;
+}
+
+TEST(FrameCamera, StaysDarkOrSaturatesAtTheBoundsOfItsExposure) {
+  FrameCameraConfig config = automatic();
+  config.min_exposure_ms = 1.0;
+  FrameCamera camera(config, kSide, kSide, 1);
+  const Settled dark = settle(camera, 0.01F, 20);
+  EXPECT_EQ(dark.exposure_ms, 25.0);
+  EXPECT_NEAR(dark.level, 0.01 * 25.0 * 2500.0 / 80.0, 0.5);
+  const Settled bright = settle(camera, 20.0F, 20);
+  EXPECT_EQ(bright.exposure_ms, 1.0);
+  EXPECT_EQ(bright.level, 255.0);
+}
+
+TEST(FrameCamera, AdaptsByAFactorOfTwoAtMost) {
+  FrameCamera camera(automatic(), kSide, kSide, 1);
+  settle(camera, 0.3F, 20);
+  const double before = camera.exposure_ms();
+  settle(camera, 30.0F, 1);
+  EXPECT_NEAR(camera.exposure_ms(), 0.54 * before, 0.05 * before);
+  settle(camera, 0.0F, 1);
+  EXPECT_NEAR(camera.exposure_ms(), 2.0 * 0.54 * before, 0.1 * before);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the light comes from: lamps that are switched, the sun through a window, and what all surfaces send around.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "edged/sim/random.hpp"
+
+namespace edged {
+
+/// A small panel that shines into the half space before it, less to the sides.
+struct Lamp {
+  Eigen::Vector3d centre_W, axis_W;  ///< axis: unit, the way it shines
+  double power = 1.0;                ///< radiance of a white surface 1 m before it
+  std::vector<double> switch_s;      ///< instants at which it is switched, increasing; it is on at first [s]
+};
+
+/// Parallel rays through a rectangular hole in a wall.
+struct SunWindow {
+  Eigen::Vector3d centre_W, u_W, v_W;  ///< u and v orthonormal, in the wall
+  double half_u = 0.0, half_v = 0.0;   ///< [m]
+  Eigen::Vector3d direction_W;         ///< unit, the way the light travels
+  double power = 1.0;                  ///< radiance of a white surface square to the rays
+};
+
+/// Nothing casts a shadow but the wall around the window.
+struct Lighting {
+  double ambient = 1.0;  ///< radiance of a white surface by what all others reflect
+  std::vector<Lamp> lamps;
+  std::optional<SunWindow> sun;
+};
+
+enum class LightingKind { Even, Lamps, Switched, Sun };
+
+/// What lights a room of this size [m] whose floor's centre is the origin; brightness multiplies all of it.
+/// Lamps: two panels at the ceiling. Switched: weak panels and a lamp on each wall that goes on and off at random times
+/// during duration_s. Sun: weak panels and a window in the wall at +y. Even has no lighting.
+std::optional<Lighting> make_lighting(LightingKind kind, const Eigen::Vector3d& size, double brightness,
+                                      double duration_s, Random& random);
+
+/// Share of its power with which the lamp shines; it takes 20 ms from one state to the other. t_s: since the start.
+double lamp_level(const Lamp& lamp, double t_s);
+
+/// Radiance of a white matt surface at p_W with unit normal n_W in the light of the lamp at full power: the cosines to
+/// its axis and to the normal over the squared distance, bounded near the lamp by the size of the panel.
+double lamp_light(const Lamp& lamp, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W);
+
+/// The same in the sun, whose disc blurs the edges of the patch.
+double sun_light(const SunWindow& sun, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W);
+
+}  // namespace edged

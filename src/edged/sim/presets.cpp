@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The simulations that have a name.
+#include <cmath>
+#include <map>
+
+#include "edged/core/check.hpp"
+#include "edged/sim/flight.hpp"
+#include "edged/sim/simulator.hpp"
+
+namespace edged {
+namespace {
+
+/// A DAVIS346 behind a lens of 4.6 mm, 5 cm before the IMU: looks along the body's x, 4 degrees down.
+void mount_davis346(SimulatorConfig& config) {
+  config.camera = {.width = 346,
+                   .height = 260,
+                   .fx = 251.4,
+                   .fy = 251.1,
+                   .cx = 170.2,
+                   .cy = 131.6,
+                   .k1 = -0.074,
+                   .k2 = 0.021,
+                   .p1 = 0.0004,
+                   .p2 = -0.0006};
+  const double down = 4.0 * M_PI / 180.0;
+  Eigen::Matrix3d R_B_C;
+  R_B_C << 0, -std::sin(down), std::cos(down), -1, 0, 0, 0, -std::cos(down), -std::sin(down);
+  config.T_B_C = {R_B_C, Eigen::Vector3d(0.048, -0.006, 0.017)};
+  config.frames.rate_hz = 25.0;
+  config.frames.auto_exposure = true;
+}
+
+struct FlightPlan {
+  Manoeuvre manoeuvre;
+  LightingKind lighting;
+  double light;
+};
+
+const std::map<std::string, FlightPlan>& flight_plans() {
+  static const std::map<std::string, FlightPlan> plans{
+      {"circle", {Manoeuvre::Circle, LightingKind::Lamps, 1.0}},
+      {"aggressive", {Manoeuvre::Aggressive, LightingKind::Lamps, 1.0}},
+      {"aggressive-lowlit", {Manoeuvre::Aggressive, LightingKind::Lamps, 0.02}},
+      {"square", {Manoeuvre::Square, LightingKind::Lamps, 1.0}},
+      {"line", {Manoeuvre::Line, LightingKind::Lamps, 1.0}},
+      {"turned", {Manoeuvre::Turned, LightingKind::Lamps, 1.0}},
+      {"low-lit", {Manoeuvre::Free, LightingKind::Lamps, 0.02}},
+      {"30-percent", {Manoeuvre::Free, LightingKind::Lamps, 0.3}},
+      {"60-percent", {Manoeuvre::Free, LightingKind::Lamps, 0.6}},
+      {"dynamic-hdr", {Manoeuvre::Free, LightingKind::Switched, 1.0}},
+      {"constant-hdr", {Manoeuvre::Free, LightingKind::Sun, 1.0}},
+  };
+  return plans;
+}
+
+/// A motor's vibration through soft mounts, and a sensor set to 1000 deg/s and 8 g.
+void set_imu(ImuModelConfig& imu, double motors_on_s, double motors_off_s) {
+  imu.gyro_range = 17.45;
+  imu.accel_range = 78.5;
+  imu.gyro_vibration = 0.03;
+  imu.accel_vibration = 1.0;
+  imu.gyro_broadband = 5e-4;
+  imu.accel_broadband = 0.02;
+  imu.motors_on_s = motors_on_s;
+  imu.motors_off_s = motors_off_s;
+}
+
+void set_flight(SimulatorConfig& config, const FlightPlan& plan) {
+  mount_davis346(config);
+  // The fastest pixel of twice as many; most move half as fast.
+  config.max_motion_px = 0.75;
+  config.motion.flight = plan.manoeuvre;
+  config.motion.rest_s = 2.5;
+  config.scene.kind = SceneKind::Hall;
+  config.scene.objects = 12;
+  config.scene.lighting = plan.lighting;
+  config.scene.light = plan.light;
+  const double landed_s = config.motion.rest_s + airborne_s(plan.manoeuvre);
+  config.duration_s = std::ceil(10.0 * (landed_s + 1.0)) / 10.0;
+  set_imu(config.imu, config.motion.rest_s - 0.7, landed_s + 0.1);
+  // A pixel's bandwidth follows its photocurrent; its noise is worst where that is small.
+  config.events.bandwidth_hz = 20.0;
+  config.events.bandwidth_per_radiance_hz = 2000.0;
+  config.events.shot_hz = 0.05 / std::sqrt(plan.light) + (plan.light < 0.1 ? 0.6 : 0.0);
+  config.events.hot_pixels = 12;
+}
+
+SimulatorConfig flight(const std::string& name, const FlightPlan& plan) {
+  SimulatorConfig config;
+  config.name = name;
+  set_flight(config, plan);
+  return config;
+}
+
+}  // namespace
+
+const std::vector<std::string>& flight_presets() {
+  static const std::vector<std::string> names{"circle",     "aggressive",  "aggressive-lowlit", "square",
+                                              "line",       "turned",      "low-lit",           "30-percent",
+                                              "60-percent", "dynamic-hdr", "constant-hdr"};
+  return names;
+}
+
+const std::vector<std::string>& simulator_presets() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all{"room", "poster", "shapes", "handheld-fast", "dark"};
+    all.insert(all.end(), flight_presets().begin(), flight_presets().end());
+    return all;
+  }();
+  return names;
+}
+
+SimulatorConfig simulator_preset(const std::string& name) {
+  if (const auto plan = flight_plans().find(name); plan != flight_plans().end()) return flight(name, plan->second);
+  SimulatorConfig config;
+  config.name = name;
+  if (name == "room") return config;
+  if (name == "poster" || name == "shapes") {
+    config.scene.kind = name == "poster" ? SceneKind::Poster : SceneKind::Shapes;
+    config.motion.max_angle_deg = 20.0;
+    config.motion.max_rate_deg_s = 30.0;
+    return config;
+  }
+  if (name == "handheld-fast") {
+    config.motion.extent_m = 0.8;
+    config.motion.max_speed = 2.0;
+    config.motion.max_angle_deg = 45.0;
+    config.motion.max_rate_deg_s = 180.0;
+    return config;
+  }
+  if (name == "dark") {
+    config.scene.light = 0.03;
+    config.events.bandwidth_hz = 60.0;
+    config.events.shot_hz = 0.8;
+    config.frames.exposure_ms = 25.0;
+    return config;
+  }
+  throw InputError::format("there is no simulator preset '{}'; choose one of {}", name,
+                           fmt::join(simulator_presets(), ", "));
+}
+
+}  // namespace edged
