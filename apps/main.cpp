@@ -10,6 +10,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "config_command.hpp"
+#include "depth_command.hpp"
 #include "edged/core/check.hpp"
 #include "enhance_command.hpp"
 #include "eval_command.hpp"
@@ -44,6 +45,7 @@ int run_program(int argc, char** argv) {
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
   add_enhance_command(app, chosen);
+  add_depth_command(app, chosen);
   add_config_command(app, chosen);
   try {
     app.parse(argc, argv);

@@ -4,12 +4,13 @@
 """Trains the depth network on the samples of edged_depth_samples, on one thread; or measures one on held-out scenes.
 
   train.py --train 'DATA/train_*.bin' --held-out DATA/held.bin --minutes 30 --out depth.pt
-  train.py --held-out DATA/held.bin --evaluate depth.pt
+  train.py --held-out DATA/held.bin --evaluate depth.pt --export small.onnx
 """
 import argparse
 import glob
 import json
 import math
+import pathlib
 import time
 
 import numpy as np
@@ -17,9 +18,11 @@ import torch
 from torch.nn import functional
 
 from network import DepthNetwork
+from onnx_graph import write_onnx
 
 D_MAX, ALPHA = 12.0, 3.9  # y = 1 + ln(depth / D_MAX) / ALPHA: 0.24 m to 12 m
 VOXEL_SCALE = 16.0
+FOCAL_PX = 199.54  # of the simulated camera
 SHRINK = 2  # the network sees the mean of 2 x 2 pixels: a quarter of the work, and finer detail is no help
 CENTRE = slice(8, 24)  # of the 32 x 32 depth blocks: the central half of each side
 
@@ -121,7 +124,7 @@ def report(samples, estimated, true, constant):
     we, wt = (np.concatenate(x) for x in zip(*within))
     print(f"  correlation of ln depth: all windows {np.corrcoef(e, t)[0, 1]:.3f}, medians of scenes "
           f"{np.corrcoef(scene_e, scene_t)[0, 1]:.3f}, within scenes {np.corrcoef(we, wt)[0, 1]:.3f}")
-    return {name: float(np.abs(x).mean()) for name, x in error.items()}
+    return {name: float(np.sqrt((x * x).mean())) for name, x in error.items()}
 
 
 def rate_at(share):
@@ -133,6 +136,8 @@ def train(arguments):
     torch.manual_seed(arguments.seed)
     random = np.random.default_rng(arguments.seed)
     model = DepthNetwork(base=arguments.base).to(memory_format=torch.channels_last)  # a third faster
+    if arguments.start:
+        model.load_state_dict(torch.load(arguments.start))
     optimiser = torch.optim.Adam(model.parameters(), arguments.rate)
     begin, running, step = time.time(), 0.0, 0
     while (share := (time.time() - begin) / (60.0 * arguments.minutes)) < 1.0:
@@ -172,10 +177,12 @@ def main():
     parser.add_argument("--minutes", type=float, default=30.0)
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--rate", type=float, default=2e-3, help="largest learning rate")
+    parser.add_argument("--start", help="parameters to go on from")
     parser.add_argument("--base", type=int, default=8, help="channels of the first layer")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", default="depth.pt")
     parser.add_argument("--evaluate", help="only measure these parameters")
+    parser.add_argument("--export", help="and write them as this ONNX file")
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     if not arguments.evaluate:
@@ -185,7 +192,19 @@ def main():
     model = DepthNetwork(base=state["unet.head.conv2d.weight"].shape[0])
     model.load_state_dict(state)
     with open(arguments.evaluate + ".json") as f:
-        report(held, *central_depths(model, held), json.load(f)["constant"])
+        errors = report(held, *central_depths(model, held), json.load(f)["constant"])
+    if arguments.export:
+        export(model, pathlib.Path(arguments.export), errors["network"])
+
+
+def export(model, path, sigma_ln):
+    """The ONNX file and the json beside it, which says how its input is made and its output read."""
+    parameters = {name: p.detach().numpy() for name, p in model.named_parameters()}
+    info = write_onnx(parameters, path, "tools/depth/train.py; Apache-2.0")
+    info = {"name": path.stem, "note": "trained by this project on simulated scenes, see docs/depth_model.md",
+            "shrink": SHRINK, **info, "d_max_m": D_MAX, "alpha": ALPHA, "focal_px": FOCAL_PX, "window_s": 0.05,
+            "sigma_ln": round(sigma_ln, 2)}
+    path.with_suffix(".json").write_text(json.dumps(info, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -77,18 +77,24 @@ struct DepthNetwork::Runtime {
   cv::dnn::Net net;
 };
 
+std::vector<fs::path> shipped_depth_models() {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(EDGED_DEPTH_FOLDER, error))
+    if (entry.path().extension() == ".onnx") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 fs::path find_depth_model(const std::string& name_or_path) {
   if (fs::path(name_or_path).has_extension()) return name_or_path;
-  const fs::path folder = EDGED_DEPTH_FOLDER;
-  const fs::path file = folder / (name_or_path + ".onnx");
-  if (fs::exists(file)) return file;
   std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".onnx") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
+  for (const fs::path& file : shipped_depth_models()) {
+    if (file.stem() == name_or_path) return file;
+    names.push_back(file.stem().string());
+  }
   throw InputError::format("there is no depth model '{}' in {}; choose one of {} or give the path of an .onnx file",
-                           name_or_path, folder.string(), fmt::join(names, ", "));
+                           name_or_path, EDGED_DEPTH_FOLDER, fmt::join(names, ", "));
 }
 
 DepthModel read_depth_model(const fs::path& onnx) {

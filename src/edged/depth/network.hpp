@@ -30,6 +30,9 @@ struct DepthModel {
   std::vector<State> states;  ///< empty: not recurrent
 };
 
+/// The ONNX files that ship (config/depth), by name.
+std::vector<std::filesystem::path> shipped_depth_models();
+
 /// NAME (config/depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models there are.
 std::filesystem::path find_depth_model(const std::string& name_or_path);
 
