@@ -51,6 +51,11 @@ void EventFrameConfig::visit(ConfigFields& fields) {
                            "one constant twist per packet, or not at all (no motion compensation)"});
   fields.add("saturation_events", saturation_events,
              {"events", 0.1, 1000, "events on one pixel that make it white; fewer give more contrast and more noise"});
+  fields.choice("depth", depth, {{"scene", DepthSource::Scene}, {"landmarks", DepthSource::Landmarks}},
+                {.effect = "depth that events are moved at: one of the whole scene, or that of the nearest landmark"});
+  fields.add("depth_cell_px", depth_grid.cell_px, {"px", 1, 64, "depth = landmarks: side of a cell of equal depth"});
+  fields.add("depth_reach_px", depth_grid.reach_px,
+             {"px", 0, 1000, "depth = landmarks: cells further from any landmark have the scene's depth"});
   fields.add("blur_sigma_px", blur_sigma_px,
              {"px", 0, 10, "Gaussian blur of the event frame: smoother gradients for the tracker; 0 is off"});
 }
@@ -60,18 +65,24 @@ EventFrameRenderer::EventFrameRenderer(UndistortTable table, const EventFrameCon
   EDGED_CHECK(config_.saturation_events > 0.0, "saturation_events is {}", config_.saturation_events);
 }
 
-cv::Mat EventFrameRenderer::accumulate(std::span<const Event> events, const CameraMotion& motion, double depth) {
+cv::Mat EventFrameRenderer::accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
+                                       const DepthGrid* depths) {
   padded_.setTo(0.0F);
   if (!events.empty()) {
     const WarpSettings settings{config_.interpolation, depth};
     const EventWarp warp(table_.ideal(), motion, settings, events.front().t, events.back().t);
-    warp.for_each(events, table_, BilinearSplat(padded_));
+    if (depths != nullptr) {
+      warp.for_each(events, table_, *depths, BilinearSplat(padded_));
+    } else {
+      warp.for_each(events, table_, BilinearSplat(padded_));
+    }
   }
   return padded_(cv::Rect(1, 1, table_.width(), table_.height()));
 }
 
-cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMotion& motion, double depth) {
-  cv::Mat sum = accumulate(events, motion, depth);
+cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMotion& motion, double depth,
+                                   const DepthGrid* depths) {
+  cv::Mat sum = accumulate(events, motion, depth, depths);
   if (config_.blur_sigma_px > 0.0) {
     cv::GaussianBlur(sum, blurred_, cv::Size(), config_.blur_sigma_px, config_.blur_sigma_px,
                      cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);

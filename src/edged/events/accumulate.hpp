@@ -11,10 +11,18 @@
 
 namespace edged {
 
+/// The d_i of Eq. 2.
+enum class DepthSource {
+  Scene,      ///< one depth for all events
+  Landmarks,  ///< per event that of the nearest landmark
+};
+
 struct EventFrameConfig {
   WarpInterpolation interpolation = WarpInterpolation::Piecewise;
   double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
-  double blur_sigma_px = 0.8;      ///< Gaussian on the sum, before the scaling; 0: none
+  DepthSource depth = DepthSource::Scene;
+  DepthGridSettings depth_grid;  ///< with DepthSource::Landmarks
+  double blur_sigma_px = 0.8;    ///< Gaussian on the sum, before the scaling; 0: none
 
   void visit(ConfigFields& fields);
 };
@@ -26,11 +34,13 @@ class EventFrameRenderer {
   EventFrameRenderer(UndistortTable table, const EventFrameConfig& config);
 
   /// The sum of the bilinear weights of the warped events, CV_32FC1, undistorted, size of the table. Valid until the
-  /// next call. depth: z-depth of the scene [m].
-  cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth);
+  /// next call. depth: z-depth of the scene [m]; depths: that of every event, in its place.
+  cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
+                     const DepthGrid* depths = nullptr);
 
   /// accumulate, then blur and scale to CV_8UC1; a new image each time.
-  cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth);
+  cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth,
+                 const DepthGrid* depths = nullptr);
 
   /// The undistorted camera of the images.
   const CameraModel& camera() const { return table_.ideal(); }

@@ -106,9 +106,10 @@ TEST(EventFrame, StartsAfreshAtEachCallAndKeepsEarlierImages) {
 TEST(EventFrame, ListsItsOptions) {
   EventFrameConfig config;
   ConfigFields fields = ConfigFields::of(config);
-  EXPECT_EQ(fields.all().size(), 3U);
   fields.set("interpolation=single_twist");
   EXPECT_EQ(config.interpolation, WarpInterpolation::SingleTwist);
+  fields.set("depth=landmarks");
+  EXPECT_EQ(config.depth, DepthSource::Landmarks);
   EXPECT_THROW(fields.set("saturation_events=0"), InputError);
 }
 

@@ -106,31 +106,37 @@ CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Br
 }
 
 EventWarp::EventWarp(const CameraModel& ideal, const CameraMotion& motion, const WarpSettings& settings,
-                     Timestamp first, Timestamp last) {
+                     Timestamp first, Timestamp last)
+    : inverse_depth_(static_cast<float>(1.0 / settings.depth)) {
   EDGED_CHECK(std::isfinite(settings.depth) && settings.depth > 0.0, "depth is {}", settings.depth);
   using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const Eigen::Matrix3d K = camera_matrix(ideal);
   const Eigen::Matrix3d K_inverse = K.inverse();
   const MotionCurve curve(motion, settings.interpolation);
-  const auto homography = [&](Timestamp t) -> RowMajor3 {  // Eq. 2
-    const SE3 T_ref_t = curve.at(t);
+  const auto homography = [&](const SE3& T_ref_t) -> RowMajor3 {  // Eq. 2
     Eigen::Matrix3d M = T_ref_t.R();
     M.col(2) += T_ref_t.translation() / settings.depth;
     return K * M * K_inverse;
   };
+  const auto store = [](float* to, const Eigen::Vector3d& v) { Eigen::Vector3f::Map(to) = v.cast<float>(); };
 
   const std::vector<Timestamp> edges = bin_edges(curve, first, last);
   bins_.resize(edges.size() - 1);
-  RowMajor3 H = homography(edges.front());
+  SE3 T_ref_begin = curve.at(edges.front());
+  RowMajor3 H = homography(T_ref_begin);
   for (std::size_t i = 0; i < bins_.size(); ++i) {
     Bin& bin = bins_[i];
     bin.begin = edges[i];
     bin.end = edges[i + 1];
     bin.per_ns = 1.0F / static_cast<float>((bin.end - bin.begin).count());
-    const RowMajor3 H_end = homography(bin.end);
+    const SE3 T_ref_end = curve.at(bin.end);
+    const RowMajor3 H_end = homography(T_ref_end);
     Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(bin.h) = H.cast<float>();
     Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(bin.dh) = (H_end - H).cast<float>();
+    store(bin.shift_begin, K * T_ref_begin.translation());
+    store(bin.shift_change, K * (T_ref_end.translation() - T_ref_begin.translation()));
     H = H_end;
+    T_ref_begin = T_ref_end;
   }
   bins_.back().end = Timestamp::max();
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Motion compensation of events (paper Eq. 1 and 2, corrected): every event moves to where its scene point, at one
-// common depth, appears in the camera at the reference time.
+// common depth or at one of its own, appears in the camera at the reference time.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +11,7 @@
 #include "edged/camera/undistort.hpp"
 #include "edged/core/lie.hpp"
 #include "edged/core/types.hpp"
+#include "edged/events/depth_grid.hpp"
 
 namespace edged {
 
@@ -46,7 +47,8 @@ struct WarpSettings {
 
 /// Eq. 2 for one event: x' = pi(K', T_ref_t * (Z * K'^-1 x)). With the one depth Z it is the homography
 /// H(t) = K' (R + t e_z^T / Z) K'^-1 of undistorted pixels. H is computed exactly on a grid in time (the knots, and
-/// between them steps of at most 0.5 ms) and linear in between: below 0.02 px off at 20 rad/s.
+/// between them steps of at most 0.5 ms) and linear in between: below 0.02 px off at 20 rad/s. With a depth Z_i per
+/// event, K' t (1/Z_i - 1/Z) is added to what H gives.
 class EventWarp {
  public:
   /// Serves events with stamps in [first, last]. `ideal` is the undistorted camera K'. CheckError when depth is not
@@ -58,6 +60,50 @@ class EventWarp {
   /// out: events outside the table, and points that come to lie behind the camera.
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, Sink&& sink) const {
+    visit(events, table, [&sink](const Bin& bin, const Eigen::Vector2f& p, float a) {
+      const float w = bin.row(2, p, a);
+      if (w < kMinDepthRatio) return;
+      const float inverse = 1.0F / w;
+      sink(bin.row(0, p, a) * inverse, bin.row(1, p, a) * inverse);
+    });
+  }
+
+  /// The same with the depth that the grid holds where the event is; the grid belongs to the reference time, and
+  /// motion within its cells is neglected.
+  template <typename Sink>
+  void for_each(std::span<const Event> events, const UndistortTable& table, const DepthGrid& depths,
+                Sink&& sink) const {
+    visit(events, table, [&](const Bin& bin, const Eigen::Vector2f& p, float a) {
+      const float nearer = depths.inverse_depth(p.x(), p.y()) - inverse_depth_;
+      const float w = bin.row(2, p, a) + nearer * bin.shift(2, a);
+      if (w < kMinDepthRatio) return;
+      const float inverse = 1.0F / w;
+      sink((bin.row(0, p, a) + nearer * bin.shift(0, a)) * inverse,
+           (bin.row(1, p, a) + nearer * bin.shift(1, a)) * inverse);
+    });
+  }
+
+ private:
+  static constexpr float kMinDepthRatio = 1e-3F;  ///< depth after the warp over depth before it
+
+  /// H(t) = h + a * dh and K' t = shift_begin + a * shift_change, with a from 0 at begin to 1 at end; h row-major.
+  struct Bin {
+    Timestamp begin, end;
+    float per_ns = 0.0F;  ///< 1 / (end - begin)
+    float h[9], dh[9];
+    float shift_begin[3], shift_change[3];
+
+    float row(int r, const Eigen::Vector2f& p, float a) const {
+      const float* f = h + 3 * r;
+      const float* d = dh + 3 * r;
+      return f[0] * p.x() + f[1] * p.y() + f[2] + a * (d[0] * p.x() + d[1] * p.y() + d[2]);
+    }
+    float shift(int r, float a) const { return shift_begin[r] + a * shift_change[r]; }
+  };
+
+  /// Calls use(bin, undistorted pixel, a) for every event inside the table.
+  template <typename Use>
+  void visit(std::span<const Event> events, const UndistortTable& table, Use&& use) const {
     const auto width = static_cast<unsigned>(table.width());
     const auto height = static_cast<unsigned>(table.height());
     std::size_t i = 0;
@@ -67,30 +113,12 @@ class EventWarp {
         if (event.x >= width || event.y >= height) continue;
         const Eigen::Vector2f& p = table.at(event.x, event.y);
         const float a = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
-        const float w = bin.row(2, p, a);
-        if (w < kMinDepthRatio) continue;
-        const float inverse = 1.0F / w;
-        sink(bin.row(0, p, a) * inverse, bin.row(1, p, a) * inverse);
+        use(bin, p, a);
       }
     }
   }
 
- private:
-  static constexpr float kMinDepthRatio = 1e-3F;  ///< depth after the warp over depth before it
-
-  /// H(t) = h + a * dh with a from 0 at begin to 1 at end; row-major.
-  struct Bin {
-    Timestamp begin, end;
-    float per_ns = 0.0F;  ///< 1 / (end - begin)
-    float h[9], dh[9];
-
-    float row(int r, const Eigen::Vector2f& p, float a) const {
-      const float* f = h + 3 * r;
-      const float* d = dh + 3 * r;
-      return f[0] * p.x() + f[1] * p.y() + f[2] + a * (d[0] * p.x() + d[1] * p.y() + d[2]);
-    }
-  };
-
+  float inverse_depth_;    ///< 1/Z, of the depth that H holds
   std::vector<Bin> bins_;  ///< in time order without holes; the last ends never
 };
 

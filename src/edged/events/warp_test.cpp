@@ -187,6 +187,27 @@ TEST(EventWarp, PassesExactlyThroughItsKnots) {
   }
 }
 
+TEST(EventWarp, MovesEveryEventAtItsOwnDepth) {
+  const Timestamp first = at_ms(100), last = at_ms(130);
+  const std::vector<Event> events = random_events(2000, first, last, kDistorted);
+  const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
+  const CameraMotion motion = constant_twist(twist(0.8, -0.5, 0.6, 1.0, -2.0, 1.5), first, last, 31);
+  const std::vector<DepthSample> samples = {{{30, 40}, 0.8}, {{200, 60}, 3.0}, {{120, 150}, 1.5}};
+  const DepthGrid depths(240, 180, {8, 1000.0}, samples, 2.0);
+  const EventWarp warp(table.ideal(), motion, {WarpInterpolation::Piecewise, 2.0}, first, last);
+  std::vector<Eigen::Vector2d> warped;
+  warp.for_each(events, table, depths, [&](float x, float y) { warped.emplace_back(x, y); });
+  ASSERT_EQ(warped.size(), events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Eigen::Vector2f p = table.at(events[i].x, events[i].y);
+    const double depth = 1.0 / depths.inverse_depth(p.x(), p.y());
+    const Eigen::Vector3d p_t = depth * table.ideal().pixel_to_point(p.cast<double>()).homogeneous();
+    const auto exact = table.ideal().project(motion.at(events[i].t, WarpInterpolation::Piecewise) * p_t);
+    ASSERT_TRUE(exact.has_value());
+    EXPECT_LT((warped[i] - *exact).norm(), 0.02);
+  }
+}
+
 TEST(EventWarp, LeavesAnEventAtTheReferenceTimeWhereItIs) {
   const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
   const std::vector<Event> event{{at_ms(60), 33, 44, false}};

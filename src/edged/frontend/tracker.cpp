@@ -186,7 +186,7 @@ std::vector<cv::Point2f> FeatureTracker::predict(const TrackPrediction& predicti
     const Eigen::Vector3d p_prev = own.value_or(prediction.scene_depth) * track.point.homogeneous();
     const std::optional<Eigen::Vector2d> pixel = camera_.project(prediction.T_cur_prev * p_prev);
     // Far outside stands for behind the camera; match() ends such tracks at the border.
-    seeds.push_back(pixel ? to_cv(*pixel) : cv::Point2f(-1e6F, -1e6F));
+    seeds.push_back(pixel ? to_cv(*pixel + prediction.offset_px) : cv::Point2f(-1e6F, -1e6F));
   }
   return seeds;
 }

@@ -59,6 +59,7 @@ struct TrackPrediction {
   SE3 T_cur_prev;            ///< previous camera frame to the new one
   double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
   std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
+  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to where the poses expect a corner
 };
 
 /// What happened to the tracks in one image.
@@ -71,7 +72,7 @@ struct TrackSummary {
   int lost_border = 0;
   int merged = 0;                  ///< ran into an older track
   bool prediction_failed = false;  ///< the old positions were better seeds and were used
-  Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - predicted; zero without prediction
+  Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - expected; zero without prediction
 };
 
 /// A cycle is track, reject_outliers, then at a keyframe (or when needs_corners) detect, and mark_keyframe at a

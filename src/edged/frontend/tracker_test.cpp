@@ -116,6 +116,9 @@ TEST_F(Tracking, UsesTheDepthOfEachCornerAndReportsTheInnovation) {
   const TrackSummary summary = common.track(image, at(1), TrackPrediction{T_W_C1.inverse(), 4.0, {}});
   EXPECT_NEAR(summary.median_innovation_px.x(), -10.0, 0.3);
   EXPECT_NEAR(summary.median_innovation_px.y(), 0.0, 0.1);
+  FeatureTracker corrected = start(SE3());
+  const TrackPrediction prediction{T_W_C1.inverse(), 4.0, {}, {-10.0, 0.0}};
+  EXPECT_LT(corrected.track(image, at(1), prediction).median_innovation_px.norm(), 0.3);
 }
 
 TEST_F(Tracking, FallsBackToTheOldPositionsWhenThePredictionIsWrong) {

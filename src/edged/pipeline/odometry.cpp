@@ -26,6 +26,10 @@ struct Channel {
   SE3 T_W_Blast;      ///< at the last image
   SE3 T_W_Bkeyframe;  ///< at the last keyframe
   bool any_image = false;
+  /// delta x_last of paper Eq. 2 [px]. The paper shifts the event frame by it, and tracks measured there would have to
+  /// be shifted back; to shift the places where they are searched instead is the same, and leaves the frame where the
+  /// poses put it.
+  Eigen::Vector2d alignment_px = Eigen::Vector2d::Zero();
 };
 
 const RigCamera& need(const Rig& rig, Modality modality) {
@@ -63,7 +67,9 @@ struct Odometry::Impl {
 
   void predict(const Packet& packet);
   void draw_event_frame(const Packet& packet);
+  DepthGrid event_depths() const;
   void take_frame(const Packet& packet);
+  void align(Channel& channel, const TrackSummary& summary) const;
   void track(Channel& channel, Timestamp t);
   void reject(Channel& channel);
   bool is_keyframe(const Packet& packet) const;
@@ -169,10 +175,32 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   channels.front().image.release();
   if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
   const CameraMotion motion = camera_motion(T_W_B, now.T_W_B, channels.front().camera.T_B_C);
-  event_frame = renderer->render(packet.window(), motion, scene_depth);
+  if (config.event_frame.depth == DepthSource::Landmarks && estimator.initialized()) {
+    const DepthGrid depths = event_depths();
+    event_frame = renderer->render(packet.window(), motion, scene_depth, &depths);
+  } else {
+    event_frame = renderer->render(packet.window(), motion, scene_depth);
+  }
   const cv::Mat enhanced = enhance(event_frame, config.enhance);
   channels.front().image = config.enhance_track ? enhanced : event_frame;
   channels.front().corners = config.enhance_detect ? enhanced : event_frame;
+}
+
+/// The landmarks of both cameras as the event camera is predicted to see them now.
+DepthGrid Odometry::Impl::event_depths() const {
+  std::vector<DepthSample> samples;
+  const SE3 T_C_W = channels.front().T_W_C(now.T_W_B).inverse();
+  for (const Channel& channel : channels) {
+    const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
+    for (const Track& track : channel.tracker.tracks()) {
+      const std::optional<double> depth = estimator.depth(track.id);
+      if (!depth) continue;
+      const Eigen::Vector3d p_C = T_C_last * (*depth * track.point.homogeneous());
+      if (const auto pixel = renderer->camera().project(p_C)) samples.push_back({*pixel, p_C.z()});
+    }
+  }
+  const CameraModel& camera = renderer->camera();
+  return DepthGrid(camera.width(), camera.height(), config.event_frame.depth_grid, samples, scene_depth);
 }
 
 void Odometry::Impl::take_frame(const Packet& packet) {
@@ -191,8 +219,20 @@ void Odometry::Impl::track(Channel& channel, Timestamp t) {
     prediction->scene_depth = scene_depth;
     prediction->depth = [this](FeatureId id) { return estimator.initialized() ? estimator.depth(id) : std::nullopt; };
   }
-  channel.tracker.track(channel.image, t, prediction);
+  if (prediction) prediction->offset_px = channel.alignment_px;
+  align(channel, channel.tracker.track(channel.image, t, prediction));
   channel.any_image = true;
+}
+
+void Odometry::Impl::align(Channel& channel, const TrackSummary& summary) const {
+  if (config.alignment_gain <= 0.0 || channel.camera.modality != Modality::Events) return;
+  // Without a usable prediction the old correction fades.
+  const bool measured = summary.tracked > 0 && !summary.prediction_failed;
+  const Eigen::Vector2d newest =
+      measured ? Eigen::Vector2d(summary.median_innovation_px + channel.alignment_px) : Eigen::Vector2d::Zero();
+  channel.alignment_px += config.alignment_gain * (newest - channel.alignment_px);
+  const double length = channel.alignment_px.norm();
+  if (length > config.alignment_max_px) channel.alignment_px *= config.alignment_max_px / length;
 }
 
 void Odometry::Impl::reject(Channel& channel) {
