@@ -64,7 +64,7 @@ struct RotationPair {
 
 std::vector<RotationPair> rotation_pairs(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise) {
   std::vector<RotationPair> out;
-  for (std::size_t step : {std::size_t{1}, std::size_t{3}}) {
+  for (const std::size_t step : {1U, 3U, 8U}) {
     for (std::size_t i = 0; i + step < frames.size(); ++i) {
       for (const RigCamera& camera : rig.cameras) {
         std::vector<RayPair> rays = common_rays(frames[i], frames[i + step], camera);
@@ -76,25 +76,46 @@ std::vector<RotationPair> rotation_pairs(const std::vector<InitFrame>& frames, c
   return out;
 }
 
-/// One Gauss-Newton term: rays of a pair must be coplanar with the baseline their rotation implies.
+/// The baseline that a pair's corners agree on best under the rotation R. Noise turns every normal f_0 x R f_1 about
+/// its rays only: C is the covariance it leaves, without which the baseline leans towards the optical axis.
+Vector3d baseline_of(const RotationPair& pair, const Matrix3d& R) {
+  Matrix3d M = Matrix3d::Zero(), C = Matrix3d::Zero();
+  for (const RayPair& rays : pair.rays) {
+    const Vector3d n = rays.ray_0.cross(R * rays.ray_1);
+    M += n * n.transpose();
+    C += Matrix3d::Identity() - rays.ray_0 * rays.ray_0.transpose();
+  }
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d>(M, C).eigenvectors().col(0).normalized();
+}
+
+/// One Gauss-Newton term: the angle of each corner's ray to the plane of its partner and the baseline; the baseline, two
+/// angles a pair, is eliminated.
 void add_coplanarity(const RotationPair& pair, const Vector3d& bg, Matrix3d& H, Vector3d& g) {
   const Matrix3d R = pair.imu.dR(bg).toRotationMatrix();
   const Matrix3d d_phi_d_bg =
       so3::right_jacobian(pair.imu.d_dR_d_bg() * (bg - pair.imu.bias_gyro())) * pair.imu.d_dR_d_bg();
-  Matrix3d M = Matrix3d::Zero();
+  const Vector3d baseline = baseline_of(pair, R);
+  const Vector3d tangent_1 = baseline.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> tangent;
+  tangent << tangent_1, baseline.cross(tangent_1);
+  Eigen::Matrix<double, 5, 5> N = Eigen::Matrix<double, 5, 5>::Zero();  // over (bias, baseline)
+  Eigen::Matrix<double, 5, 1> c = Eigen::Matrix<double, 5, 1>::Zero();
   for (const RayPair& rays : pair.rays) {
-    const Vector3d n = rays.ray_0.cross(R * rays.ray_1);
-    M += n * n.transpose();
-  }
-  const Vector3d baseline = Eigen::SelfAdjointEigenSolver<Matrix3d>(M).eigenvectors().col(0);
-  for (const RayPair& rays : pair.rays) {
-    const double e = baseline.dot(rays.ray_0.cross(R * rays.ray_1)) / kRayNoise;
-    const Vector3d J =
-        (baseline.transpose() * skew(rays.ray_0) * -R * skew(rays.ray_1) * d_phi_d_bg).transpose() / kRayNoise;
+    const Vector3d turned = R * rays.ray_1, n = rays.ray_0.cross(turned);
+    const double along = baseline.dot(rays.ray_0), across = std::sqrt(std::max(1.0 - along * along, 1e-4));
+    const double e = baseline.dot(n) / (across * kRayNoise);
+    Eigen::Matrix<double, 5, 1> J;
+    J.head<3>() = (baseline.transpose() * skew(rays.ray_0) * -R * skew(rays.ray_1) * d_phi_d_bg).transpose() /
+                  (across * kRayNoise);
+    J.tail<2>() = tangent.transpose() * (n / (across * kRayNoise) + e * along / (across * across) * rays.ray_0);
     const double weight = std::abs(e) < 1.5 ? 1.0 : 1.5 / std::abs(e);  // Huber
-    H += weight * J * J.transpose();
-    g += weight * J * e;
+    N += weight * J * J.transpose();
+    c += weight * J * e;
   }
+  const Eigen::Matrix2d baseline_info = N.bottomRightCorner<2, 2>() + Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<double, 2, 3> coupling = baseline_info.ldlt().solve(N.bottomLeftCorner<2, 3>());
+  H += N.topLeftCorner<3, 3>() - coupling.transpose() * N.bottomLeftCorner<2, 3>();
+  g += c.head<3>() - coupling.transpose() * c.tail<2>();
 }
 
 /// A landmark's rays, gathered over the frames.
@@ -124,43 +145,80 @@ struct RelativeMotion {
 };
 
 /// Adds one track's equations Pi_j (P - v t_j - g t_j^2/2) = Pi_j (alpha_j + R_j p_B_C) to the normal equations of
-/// (v, g), with P eliminated. `v_g` (from the pass before) scales the rows to angles.
-void add_track(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig,
-               const Vector6d* v_g, Matrix6d& H, Vector6d& b) {
-  const auto rows_of = [&](const Sight& s) -> Eigen::Matrix<double, 2, 3> {
+/// (v, g), with P eliminated.
+void add_track(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig, Matrix6d& H,
+               Vector6d& b) {
+  Eigen::Matrix<double, 9, 9> N = Eigen::Matrix<double, 9, 9>::Zero();
+  Eigen::Matrix<double, 9, 1> c = Eigen::Matrix<double, 9, 1>::Zero();
+  for (const Sight& sight : track) {
+    const RelativeMotion& m = motion[sight.frame];
+    const SE3& T_B_C = rig.cameras[sight.camera].T_B_C;
     Eigen::Matrix<double, 2, 3> pi;
-    pi << 1, 0, -s.point.x(), 0, 1, -s.point.y();
-    return pi * (rig.cameras[s.camera].T_B_C.R().transpose() * motion[s.frame].R.transpose());
-  };
-  std::vector<double> scale(track.size(), 1.0);
-  for (int pass = v_g == nullptr ? 1 : 0; pass < 2; ++pass) {
-    Eigen::Matrix<double, 9, 9> N = Eigen::Matrix<double, 9, 9>::Zero();
-    Eigen::Matrix<double, 9, 1> c = Eigen::Matrix<double, 9, 1>::Zero();
-    for (std::size_t k = 0; k < track.size(); ++k) {
-      const RelativeMotion& m = motion[track[k].frame];
-      const auto pi = rows_of(track[k]);
-      Eigen::Matrix<double, 2, 9> A;
-      A << pi, -m.t * pi, -0.5 * m.t * m.t * pi;
-      A *= scale[k];
-      const Vector3d fixed = m.alpha + m.R * rig.cameras[track[k].camera].T_B_C.translation();
-      N += A.transpose() * A;
-      c += A.transpose() * (scale[k] * (pi * fixed));
-    }
-    const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
-    if (pass == 1) {
-      H += N.bottomRightCorner<6, 6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(N.topRightCorner<3, 6>());
-      b += c.tail<6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(c.head<3>());
-      return;
-    }
-    const Vector3d P = P_P.solve(c.head<3>() - N.topRightCorner<3, 6>() * *v_g);
-    for (std::size_t k = 0; k < track.size(); ++k) {
-      const RelativeMotion& m = motion[track[k].frame];
-      const SE3& T_B_C = rig.cameras[track[k].camera].T_B_C;
-      const Vector3d p_Bj = v_g->head<3>() * m.t + 0.5 * m.t * m.t * v_g->tail<3>() + m.alpha;
-      const double z = (T_B_C.inverse() * Vector3d(m.R.transpose() * (P - p_Bj))).z();
-      scale[k] = 1.0 / std::clamp(z, 0.1, 50.0);
-    }
+    pi << 1, 0, -sight.point.x(), 0, 1, -sight.point.y();
+    pi *= T_B_C.R().transpose() * m.R.transpose();
+    Eigen::Matrix<double, 2, 9> A;
+    A << pi, -m.t * pi, -0.5 * m.t * m.t * pi;
+    N += A.transpose() * A;
+    c += A.transpose() * (pi * (m.alpha + m.R * T_B_C.translation()));
   }
+  const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
+  H += N.bottomRightCorner<6, 6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(N.topRightCorner<3, 6>());
+  b += c.tail<6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(c.head<3>());
+}
+
+/// The pose of a sight's camera in the frame of the first body.
+SE3 camera_pose(const Sight& sight, const std::vector<RelativeMotion>& motion, const Rig& rig, const Vector6d& v_g) {
+  const RelativeMotion& m = motion[sight.frame];
+  return SE3(m.R, m.t * v_g.head<3>() + 0.5 * m.t * m.t * v_g.tail<3>() + m.alpha) * rig.cameras[sight.camera].T_B_C;
+}
+
+/// One Gauss-Newton term of the reprojection errors of a track over (v, g), its point at its best place and eliminated.
+void add_reprojection(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig,
+                      const Vector6d& v_g, Matrix6d& H, Vector6d& b) {
+  std::vector<View> views;
+  for (const Sight& sight : track) views.push_back({camera_pose(sight, motion, rig, v_g), sight.point});
+  const auto point = triangulate(views, kRayNoise);
+  if (!point) return;
+  Eigen::Matrix<double, 9, 9> N = Eigen::Matrix<double, 9, 9>::Zero();
+  Eigen::Matrix<double, 9, 1> c = Eigen::Matrix<double, 9, 1>::Zero();
+  for (std::size_t k = 0; k < track.size(); ++k) {
+    const double t = motion[track[k].frame].t;
+    const Vector3d p_C = views[k].T_W_C.inverse() * point->p_W;
+    const Eigen::Vector2d seen_now = p_C.hnormalized(), r = (seen_now - track[k].point) / kRayNoise;
+    Eigen::Matrix<double, 2, 3> d_r_d_P;
+    d_r_d_P << 1, 0, -seen_now.x(), 0, 1, -seen_now.y();
+    d_r_d_P *= views[k].T_W_C.R().transpose() / (p_C.z() * kRayNoise);
+    Eigen::Matrix<double, 2, 9> J;
+    J << d_r_d_P, -t * d_r_d_P, -0.5 * t * t * d_r_d_P;
+    const double weight = r.norm() < 1.5 ? 1.0 : 1.5 / r.norm();  // Huber
+    N += weight * J.transpose() * J;
+    c += weight * J.transpose() * r;
+  }
+  const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>());
+  H += N.bottomRightCorner<6, 6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(N.topRightCorner<3, 6>());
+  b += c.tail<6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(c.head<3>());
+}
+
+/// Noise makes the linear solution too small, points too near: what follows minimises the reprojection error itself, |g|
+/// kept.
+Vector6d refine(const std::map<FeatureId, std::vector<Sight>>& tracks, const std::vector<RelativeMotion>& motion,
+                const Rig& rig, Vector6d v_g) {
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d b = Vector6d::Zero();
+    for (const auto& [id, track] : tracks) add_reprojection(track, motion, rig, v_g, H, b);
+    const Vector3d up = -v_g.tail<3>().normalized(), tangent = up.unitOrthogonal();
+    Eigen::Matrix<double, 6, 5> free = Eigen::Matrix<double, 6, 5>::Zero();
+    free.topLeftCorner<3, 3>().setIdentity();
+    free.col(3).tail<3>() = tangent;
+    free.col(4).tail<3>() = up.cross(tangent);
+    const Eigen::Matrix<double, 5, 1> step = (free.transpose() * H * free).ldlt().solve(-free.transpose() * b);
+    if (!step.allFinite()) return v_g;
+    v_g += free * step;
+    v_g.tail<3>() *= kGravity / v_g.tail<3>().norm();
+    if (step.norm() < 1e-4) break;
+  }
+  return v_g;
 }
 
 /// min x^T H x - 2 b^T x over x = (v, g) with |g| = kGravity: v is eliminated, g solves (D + lambda I) g = d, the largest
@@ -225,16 +283,13 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
   const auto tracks = gather_tracks(frames, rig);
   if (tracks.size() < kMinPairCorners) return std::nullopt;
 
-  Vector6d v_g;
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  for (const auto& [id, track] : tracks) add_track(track, motion, rig, H, b);
   double free_length = 0.0;
-  for (int pass = 0; pass < 3; ++pass) {
-    Matrix6d H = Matrix6d::Zero();
-    Vector6d b = Vector6d::Zero();
-    for (const auto& [id, track] : tracks) add_track(track, motion, rig, pass == 0 ? nullptr : &v_g, H, b);
-    v_g = solve_with_gravity_length(H, b, &free_length);
-    if (!v_g.allFinite()) return std::nullopt;
-  }
-
+  const Vector6d linear = solve_with_gravity_length(H, b, &free_length);
+  if (!linear.allFinite()) return std::nullopt;
+  const Vector6d v_g = refine(tracks, motion, rig, linear);
   const Vector3d v = v_g.head<3>(), g = v_g.tail<3>();
   const SE3 T_W_B0(Eigen::Quaterniond::FromTwoVectors(-g, Vector3d::UnitZ()), Vector3d::Zero());
   Alignment result;
@@ -259,8 +314,9 @@ double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, con
       rays.insert(rays.end(), more.begin(), more.end());
     }
     if (rays.size() < kMinPairCorners) continue;
-    const Matrix3d R =
-        between(frames, first, frames.size() - 1, Vector3d::Zero(), noise).dR(Vector3d::Zero()).toRotationMatrix();
+    // Without its bias the gyro would call the drift of a second or two parallax.
+    const Vector3d bg = align_gyro_bias(frames, rig, noise).value_or(Vector3d::Zero());
+    const Matrix3d R = between(frames, first, frames.size() - 1, bg, noise).dR(bg).toRotationMatrix();
     std::vector<double> angles;
     for (const RayPair& pair : rays) {
       const Vector3d turned = R * pair.ray_1;

@@ -14,6 +14,7 @@ namespace edged {
 
 struct TestWorldOptions {
   double rest_s = 0.0;          ///< at the beginning
+  int cameras = 1;              ///< 2: one more, "events", turned and shifted against "frames"
   double speed = 1.0;           ///< scales the amplitude of the motion; 0: rotation only
   double pixel_noise = 0.5;     ///< [px]
   double imu_noise = 1.0;       ///< times the densities of ImuNoise
@@ -28,6 +29,10 @@ class TestWorld {
     rig_.name = "test";
     rig_.cameras.push_back({"frames", Modality::Frames, CameraModel(240, 180, 200, 200, 119.5, 89.5),
                             SE3(so3::exp({0.01, 0.02, -0.01}), {0.02, 0.01, 0.03}), Duration(0)});
+    if (options_.cameras > 1) {
+      rig_.cameras.push_back({"events", Modality::Events, CameraModel(240, 180, 210, 200, 125, 85),
+                              SE3(so3::exp({0.2, -0.15, 0.4}), {-0.06, 0.03, 0.01}), Duration(0)});
+    }
     noise_.gyro_noise = 2e-4;
     noise_.accel_noise = 4e-3;
     for (int i = 0; i < 600; ++i) {
@@ -61,24 +66,31 @@ class TestWorld {
     return sample;
   }
 
-  /// All visible points at t.
-  CameraObservations observe(double t) {
-    CameraObservations out{"frames", {}};
-    const RigCamera& camera = rig_.cameras.front();
+  /// Point i of the world; camera c calls it i + 1 + 1000 c.
+  const Eigen::Vector3d& point_W(FeatureId id) const { return points_W_.at((id - 1) % 1000); }
+
+  /// The visible points at t, 120 at most.
+  CameraObservations observe(double t, std::size_t camera_index = 0) {
+    const RigCamera& camera = rig_.cameras.at(camera_index);
+    CameraObservations out{camera.name, {}};
     const SE3 T_C_W = (T_W_B(t) * camera.T_B_C).inverse();
     for (std::size_t i = 0; i < points_W_.size() && out.features.size() < 120; ++i) {
       const Eigen::Vector3d p_C = T_C_W * points_W_[i];
       const auto pixel = camera.model.project(p_C);
       if (!pixel || !camera.model.contains(*pixel)) continue;
       const Eigen::Vector2d noise(normal(), normal());
-      out.features.push_back({i + 1, p_C.hnormalized() + options_.pixel_noise / 200.0 * noise, 1.0 / 200.0});
+      out.features.push_back(
+          {i + 1 + 1000 * camera_index, p_C.hnormalized() + options_.pixel_noise / 200.0 * noise, 1.0 / 200.0});
     }
     return out;
   }
 
-  /// The packet that ends at t, dt after the one before.
+  /// The packet that ends at t, dt after the one before. Every camera has an image in it.
   EstimatorInput packet(double t, double dt, bool keyframe) {
-    EstimatorInput input{timestamp_from_seconds(t), {}, {observe(t)}, keyframe, true};
+    EstimatorInput input{timestamp_from_seconds(t), {}, {}, keyframe, true};
+    for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
+      input.observations.push_back(observe(t, camera));
+    }
     const int n = static_cast<int>(std::lround(dt * 200.0));
     if (last_imu_) input.imu.push_back(*last_imu_);
     for (int i = last_imu_ ? 1 : 0; i <= n; ++i) input.imu.push_back(imu(t - dt + i * dt / n));

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The window's bookkeeping, and its solution from poses and landmarks that are off.
+#include "edged/estimator/window.hpp"
+
+#include <gtest/gtest.h>
+
+#include "edged/core/check.hpp"
+#include "edged/estimator/landmarks.hpp"
+#include "edged/estimator/solver.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kStep_s = 0.2;
+
+/// States at the true poses, velocities and biases, with their IMU and what the cameras see; the gauge is held.
+Window window_at_truth(TestWorld& world, const TestWorldOptions& options, int states = 6) {
+  Window window(world.rig(), 1.0);
+  world.packet(1.0 - kStep_s, kStep_s, true);
+  for (int i = 0; i < states; ++i) {
+    const double t = 1.0 + kStep_s * i;
+    const EstimatorInput input = world.packet(t, kStep_s, true);
+    WindowState state;
+    state.t = input.t;
+    state.pose = to_block(world.T_W_B(t));
+    Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
+    state.keyframe = true;
+    if (i > 0) state.imu = Preintegration(input.imu, options.bias_gyro, options.bias_accel, world.noise());
+    window.add_observations(window.add_state(std::move(state)), input.observations);
+  }
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
+  return window;
+}
+
+double worst_position_error(const Window& window, const TestWorld& world) {
+  double worst = 0.0;
+  for (const auto& [id, state] : window.states) {
+    worst = std::max(worst, (state.T_W_B().translation() - world.T_W_B(to_seconds(state.t)).translation()).norm());
+  }
+  return worst;
+}
+
+TEST(Window, HoldsEachTermOfTheCostOnce) {
+  const TestWorldOptions options{.cameras = 2};
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  EXPECT_EQ(window.factors().size(), 1U + 5U);  // gauge, IMU; tracks are no landmarks yet
+  triangulate_features(window, {});
+  std::size_t sights = 0;
+  for (const auto& [id, feature] : window.features) {
+    if (feature.anchor) sights += feature.seen.size() - 1;
+  }
+  EXPECT_GT(sights, 100U);
+  EXPECT_EQ(window.factors().size(), 1U + 5U + sights);
+}
+
+TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
+  TestWorld world({.cameras = 2});
+  Window window(world.rig(), 1.0);
+  const auto add = [&](double t, std::size_t camera) {
+    WindowState state;
+    state.t = timestamp_from_seconds(t);
+    window.add_observations(window.add_state(std::move(state)), {world.observe(t, camera)});
+  };
+  add(1.0, 0);
+  const FeatureId id = window.features.begin()->first;
+  add(1.05, 1);
+  EXPECT_TRUE(window.alive(window.features.at(id)));
+  add(3.0, 0);  // far along: some have left the view
+  int ended = 0;
+  for (const auto& [feature_id, feature] : window.features) ended += window.alive(feature) ? 0 : 1;
+  EXPECT_GT(ended, 0);
+}
+
+TEST(Window, RefusesObservationsOfACameraItDoesNotHave) {
+  TestWorld world({});
+  Window window(world.rig(), 1.0);
+  const StateId id = window.add_state({});
+  EXPECT_THROW(window.add_observations(id, {{"left", {}}}), CheckError);
+}
+
+TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
+  const TestWorldOptions options;
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  window.drop_orphaned_priors();
+  EXPECT_EQ(window.soft_priors.size(), 1U);
+  window.states.erase(window.states.begin());
+  window.drop_orphaned_priors();
+  EXPECT_TRUE(window.soft_priors.empty());
+}
+
+TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
+  const TestWorldOptions options;
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  const BlockKey first{BlockKind::Pose, window.states.begin()->first},
+      last{BlockKind::Pose, window.states.rbegin()->first};
+  window.prior = window.soft_priors.front();
+  const double made_at = window.block(first)[0];
+  window.block(first)[0] += 0.5;
+  EXPECT_EQ(window.linearisation_point(first)[0], made_at);
+  EXPECT_EQ(window.linearisation_point(last), window.block(last));
+  EXPECT_EQ(window.block({BlockKind::InverseDepth, 123456}), nullptr);
+}
+
+TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
+  for (const int cameras : {1, 2}) {
+    SCOPED_TRACE(cameras);
+    const TestWorldOptions options{.cameras = cameras, .pixel_noise = 0.0, .imu_noise = 0.0};
+    TestWorld world(options);
+    Window window = window_at_truth(world, options);
+    triangulate_features(window, {});
+    int i = 0;
+    for (auto& [id, state] : window.states) {
+      if (++i == 1) continue;
+      const SE3 off(so3::exp({0.02, -0.01 * i, 0.01}), Eigen::Vector3d(0.01 * i, -0.02, 0.015));
+      state.pose = to_block(state.T_W_B() * off);
+      state.motion[0] += 0.1;
+    }
+    for (auto& [id, feature] : window.features) feature.inverse_depth *= 1.1;
+    ASSERT_GT(worst_position_error(window, world), 0.03);
+    const SolveSummary summary = solve(window, 30);
+    EXPECT_TRUE(summary.usable);
+    EXPECT_LT(summary.final_cost, 1e-3 * summary.initial_cost);
+    EXPECT_LT(worst_position_error(window, world), 1e-4);  // 3e-6
+    for (const auto& [id, feature] : window.features) {
+      if (!feature.anchor) continue;
+      EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 5e-3) << id;
+    }
+  }
+}
+
+TEST(Solve, GivesTheSameBitsWhereverTheWindowLies) {
+  const TestWorldOptions options{.cameras = 2};
+  std::vector<double> results[2];
+  std::vector<std::vector<char>> holes;
+  for (std::vector<double>& result : results) {
+    TestWorld world(options);
+    Window window = window_at_truth(world, options);
+    triangulate_features(window, {});
+    solve(window, 10);
+    for (const auto& [id, state] : window.states) result.insert(result.end(), state.pose.begin(), state.pose.end());
+    for (const auto& [id, feature] : window.features) result.push_back(feature.inverse_depth);
+    for (std::size_t i = 1; i < 500; ++i) holes.emplace_back(i * 7 % 1900 + 1);
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
+}  // namespace
+}  // namespace edged
