@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One optimisation of a full window, one marginalisation, and the estimator packet by packet.
+#include "edged/estimator/estimator.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "edged/estimator/marginalization.hpp"
+#include "edged/estimator/solver.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kKeyframes = 8, kRecent = 3, kLandmarksPerCamera = 60;
+constexpr double kKeyframeStep_s = 0.1, kRecentStep_s = 0.03;
+
+/// Keyframes and recent states near the truth, two cameras with 60 landmarks each, a gauge and bias prior.
+Window full_window(TestWorld& world) {
+  Window window(world.rig(), 1.0);
+  NavState nav;
+  double t = 1.0;
+  world.packet(t - kKeyframeStep_s, kKeyframeStep_s, true);
+  for (int i = 0; i < kKeyframes + kRecent; ++i) {
+    const double step = i < kKeyframes ? kKeyframeStep_s : kRecentStep_s;
+    if (i > 0) t += step;
+    const EstimatorInput input = world.packet(t, step, true);
+    WindowState state;
+    state.t = input.t;
+    state.pose = to_block(world.T_W_B(t) * SE3(so3::exp({0.002, -0.001, 0.003}), {0.005, -0.003, 0.002}));
+    Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
+    state.keyframe = i < kKeyframes;
+    if (i > 0) state.imu = Preintegration(input.imu, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), world.noise());
+    window.add_observations(window.add_state(std::move(state)), input.observations);
+  }
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
+  window.soft_priors.push_back(
+      motion_prior({BlockKind::Motion, first->first}, first->second.motion, {0.1, 0.02, 0.15}));
+  LandmarkConfig config;
+  config.max_per_camera = kLandmarksPerCamera;
+  triangulate_features(window, config);
+  return window;
+}
+
+std::size_t count_sights(const Window& window) {
+  std::size_t sights = 0;
+  for (const auto& [id, feature] : window.features) sights += feature.anchor ? feature.seen.size() - 1 : 0;
+  return sights;
+}
+
+struct Values {
+  std::vector<std::pair<PoseBlock, MotionBlock>> states;
+  std::vector<double> inverse_depths;
+};
+
+Values values_of(const Window& window) {
+  Values values;
+  for (const auto& [id, state] : window.states) values.states.emplace_back(state.pose, state.motion);
+  for (const auto& [id, feature] : window.features) values.inverse_depths.push_back(feature.inverse_depth);
+  return values;
+}
+
+void restore(Window& window, const Values& values) {
+  auto state_values = values.states.begin();
+  for (auto& [id, state] : window.states) std::tie(state.pose, state.motion) = *state_values++;
+  auto depth = values.inverse_depths.begin();
+  for (auto& [id, feature] : window.features) feature.inverse_depth = *depth++;
+}
+
+/// range(0): solver iterations. Items are sights.
+void BM_SolveWindow(benchmark::State& state) {
+  TestWorld world({.cameras = 2});
+  Window window = full_window(world);
+  const Values start = values_of(window);
+  const std::size_t sights = count_sights(window);
+  int iterations = 0;
+  for (auto _ : state) {
+    restore(window, start);
+    iterations = solve(window, static_cast<int>(state.range(0))).iterations;
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * sights));
+  state.counters["sights"] = static_cast<double>(sights);
+  state.counters["iterations"] = iterations;
+}
+
+/// The oldest keyframe and its landmarks leave.
+void BM_Marginalize(benchmark::State& state) {
+  TestWorld world({.cameras = 2});
+  Window window = full_window(world);
+  solve(window, 10);
+  const StateId oldest = window.states.begin()->first;
+  std::set<BlockKey> leaving = {{BlockKind::Pose, oldest}, {BlockKind::Motion, oldest}};
+  for (const auto& [id, feature] : window.features) {
+    if (feature.anchor == oldest) leaving.insert({BlockKind::InverseDepth, id});
+  }
+  std::vector<Factor> factors = window.factors();
+  std::erase_if(factors, [&](const Factor& factor) {
+    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
+                        [&](const BlockKey& key) { return leaving.contains(key); });
+  });
+  for (auto _ : state) benchmark::DoNotOptimize(marginalize(window, factors, leaving).J);
+  state.counters["factors"] = static_cast<double>(factors.size());
+  state.counters["landmarks"] = static_cast<double>(leaving.size() - 2);
+}
+
+/// A running estimator; items are packets of 30 ms, every sixth a keyframe. range(0): cameras.
+void BM_EstimatorAdd(benchmark::State& state) {
+  constexpr double kStart_s = 1.5;
+  TestWorld world({.rest_s = 1.0, .cameras = static_cast<int>(state.range(0))});
+  std::vector<EstimatorInput> packets;
+  for (int i = 1; i <= 300; ++i) packets.push_back(world.packet(i * kRecentStep_s, kRecentStep_s, i % 6 == 0));
+  std::optional<Estimator> estimator;
+  std::size_t next = packets.size();
+  double sights = 0.0;
+  for (auto _ : state) {
+    if (next == packets.size()) {
+      state.PauseTiming();
+      estimator.emplace(world.rig(), world.noise(), EstimatorConfig());
+      for (next = 0; to_seconds(packets[next].t) < kStart_s; ++next) estimator->add(packets[next]);
+      state.ResumeTiming();
+    }
+    benchmark::DoNotOptimize(estimator->add(packets[next++]).landmarks);
+    sights += static_cast<double>(count_sights(estimator->window()));
+  }
+  state.SetItemsProcessed(state.iterations());
+  state.counters["sights"] = sights / static_cast<double>(state.iterations());
+}
+
+BENCHMARK(BM_SolveWindow)->ArgName("iterations")->Arg(1)->Arg(4)->Arg(10)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Marginalize)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_EstimatorAdd)->ArgName("cameras")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace edged
