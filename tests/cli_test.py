@@ -37,7 +37,7 @@ class CommandLine(WithFolder):
         text = edged("--help").stdout
         for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
             self.assertIn(word, text)
-        for command in ("run", "simulate", "eval"):
+        for command in ("run", "simulate", "eval", "enhance"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
     def test_a_wrong_command_line_is_code_2(self):
@@ -188,6 +188,28 @@ class Run(WithFolder):
         self.assertEqual(result.returncode, 4, result.stderr)
         self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
         self.assertEqual(json.loads(result.stdout)["status"], "never good")
+
+    def test_enhance_draws_every_step_and_a_sheet(self):
+        result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "enhance.erosion_px=3")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = sorted(file.name.partition("_")[2] for file in self.folder.iterdir())
+        for step in ("events_without_compensation", "event_frame_motion_compensated", "gaussian_blur", "clahe",
+                     "sharpened_paper", "sharpened_unsharp", "edges_canny", "edges_laplacian", "edges_sobel",
+                     "edges_scharr", "eroded_sobel", "blend_with_scharr"):
+            self.assertIn(f"{step}.png", names)
+        self.assertNotIn("eroded_canny.png", names)
+        self.assertTrue((self.folder / "sheet.png").is_file())
+
+    def test_enhance_wants_a_time_with_events(self):
+        out = self.folder / "steps"
+        self.assert_refused(edged("enhance", self.flight, "--at", "77", "--out", out, "--quiet"), "77", "0 to 5")
+        self.assert_refused(edged("enhance", self.flight, "--at", "-1", "--out", out, "--quiet"), "-1")
+        self.assert_refused(edged("enhance", self.flight, "--at", "0", "--out", out, "--quiet"), "no events", "--at")
+        self.assertFalse(out.exists())
+
+    def test_contradicting_options_are_refused_with_the_reason(self):
+        self.assert_refused(edged("run", self.flight, "--out", self.folder / "run", "enhance.method=canny",
+                                  "enhance.erosion_px=3"), "enhance.erosion_px", "one pixel wide")
 
     def test_ctrl_c_leaves_complete_files(self):
         out = self.folder / "run"

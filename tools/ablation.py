@@ -50,6 +50,8 @@ AXES = {
         "piecewise": ["event_frame.interpolation=piecewise"],
         "single twist": ["event_frame.interpolation=single_twist"],
         "none": ["event_frame.interpolation=none"],
+        "piecewise, depth of landmarks": ["event_frame.depth=landmarks"],
+        "piecewise, delta x_last": ["alignment_gain=0.5"],
     },
 }
 
