@@ -210,6 +210,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const PacketizerCo
       {"late events dropped", counters.events_late},
       {"late frames dropped", counters.frames_late},
       {"late IMU samples dropped", counters.imu_late},
+      {"IMU samples dropped that are no numbers", counters.imu_not_finite},
   };
   for (const auto& [kind, count] : dropped) {
     if (count > 0) repairs[kind] += count;

@@ -14,6 +14,11 @@ namespace {
 
 constexpr Duration kForgetAfter = std::chrono::seconds(5);  // a recurrent network starts afresh
 
+DepthFilterConfig with_time_constant(DepthFilterConfig filter, double time_constant_s) {
+  filter.time_constant_s = time_constant_s;
+  return filter;
+}
+
 }  // namespace
 
 void NetworkDepthConfig::visit(ConfigFields& fields) {
@@ -21,6 +26,8 @@ void NetworkDepthConfig::visit(ConfigFields& fields) {
   fields.add("margin_px", margin_px, {"px", 0, 4096, "the network sees that much more than the region on each side"});
   fields.add("min_events_per_pixel", min_events_per_pixel,
              {"", 0, 100, "a window with fewer events around the region gives no depth"});
+  fields.add("time_constant_s", time_constant_s,
+             {"s", 0, 60, "smoothing of the network's ln depth, in place of filter.time_constant_s"});
 }
 
 NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,
@@ -28,7 +35,7 @@ NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const
     : config_(config),
       network_(find_depth_model(config.model)),
       window_(duration_from_seconds(network_.model().window_s)),
-      filter_(filter) {
+      filter_(with_time_constant(filter, config.time_constant_s)) {
   const cv::Size image(camera.width(), camera.height());
   const cv::Rect region = central_region(image, region_share);
   seen_ = grown_region(region, config.margin_px, image);

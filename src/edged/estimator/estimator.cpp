@@ -18,6 +18,13 @@ constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
 constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr int kStartIterations = 25;
+constexpr int kMinStartLandmarks = 15;
+constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
+constexpr double kRestStretch = 10.0;  // times the longest IMU interval
+constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleration at rest
+constexpr double kMaxFreeGravityError = 0.3;   // of a start in motion, when gravity's length is left free
+constexpr double kMaxStandstillSpeed = 0.15;   // [m/s]: what the estimate says is moving is not at rest
+constexpr double kMaxPendingImu_s = 10.0;      // without an image before the start
 constexpr double kMaxStartRms = 2.0;  // [sigma] of the start-up window's sights: more is a wrong start
 
 MotionBlock motion_block(const NavState& state) {
@@ -52,6 +59,12 @@ std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& l
                         [&](const BlockKey& key) { return leaving.contains(key); });
   });
   return factors;
+}
+
+/// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
+bool plausible(const NavState& state) {
+  return state.T_W_B.translation().allFinite() && state.v_W.norm() < kMaxSpeed &&
+         state.bias_gyro.norm() < kMaxGyroBias && state.bias_accel.norm() < kMaxAccelBias;
 }
 
 /// Root mean square of the landmarks' residuals in sigmas.
@@ -140,13 +153,23 @@ std::optional<double> Estimator::median_depth(const std::string& camera) const {
 
 std::string Estimator::try_to_start(const EstimatorInput& input) {
   append_imu(pending_imu_, input.imu);
-  const bool due = buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s);
+  if (to_seconds(input.t - pending_imu_.front().t) > kMaxPendingImu_s) {
+    buffer_.clear();
+    pending_imu_ = input.imu;
+  }
+  const bool any_corner = std::any_of(input.observations.begin(), input.observations.end(),
+                                      [](const CameraObservations& view) { return !view.features.empty(); });
+  const bool due = buffer_.empty() ? any_corner : any_corner && input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s);
   if (due) {
     buffer_.push_back({input.t, std::move(pending_imu_), input.observations});
     pending_imu_.clear();
     if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) buffer_.erase(buffer_.begin());
   }
   if (standstill_.still()) {
+    const double gravity = standstill_.mean_accel_B().norm();
+    if (std::abs(gravity - 9.81) > kMaxGravityError) {
+      return fmt::format("an accelerometer in m/s^2: it reads {:.2f} of 9.81 at rest", gravity);
+    }
     start_at_rest(input);
     return "";
   }
@@ -213,7 +236,9 @@ bool Estimator::start_in_motion() {
   const double rms = visual_rms(window_);
   spdlog::info("start in motion: {} landmarks, rms {:.2f} sigma, gravity error {:.2f}, speed {:.2f} m/s", unused.landmarks,
                rms, alignment->gravity_error, window_.newest().nav().v_W.norm());
-  if (rms > kMaxStartRms || unused.landmarks < 10) {
+  const bool plausible = rms <= kMaxStartRms && std::abs(alignment->gravity_error) < kMaxFreeGravityError &&
+                         unused.landmarks >= kMinStartLandmarks && window_.newest().nav().T_W_B.translation().allFinite();
+  if (!plausible) {
     std::swap(window_, window);
     return false;
   }
@@ -230,20 +255,22 @@ void Estimator::append(const EstimatorInput& input) {
   state.t = input.t;
   const StateId id = window_.add_state(to_window_state(state, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
-  if (standstill_.still()) {
+  if (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed) {
     window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
                                                {config_.zero_velocity_sigma, kFree, kFree}));
   }
 }
 
 void Estimator::optimize(EstimatorResult& result, int iterations) {
-  solve(window_, iterations);
+  const bool usable = solve(window_, iterations).usable;
+  result.plausible = usable && plausible(newest());
   result.outliers = remove_outliers(window_, config_.landmarks);
+  const StateId newest_id = window_.states.rbegin()->first;
   result.landmarks = result.landmarks_seen = 0;
   for (const auto& [id, feature] : window_.features) {
     if (!feature.anchor) continue;
     ++result.landmarks;
-    if (window_.alive(feature)) ++result.landmarks_seen;
+    if (feature.last_seen == newest_id) ++result.landmarks_seen;
   }
 }
 
@@ -273,7 +300,8 @@ void Estimator::drop_recent(StateId id) {
   const auto state = window_.states.find(id);
   const auto next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
-  if (joined.dt() > config_.max_interval_s) {
+  // At rest new keyframes would push those with a baseline out of the window.
+  if (joined.dt() > config_.max_interval_s * (standstill_.still() ? kRestStretch : 1.0)) {
     state->second.keyframe = true;
     return;
   }
@@ -302,8 +330,10 @@ void Estimator::drop_oldest_keyframe() {
   std::erase_if(touching, [&](const Factor& factor) {
     const BlockKey& depth = factor.blocks.back();
     if (depth.kind != BlockKind::InverseDepth) return false;
+    const auto found = inherited.find(depth.id);
+    if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
     const StateId seen_by = factor.blocks[1].id;
-    return !window_.states.at(seen_by).keyframe || (inherited.at(depth.id) && seen_by >= heir);
+    return !window_.states.at(seen_by).keyframe || (found->second && seen_by >= heir);
   });
   window_.prior = marginalize(window_, touching, leaving);
   for (auto it = window_.features.begin(); it != window_.features.end();) {

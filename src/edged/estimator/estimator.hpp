@@ -52,6 +52,7 @@ struct EstimatorResult {
   int landmarks = 0;                ///< in the cost
   int landmarks_seen = 0;           ///< of them, seen by the newest state
   bool standstill = false;
+  bool plausible = true;            ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
 
 class Estimator {

@@ -59,11 +59,13 @@ void LandmarkConfig::visit(ConfigFields& fields) {
 }
 
 void triangulate_features(Window& window, const LandmarkConfig& config) {
-  std::vector<int> landmarks(window.cameras.size(), 0);
+  // Landmarks out of sight still hold the window together, but must not take the places of those in view.
+  std::vector<int> landmarks(window.cameras.size(), 0), total(window.cameras.size(), 0);
   std::vector<Feature*> candidates;
   for (auto& [id, feature] : window.features) {
     if (feature.anchor) {
-      ++landmarks[feature.camera];
+      ++total[feature.camera];
+      if (window.alive(feature)) ++landmarks[feature.camera];
     } else if (window.alive(feature)) {
       candidates.push_back(&feature);
     }
@@ -71,8 +73,9 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Feature* a, const Feature* b) { return a->seen.size() > b->seen.size(); });
   for (Feature* feature : candidates) {
-    if (landmarks[feature->camera] >= config.max_per_camera) continue;
-    if (triangulate_feature(window, *feature, config)) ++landmarks[feature->camera];
+    const std::size_t camera = feature->camera;
+    if (landmarks[camera] >= config.max_per_camera || total[camera] >= 2 * config.max_per_camera) continue;
+    if (triangulate_feature(window, *feature, config)) ++landmarks[camera], ++total[camera];
   }
 }
 
@@ -92,7 +95,8 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
         if (bad && window.alive(feature) && sight.first == feature.last_seen) wrong.push_back(it->first);
         return bad;
       });
-      dropped = feature.seen.size() < 2;
+      // Right after a change of anchor a landmark has one sight until its camera's next image.
+      dropped = feature.seen.size() < 2 && !window.alive(feature);
     }
     if (dropped) {
       if (window.alive(feature)) wrong.push_back(it->first);
@@ -106,11 +110,12 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
 
 std::optional<double> median_residual(const Window& window, std::size_t camera) {
   constexpr std::size_t kMinSights = 12;
+  const StateId newest = window.states.rbegin()->first;
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features) {
     if (feature.camera != camera || !feature.anchor) continue;
-    for (const auto& [state, sight] : feature.seen) {
-      if (state != *feature.anchor) residuals.push_back(residual_sigmas(window, feature, state));
+    if (feature.seen.contains(newest) && newest != *feature.anchor) {
+      residuals.push_back(residual_sigmas(window, feature, newest));
     }
   }
   if (residuals.size() < kMinSights) return std::nullopt;

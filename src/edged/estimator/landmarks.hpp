@@ -28,7 +28,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config);
 /// out: their tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
-/// Median length of the residuals of one camera's newest sights, in sigmas; nothing with too few of them.
+/// Median length of the residuals that one camera has in the newest state, in sigmas; nothing with too few of them.
 std::optional<double> median_residual(const Window& window, std::size_t camera);
 
 /// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and the

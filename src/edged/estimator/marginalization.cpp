@@ -160,7 +160,7 @@ LinearPrior marginalize(Window& window, const std::vector<Factor>& factors, cons
   prior.J.resize(rows, n);
   prior.r.resize(rows);
   for (Eigen::Index i = 0, row = 0; i < n; ++i) {
-    if (D[i] <= kRankTolerance) continue;
+    if (!(D[i] > kRankTolerance)) continue;
     prior.J.row(row) = std::sqrt(D[i]) * L_T_P.row(i) * inverse_scale.asDiagonal();
     prior.r[row++] = y[i] / std::sqrt(D[i]);
   }

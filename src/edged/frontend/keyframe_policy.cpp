@@ -21,6 +21,10 @@ void KeyframeConfig::visit(ConfigFields& fields) {
   fields.add(
       "rotation_deg", rotation_deg,
       {.unit = "deg", .min = 0.1, .max = 180, .effect = "keyframe when the camera has turned more since the last one"});
+  fields.add("min_tracks", min_tracks,
+             {.min = 0, .max = 1000, .effect = "with fewer live tracks a keyframe looks for corners anew"});
+  fields.add("starved_interval_s", starved_interval_s,
+             {.unit = "s", .min = 0, .max = 10, .effect = "time between keyframes that look for corners anew"});
   fields.add("min_interval_s", min_interval_s,
              {.unit = "s", .min = 0, .max = 10, .effect = "never two keyframes nearer in time"});
   fields.add(
@@ -42,6 +46,7 @@ KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig&
   const double age_s = to_seconds(since.time);
   if (age_s < config.min_interval_s) return KeyframeReason::None;
   if (since.tracks.alive() < config.min_tracked_share * since.tracks.at_keyframe) return KeyframeReason::FewTracks;
+  if (since.tracks.alive() < config.min_tracks && age_s > config.starved_interval_s) return KeyframeReason::FewTracks;
   const double parallax = median(since.tracks.parallax_rad);
   if (parallax > config.parallax_deg * kDegree) return KeyframeReason::Parallax;
   if (since.rotation_rad > config.rotation_deg * kDegree) return KeyframeReason::Rotation;

@@ -15,6 +15,8 @@ struct KeyframeConfig {
   double min_tracked_share = 0.6;
   double parallax_deg = 1.5;
   double rotation_deg = 10.0;
+  int min_tracks = 15;
+  double starved_interval_s = 0.2;
   double min_interval_s = 0.05;
   double max_interval_s = 0.5;
   double still_parallax_deg = 0.2;

@@ -121,8 +121,9 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dv_d_ba_ -= step.d_v_d_accel;
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
-  const bool gyro_out = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
-  const bool accel_out = out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
+  const bool gap = b.t - a.t > kMaxSampleInterval;
+  const bool gyro_out = gap || out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
+  const bool accel_out = gap || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
   const double gyro_sigma = noise_.gyro_noise * (gyro_out ? noise_.saturation_inflation : 1.0);
   const double accel_sigma = noise_.accel_noise * (accel_out ? noise_.saturation_inflation : 1.0);
   saturated_ = saturated_ || gyro_out || accel_out;

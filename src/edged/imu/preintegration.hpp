@@ -16,6 +16,9 @@ using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Matrix15d = Eigen::Matrix<double, 15, 15>;
 
+/// Two samples farther apart than this say little of what was between them: their step counts as saturated.
+inline constexpr Duration kMaxSampleInterval = std::chrono::milliseconds(30);
+
 /// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours. `samples` are in time
 /// order and must cover [t_0, t_1] (CheckError otherwise).
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);
@@ -56,7 +59,8 @@ class Preintegration {
 
   const Matrix9d& covariance() const { return covariance_; }  ///< of (d_phi, d_v, d_p) from the white noise
   const ImuNoise& noise() const { return noise_; }
-  bool saturated() const { return saturated_; }  ///< some sample reached the range of the sensor
+  /// Some sample reached the range of the sensor, or samples were missing (kMaxSampleInterval).
+  bool saturated() const { return saturated_; }
 
  private:
   void integrate_step(const ImuSample& a, const ImuSample& b);

@@ -41,6 +41,15 @@ const RigCamera& need(const Rig& rig, Modality modality) {
   return *camera;
 }
 
+/// False when a sample reached the range of the gyro or samples are missing.
+bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    if (imu[i].gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation) return false;
+    if (i > 0 && imu[i].t - imu[i - 1].t > kMaxSampleInterval) return false;
+  }
+  return true;
+}
+
 Rig rig_of_mode(const Rig& rig, Mode mode) {
   Rig used{rig.name, {}};
   if (mode != Mode::Frames) used.cameras.push_back(need(rig, Modality::Events));
@@ -76,18 +85,23 @@ struct Odometry::Impl {
   void mark_keyframe(Timestamp t);
   EstimatorResult estimate(const Packet& packet, bool keyframe);
   void update_depth();
-  void move_world(const SE3& T_new_old);
+  void start_frame(const SE3& T_new_old);
+  NavState in_world(const NavState& state) const;
+  void restart(Timestamp t);
   TrackingStatus judge(const EstimatorResult& result, Timestamp t);
   int tracks(Modality modality) const;
 
   Mode mode;
   OdometryConfig config;
   ImuNoise noise;
+  Rig used_rig;                     ///< the cameras of the mode
   Estimator estimator;
   std::vector<Channel> channels;  ///< events first
   std::optional<EventFrameRenderer> renderer;
   StageTimings timings;
 
+  SE3 T_W_S;                        ///< the estimator's own frame in the world: moved when it starts again after a loss
+  bool ever_started = false;
   FeatureId next_feature = 1;
   NavState now;                     ///< predicted, then optimised; before the start attitude by gyro only
   std::vector<StampedPose> T_W_B;   ///< body poses at the IMU samples, back to the oldest event of a packet's window
@@ -102,10 +116,11 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
     : mode(used_mode),
       config(used_config),
       noise(imu_noise),
-      estimator(rig_of_mode(rig, used_mode), imu_noise, used_config.estimator),
+      used_rig(rig_of_mode(rig, used_mode)),
+      estimator(used_rig, imu_noise, used_config.estimator),
       scene_depth(used_config.initial_depth_m) {
   config.validate();
-  for (const RigCamera& camera : rig_of_mode(rig, mode).cameras) {
+  for (const RigCamera& camera : used_rig.cameras) {
     if (camera.modality == Modality::Events) {
       const CameraModel ideal = ideal_pinhole(camera.model);
       renderer.emplace(UndistortTable(camera.model, ideal), config.event_frame);
@@ -117,6 +132,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
 }
 
 OdometryOutput Odometry::Impl::process(const Packet& packet) {
+  EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   predict(packet);
   draw_event_frame(packet);
   take_frame(packet);
@@ -129,7 +145,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
 
   OdometryOutput output;
   output.status = judge(result, packet.t);
-  output.state = now;
+  output.state = in_world(now);
   output.keyframe = keyframe;
   output.event_tracks = tracks(Modality::Events);
   output.frame_tracks = tracks(Modality::Frames);
@@ -137,14 +153,13 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   output.event_rate_hz = packet.event_rate_hz;
   output.scene_depth = scene_depth;
   output.waiting_for = result.waiting_for;
+  if (output.status == TrackingStatus::Lost && estimator.initialized()) restart(packet.t);
   return output;
 }
 
 void Odometry::Impl::predict(const Packet& packet) {
   const auto timer = timings.measure("predict");
-  gyro_saturated |= std::any_of(packet.imu.begin(), packet.imu.end(), [this](const ImuSample& sample) {
-    return sample.gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation;
-  });
+  gyro_saturated |= !gyro_trusted(packet.imu, noise);
   const Timestamp oldest = packet.t - duration_from_seconds(config.packets.max_age_s);
   std::erase_if(T_W_B, [&](const StampedPose& pose) { return pose.t < oldest || pose.t >= packet.imu.front().t; });
   if (estimator.initialized()) {
@@ -278,7 +293,7 @@ void Odometry::Impl::mark_keyframe(Timestamp t) {
 
 EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   const auto timer = timings.measure("estimate");
-  EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet || mode == Mode::Frames};
+  EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet};
   for (Channel& channel : channels) {
     if (channel.image.empty()) continue;
     channel.T_W_Blast = now.T_W_B;
@@ -291,7 +306,7 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   const SE3 correction = estimator.newest().T_W_B * now.T_W_B.inverse();
   now = estimator.newest();
   for (StampedPose& pose : T_W_B) pose.T = correction * pose.T;
-  if (!started) move_world(correction);
+  if (!started) start_frame(correction);
   for (Channel& channel : channels) {
     if (!channel.image.empty()) channel.T_W_Blast = now.T_W_B;
     if (!channel.image.empty() && keyframe) channel.T_W_Bkeyframe = now.T_W_B;
@@ -309,15 +324,41 @@ void Odometry::Impl::update_depth() {
   }
 }
 
-void Odometry::Impl::move_world(const SE3& T_new_old) {
+/// The estimator has started, in a frame S of its own. The first start makes it the world; later ones are put where the
+/// dead reckoning has come to, position and yaw, so that the trajectory goes on.
+void Odometry::Impl::start_frame(const SE3& T_new_old) {
+  if (ever_started) {
+    const SE3 T_Sold_Snew = T_new_old.inverse();
+    const Eigen::Matrix3d R = (T_W_S * T_Sold_Snew).R();
+    const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+    const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
+    const Eigen::Vector3d p_W_B = T_W_S * (T_Sold_Snew * now.T_W_B.translation());
+    T_W_S = SE3(q, p_W_B - q * now.T_W_B.translation());
+  }
+  ever_started = true;
+  last_supported.reset();
   for (Channel& channel : channels) {
     channel.T_W_Blast = T_new_old * channel.T_W_Blast;
     channel.T_W_Bkeyframe = T_new_old * channel.T_W_Bkeyframe;
   }
 }
 
+NavState Odometry::Impl::in_world(const NavState& state) const {
+  NavState out = state;
+  out.T_W_B = T_W_S * state.T_W_B;
+  out.v_W = T_W_S.rotation() * state.v_W;
+  return out;
+}
+
+void Odometry::Impl::restart(Timestamp t) {
+  spdlog::warn("lost at {:.3f} s: starting again", to_seconds(t));
+  estimator = Estimator(used_rig, noise, config.estimator);
+  scene_depth = config.initial_depth_m;
+}
+
 TrackingStatus Odometry::Impl::judge(const EstimatorResult& result, Timestamp t) {
-  if (!estimator.initialized()) return TrackingStatus::Initializing;
+  if (!estimator.initialized()) return ever_started ? TrackingStatus::Lost : TrackingStatus::Initializing;
+  if (!result.plausible) return TrackingStatus::Lost;
   if (result.standstill || result.landmarks_seen >= config.min_landmarks || !last_supported) last_supported = t;
   const double alone_s = to_seconds(t - *last_supported);
   if (alone_s > config.lost_after_s) return TrackingStatus::Lost;

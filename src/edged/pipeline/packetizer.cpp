@@ -131,6 +131,10 @@ void Packetizer::add_imu(const ImuSample& sample) {
     ++counters_.imu_late;
     return;
   }
+  if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) {
+    ++counters_.imu_not_finite;
+    return;
+  }
   imu_.push_back(sample);
   if (last_handed_out_ || sample.t - imu_.front().t <= 2 * kImuBeforeFirst) return;
   const auto keep = std::lower_bound(imu_.begin(), imu_.end(), sample.t - kImuBeforeFirst,

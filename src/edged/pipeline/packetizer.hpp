@@ -54,6 +54,7 @@ struct PacketizerCounters {
   std::size_t events_late = 0;         ///< dropped: older than an event or a cut before them
   std::size_t events_lost = 0;         ///< new events of dropped packets, and those after the last cut
   std::size_t frames_late = 0;         ///< dropped: not after the last cut
+  std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
   std::size_t imu_late = 0;            ///< dropped: not after the sample before
 };
 
