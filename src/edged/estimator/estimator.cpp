@@ -92,7 +92,9 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("max_interval_s", max_interval_s, {"s", 0.2, 10, "after this time a state becomes a keyframe in any case"});
   fields.add("iterations", iterations, {"", 1, 50, "solver iterations a packet"});
   fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "visual residuals beyond this are weighted down"});
-  fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from its first guess"});
+  fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the guess of a start in motion"});
+  fields.add("rest_gyro_bias_sigma", rest_gyro_bias_sigma,
+             {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the mean rate measured at rest"});
   fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
   fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
   fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the views of a start in motion"});
@@ -205,7 +207,7 @@ void Estimator::start_at_rest(const EstimatorInput& input) {
   tilt.r = Eigen::VectorXd::Zero(2);
   window_.soft_priors.push_back(tilt);
   window_.soft_priors.push_back(motion_prior(
-      motion, motion_block(state), {config_.zero_velocity_sigma, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+      motion, motion_block(state), {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
   initialized_ = true;
   buffer_.clear();
   spdlog::info("started at rest at {:.3f} s", to_seconds(input.t));

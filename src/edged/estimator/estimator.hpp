@@ -21,7 +21,8 @@ struct EstimatorConfig {
   double max_interval_s = 1.0;     ///< IMU between two keyframes
   int iterations = 4;              ///< of the solver, a packet
   double cauchy_scale = 1.0;       ///< robust loss of visual residuals
-  double gyro_bias_sigma = 0.02;   ///< prior at start-up
+  double gyro_bias_sigma = 0.02;   ///< prior of a start in motion
+  double rest_gyro_bias_sigma = 0.002;  ///< prior of a start at rest, where the bias has been measured
   double accel_bias_sigma = 0.15;
   double zero_velocity_sigma = 0.01;
   double init_spacing_s = 0.08;    ///< between the views of the start-up buffer

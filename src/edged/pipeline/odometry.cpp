@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <span>
 
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
@@ -48,6 +49,13 @@ bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
     if (i > 0 && imu[i].t - imu[i - 1].t > kMaxSampleInterval) return false;
   }
   return true;
+}
+
+/// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
+std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
+  std::size_t first = poses.size() - 2;
+  while (first > 0 && poses[first].t > t) --first;
+  return std::span(poses).subspan(first);
 }
 
 Rig rig_of_mode(const Rig& rig, Mode mode) {
@@ -189,7 +197,8 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
   channels.front().image.release();
   if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
-  const CameraMotion motion = camera_motion(T_W_B, now.T_W_B, channels.front().camera.T_B_C);
+  const std::span<const StampedPose> poses = covering(T_W_B, packet.window().front().t);
+  const CameraMotion motion = camera_motion(poses, now.T_W_B, channels.front().camera.T_B_C);
   if (config.event_frame.depth == DepthSource::Landmarks && estimator.initialized()) {
     const DepthGrid depths = event_depths();
     event_frame = renderer->render(packet.window(), motion, scene_depth, &depths);
