@@ -196,7 +196,8 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   const double pixels = static_cast<double>(renderer->camera().width()) * renderer->camera().height();
   quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
   channels.front().image.release();
-  if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels || T_W_B.size() < 2) return;
+  if (packet.window().empty() || T_W_B.size() < 2) return;
+  if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels) return;
   const std::span<const StampedPose> poses = covering(T_W_B, packet.window().front().t);
   const CameraMotion motion = camera_motion(poses, now.T_W_B, channels.front().camera.T_B_C);
   if (config.event_frame.depth == DepthSource::Landmarks && estimator.initialized()) {
