@@ -22,9 +22,9 @@ struct EstimatorConfig {
   int iterations = 4;              ///< of the solver, a packet
   double cauchy_scale = 1.0;       ///< robust loss of visual residuals
   double gyro_bias_sigma = 0.02;   ///< prior of a start in motion
-  double rest_gyro_bias_sigma = 0.002;  ///< prior of a start at rest, where the bias has been measured
+  double rest_gyro_bias_sigma = 0.02;  ///< prior of a start at rest, where the bias has been measured
   double accel_bias_sigma = 0.15;
-  double zero_velocity_sigma = 0.003;
+  double zero_velocity_sigma = 0.01;
   double init_spacing_s = 0.08;    ///< between the views of the start-up buffer
   int init_min_views = 12;         ///< fewer views do not separate scale from accelerometer bias
   int init_max_views = 20;         ///< the buffer's length: slow motion needs the time
