@@ -7,7 +7,7 @@ Usage: ablation.py AXIS RECORDING... [--edged PATH] [--modes events fused] [--re
        [--set KEY=VALUE] [--only TEXT]
 
 AXIS is one of those in AXES below. A repeat is the same run with events windows one per cent longer or shorter: how far
-the results scatter for no reason. Runs that are in DIR already are not done again; DIR/table.md holds the table.
+the results scatter for no reason. Runs that are in DIR/AXIS already are not done again; table.md there holds the table.
 A run fails when it leaves no pose, is not Good at its end, or covers less than 80 % of the recording.
 """
 import argparse
@@ -60,7 +60,7 @@ def run(options, job):
     """One run's figures; from the folder of an earlier call where there is one."""
     variant, mode, recording, repeat = job
     name = f"{pathlib.Path(recording).name}-{mode}-{variant}-{repeat}".replace(" ", "_").replace(",", "").replace("/", "_")
-    folder = options.out / name
+    folder = options.out / options.axis / name
     metrics = folder / "metrics.json"
     if not metrics.exists():
         shutil.rmtree(folder, ignore_errors=True)
@@ -136,7 +136,7 @@ def main():
     parser.add_argument("--only", default="", help="variants whose name contains this text")
     options = parser.parse_args()
     options.variants = [v for v in AXES[options.axis] if options.only in v]
-    options.out.mkdir(parents=True, exist_ok=True)
+    (options.out / options.axis).mkdir(parents=True, exist_ok=True)
     jobs = [(v, m, r, k) for k in range(options.repeats) for m in options.modes for r in options.recordings
             for v in options.variants]
     results = {}
@@ -144,7 +144,7 @@ def main():
         for job, figures in pool.map(lambda job: run(options, job), jobs):
             results[job] = figures
             show_progress(len(results), len(jobs))
-            (options.out / "table.md").write_text(table(options, results))
+            (options.out / options.axis / "table.md").write_text(table(options, results))
     print(table(options, results), end="")
 
 
