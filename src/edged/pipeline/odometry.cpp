@@ -9,29 +9,11 @@
 
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
+#include "edged/pipeline/body_motion.hpp"
+#include "edged/pipeline/channel.hpp"
 
 namespace edged {
 namespace {
-
-/// One camera's tracks and where the body was at their last image and last keyframe.
-struct Channel {
-  Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config)
-      : camera(rig_camera), tracker(rig_camera.name, image_model, config) {}
-
-  SE3 T_W_C(const SE3& T_W_B) const { return T_W_B * camera.T_B_C; }
-
-  RigCamera camera;
-  FeatureTracker tracker;
-  cv::Mat image;      ///< of the present packet; empty when it brought none
-  cv::Mat corners;    ///< the image to find corners on: the same, or an enhanced one
-  SE3 T_W_Blast;      ///< at the last image
-  SE3 T_W_Bkeyframe;  ///< at the last keyframe
-  bool any_image = false;
-  /// delta x_last of paper Eq. 2 [px]. The paper shifts the event frame by it, and tracks measured there would have to
-  /// be shifted back; to shift the places where they are searched instead is the same, and leaves the frame where the
-  /// poses put it.
-  Eigen::Vector2d alignment_px = Eigen::Vector2d::Zero();
-};
 
 const RigCamera& need(const Rig& rig, Modality modality) {
   const RigCamera* camera = rig.find(modality);
@@ -40,15 +22,6 @@ const RigCamera& need(const Rig& rig, Modality modality) {
                              modality == Modality::Events ? "event" : "frame");
   }
   return *camera;
-}
-
-/// False when a sample reached the range of the gyro or samples are missing.
-bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
-  for (std::size_t i = 0; i < imu.size(); ++i) {
-    if (imu[i].gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation) return false;
-    if (i > 0 && imu[i].t - imu[i - 1].t > kMaxSampleInterval) return false;
-  }
-  return true;
 }
 
 /// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
@@ -86,7 +59,6 @@ struct Odometry::Impl {
   void draw_event_frame(const Packet& packet);
   DepthGrid event_depths() const;
   void take_frame(const Packet& packet);
-  void align(Channel& channel, const TrackSummary& summary) const;
   void track(Channel& channel, Timestamp t);
   void reject(Channel& channel);
   bool is_keyframe(const Packet& packet) const;
@@ -111,8 +83,7 @@ struct Odometry::Impl {
   SE3 T_W_S;                        ///< the estimator's own frame in the world: moved when it starts again after a loss
   bool ever_started = false;
   FeatureId next_feature = 1;
-  NavState now;                     ///< predicted, then optimised; before the start attitude by gyro only
-  std::vector<StampedPose> T_W_B;   ///< body poses at the IMU samples, back to the oldest event of a packet's window
+  BodyMotion body;                  ///< predicted, then optimised
   bool gyro_saturated = false;      ///< since the last keyframe
   bool quiet = false;               ///< the event camera sees nothing move
   double scene_depth;
@@ -126,15 +97,16 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
       noise(imu_noise),
       used_rig(rig_of_mode(rig, used_mode)),
       estimator(used_rig, imu_noise, used_config.estimator),
+      body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
       scene_depth(used_config.initial_depth_m) {
   config.validate();
   for (const RigCamera& camera : used_rig.cameras) {
     if (camera.modality == Modality::Events) {
       const CameraModel ideal = ideal_pinhole(camera.model);
       renderer.emplace(UndistortTable(camera.model, ideal), config.event_frame);
-      channels.emplace_back(camera, ideal, config.event_tracker);
+      channels.emplace_back(camera, ideal, config.event_tracker, config.alignment);
     } else {
-      channels.emplace_back(camera, camera.model, config.frame_tracker);
+      channels.emplace_back(camera, camera.model, config.frame_tracker, AlignmentConfig{});
     }
   }
 }
@@ -153,7 +125,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
 
   OdometryOutput output;
   output.status = judge(result, packet.t);
-  output.state = in_world(now);
+  output.state = in_world(body.now());
   output.keyframe = keyframe;
   output.event_tracks = tracks(Modality::Events);
   output.frame_tracks = tracks(Modality::Frames);
@@ -168,25 +140,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
 void Odometry::Impl::predict(const Packet& packet) {
   const auto timer = timings.measure("predict");
   gyro_saturated |= !gyro_trusted(packet.imu, noise);
-  const Timestamp oldest = packet.t - duration_from_seconds(config.packets.max_age_s);
-  std::erase_if(T_W_B, [&](const StampedPose& pose) { return pose.t < oldest || pose.t >= packet.imu.front().t; });
-  if (estimator.initialized()) {
-    for (const NavState& state : propagate_all(now, packet.imu)) T_W_B.push_back({state.t, state.T_W_B});
-    now = propagate(now, Preintegration(packet.imu, now.bias_gyro, now.bias_accel, noise));
-  } else {
-    // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
-    SE3 pose = now.T_W_B;
-    for (std::size_t i = 0; i < packet.imu.size(); ++i) {
-      if (i > 0) {
-        const double dt = to_seconds(packet.imu[i].t - packet.imu[i - 1].t);
-        const Eigen::Vector3d rate = 0.5 * (packet.imu[i].gyro_B + packet.imu[i - 1].gyro_B);
-        pose = pose * SE3(so3::exp(rate * dt), Eigen::Vector3d::Zero());
-      }
-      T_W_B.push_back({packet.imu[i].t, pose});
-    }
-    now.T_W_B = pose;
-  }
-  now.t = packet.t;
+  body.predict(packet.imu, packet.t, estimator.initialized());
 }
 
 void Odometry::Impl::draw_event_frame(const Packet& packet) {
@@ -195,11 +149,11 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   const auto timer = timings.measure("event_frame");
   const double pixels = static_cast<double>(renderer->camera().width()) * renderer->camera().height();
   quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
-  channels.front().image.release();
-  if (packet.window().empty() || T_W_B.size() < 2) return;
+  channels.front().show({}, {});
+  if (packet.window().empty() || body.poses().size() < 2) return;
   if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels) return;
-  const std::span<const StampedPose> poses = covering(T_W_B, packet.window().front().t);
-  const CameraMotion motion = camera_motion(poses, now.T_W_B, channels.front().camera.T_B_C);
+  const std::span<const StampedPose> poses = covering(body.poses(), packet.window().front().t);
+  const CameraMotion motion = camera_motion(poses, body.now().T_W_B, channels.front().camera.T_B_C);
   if (config.event_frame.depth == DepthSource::Landmarks && estimator.initialized()) {
     const DepthGrid depths = event_depths();
     event_frame = renderer->render(packet.window(), motion, scene_depth, &depths);
@@ -207,14 +161,13 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
     event_frame = renderer->render(packet.window(), motion, scene_depth);
   }
   const cv::Mat enhanced = enhance(event_frame, config.enhance);
-  channels.front().image = config.enhance_track ? enhanced : event_frame;
-  channels.front().corners = config.enhance_detect ? enhanced : event_frame;
+  channels.front().show(config.enhance_track ? enhanced : event_frame, config.enhance_detect ? enhanced : event_frame);
 }
 
 /// The landmarks of both cameras as the event camera is predicted to see them now.
 DepthGrid Odometry::Impl::event_depths() const {
   std::vector<DepthSample> samples;
-  const SE3 T_C_W = channels.front().T_W_C(now.T_W_B).inverse();
+  const SE3 T_C_W = channels.front().T_W_C(body.now().T_W_B).inverse();
   for (const Channel& channel : channels) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
     for (const Track& track : channel.tracker.tracks()) {
@@ -230,47 +183,26 @@ DepthGrid Odometry::Impl::event_depths() const {
 
 void Odometry::Impl::take_frame(const Packet& packet) {
   if (mode == Mode::Events) return;
-  channels.back().image = channels.back().corners = packet.frame ? packet.frame->image : cv::Mat();
+  const cv::Mat image = packet.frame ? packet.frame->image : cv::Mat();
+  channels.back().show(image, image);
   if (packet.frame) last_frame = packet.t;
 }
 
 void Odometry::Impl::track(Channel& channel, Timestamp t) {
-  if (channel.image.empty()) return;
+  if (!channel.has_image()) return;
   const auto timer = timings.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
-  std::optional<TrackPrediction> prediction;
-  if (channel.any_image) {
-    prediction.emplace();
-    prediction->T_cur_prev = channel.T_W_C(now.T_W_B).inverse() * channel.T_W_C(channel.T_W_Blast);
-    prediction->scene_depth = scene_depth;
-    prediction->depth = [this](FeatureId id) { return estimator.initialized() ? estimator.depth(id) : std::nullopt; };
-  }
-  if (prediction) prediction->offset_px = channel.alignment_px;
-  align(channel, channel.tracker.track(channel.image, t, prediction));
-  channel.any_image = true;
-}
-
-void Odometry::Impl::align(Channel& channel, const TrackSummary& summary) const {
-  if (config.alignment_gain <= 0.0 || channel.camera.modality != Modality::Events) return;
-  // Without a usable prediction the old correction fades.
-  const bool measured = summary.tracked > 0 && !summary.prediction_failed;
-  const Eigen::Vector2d newest =
-      measured ? Eigen::Vector2d(summary.median_innovation_px + channel.alignment_px) : Eigen::Vector2d::Zero();
-  channel.alignment_px += config.alignment_gain * (newest - channel.alignment_px);
-  const double length = channel.alignment_px.norm();
-  if (length > config.alignment_max_px) channel.alignment_px *= config.alignment_max_px / length;
+  channel.track(t, body.now().T_W_B, scene_depth,
+                [this](FeatureId id) { return estimator.initialized() ? estimator.depth(id) : std::nullopt; });
 }
 
 void Odometry::Impl::reject(Channel& channel) {
-  if (channel.image.empty()) return;
+  if (!channel.has_image()) return;
   const auto timer = timings.measure("reject");
-  const Eigen::Matrix3d R_Bkf_B = (channel.T_W_Bkeyframe.rotation().conjugate() * now.T_W_B.rotation()).toRotationMatrix();
-  const Eigen::Matrix3d R_B_C = channel.camera.T_B_C.R();
-  const std::optional<Eigen::Matrix3d> R_Ckf_C = R_B_C.transpose() * R_Bkf_B * R_B_C;
-  channel.tracker.reject_outliers(FeatureTracker::Reference::Keyframe, gyro_saturated ? std::nullopt : R_Ckf_C);
+  channel.reject(body.now().T_W_B, !gyro_saturated);
 }
 
 bool Odometry::Impl::is_keyframe(const Packet& packet) const {
-  const bool any_image = std::any_of(channels.begin(), channels.end(), [](const auto& c) { return !c.image.empty(); });
+  const bool any_image = std::any_of(channels.begin(), channels.end(), [](const Channel& c) { return c.has_image(); });
   if (!any_image) return false;
   // With both cameras at work a keyframe waits for the next frame, so that both see it.
   const bool frame_due = mode == Mode::Fused && !packet.frame && last_frame && packet.t - *last_frame < std::chrono::milliseconds(60);
@@ -280,11 +212,10 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe;
   for (const Channel& channel : channels) {
-    if (channel.image.empty()) continue;
-    const Eigen::Quaterniond q = channel.T_W_Bkeyframe.rotation().conjugate() * now.T_W_B.rotation();
-    const Eigen::Matrix3d R_B_C = channel.camera.T_B_C.R();
-    since.tracks += channel.tracker.since_keyframe(R_B_C.transpose() * q.toRotationMatrix() * R_B_C);
-    since.rotation_rad = std::max(since.rotation_rad, so3::log(q).norm());
+    if (!channel.has_image()) continue;
+    const Eigen::Matrix3d R_Ckf_C = channel.since_keyframe(body.now().T_W_B);
+    since.tracks += channel.tracker.since_keyframe(R_Ckf_C);
+    since.rotation_rad = std::max(since.rotation_rad, so3::log(Eigen::Quaterniond(R_Ckf_C)).norm());
   }
   return keyframe_reason(since, config.keyframes) != KeyframeReason::None;
 }
@@ -292,10 +223,7 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
 void Odometry::Impl::mark_keyframe(Timestamp t) {
   const auto timer = timings.measure("detect");
   for (Channel& channel : channels) {
-    if (channel.image.empty()) continue;
-    channel.tracker.detect(channel.corners, next_feature);
-    channel.tracker.mark_keyframe();
-    channel.T_W_Bkeyframe = now.T_W_B;
+    if (channel.has_image()) channel.mark_keyframe(body.now().T_W_B, next_feature);
   }
   last_keyframe = t;
   gyro_saturated = false;
@@ -305,21 +233,18 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   const auto timer = timings.measure("estimate");
   EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet};
   for (Channel& channel : channels) {
-    if (channel.image.empty()) continue;
-    channel.T_W_Blast = now.T_W_B;
+    if (!channel.has_image()) continue;
+    channel.T_W_Blast = body.now().T_W_B;
     input.observations.push_back(channel.tracker.observations());
   }
   const bool started = estimator.initialized();
   const EstimatorResult result = estimator.add(input);
   for (Channel& channel : channels) channel.tracker.remove(result.outliers);
   if (!estimator.initialized()) return result;
-  const SE3 correction = estimator.newest().T_W_B * now.T_W_B.inverse();
-  now = estimator.newest();
-  for (StampedPose& pose : T_W_B) pose.T = correction * pose.T;
+  const SE3 correction = body.correct(estimator.newest());
   if (!started) start_frame(correction);
   for (Channel& channel : channels) {
-    if (!channel.image.empty()) channel.T_W_Blast = now.T_W_B;
-    if (!channel.image.empty() && keyframe) channel.T_W_Bkeyframe = now.T_W_B;
+    if (channel.has_image()) channel.settle(body.now().T_W_B, keyframe);
   }
   return result;
 }
@@ -342,15 +267,12 @@ void Odometry::Impl::start_frame(const SE3& T_new_old) {
     const Eigen::Matrix3d R = (T_W_S * T_Sold_Snew).R();
     const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
     const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
-    const Eigen::Vector3d p_W_B = T_W_S * (T_Sold_Snew * now.T_W_B.translation());
-    T_W_S = SE3(q, p_W_B - q * now.T_W_B.translation());
+    const Eigen::Vector3d p_W_B = T_W_S * (T_Sold_Snew * body.now().T_W_B.translation());
+    T_W_S = SE3(q, p_W_B - q * body.now().T_W_B.translation());
   }
   ever_started = true;
   last_supported.reset();
-  for (Channel& channel : channels) {
-    channel.T_W_Blast = T_new_old * channel.T_W_Blast;
-    channel.T_W_Bkeyframe = T_new_old * channel.T_W_Bkeyframe;
-  }
+  for (Channel& channel : channels) channel.move(T_new_old);
 }
 
 NavState Odometry::Impl::in_world(const NavState& state) const {

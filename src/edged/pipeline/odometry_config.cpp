@@ -16,10 +16,10 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("enhance", enhance);
   fields.add("enhance.detect", enhance_detect, {.effect = "find new corners on the enhanced event frame, not the plain one"});
   fields.add("enhance.track", enhance_track, {.effect = "follow corners on the enhanced event frame, not the plain one"});
-  fields.add("alignment_gain", alignment_gain,
+  fields.add("alignment_gain", alignment.gain,
              {"", 0, 1, "weight of the last event frame's median (measured - predicted) displacement in the running mean "
                         "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
-  fields.add("alignment_max_px", alignment_max_px, {"px", 0, 50, "bound of that correction"});
+  fields.add("alignment_max_px", alignment.max_px, {"px", 0, 50, "bound of that correction"});
   fields.group("event_tracker", event_tracker);
   fields.group("frame_tracker", frame_tracker);
   fields.group("keyframes", keyframes);

@@ -9,6 +9,7 @@
 #include "edged/events/enhance.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/tracker.hpp"
+#include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/packetizer.hpp"
 
 namespace edged {
@@ -21,8 +22,7 @@ struct OdometryConfig {
   EnhanceConfig enhance;
   bool enhance_detect = true;  ///< find corners on the enhanced event frame
   bool enhance_track = false;  ///< follow them on it too
-  double alignment_gain = 0.0;    ///< of the running mean of delta x_last (Eq. 2); 0: off
-  double alignment_max_px = 3.0;  ///< its bound
+  AlignmentConfig alignment;      ///< of the event frames
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;

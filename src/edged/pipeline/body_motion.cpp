@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/body_motion.hpp"
+
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+
+bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    if (imu[i].gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation) return false;
+    if (i > 0 && imu[i].t - imu[i - 1].t > kMaxSampleInterval) return false;
+  }
+  return true;
+}
+
+void BodyMotion::predict(const std::vector<ImuSample>& imu, Timestamp t, bool started) {
+  std::erase_if(T_W_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
+  if (started) {
+    for (const NavState& state : propagate_all(now_, imu)) T_W_B_.push_back({state.t, state.T_W_B});
+    now_ = propagate(now_, Preintegration(imu, now_.bias_gyro, now_.bias_accel, noise_));
+  } else {
+    // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
+    SE3& pose = now_.T_W_B;
+    T_W_B_.push_back({imu.front().t, pose});
+    for (std::size_t i = 1; i < imu.size(); ++i) {
+      const double dt = to_seconds(imu[i].t - imu[i - 1].t);
+      const Eigen::Vector3d rate = 0.5 * (imu[i].gyro_B + imu[i - 1].gyro_B);
+      pose = pose * SE3(so3::exp(rate * dt), Eigen::Vector3d::Zero());
+      T_W_B_.push_back({imu[i].t, pose});
+    }
+  }
+  now_.t = t;
+}
+
+SE3 BodyMotion::correct(const NavState& estimate) {
+  const SE3 correction = estimate.T_W_B * now_.T_W_B.inverse();
+  now_ = estimate;
+  for (StampedPose& pose : T_W_B_) pose.T = correction * pose.T;
+  return correction;
+}
+
+}  // namespace edged

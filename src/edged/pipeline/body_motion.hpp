@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the body is now and was while the events of the packet came: IMU propagation from the newest estimate.
+#pragma once
+
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/imu/noise.hpp"
+
+namespace edged {
+
+/// False when a sample reached the range of the gyro, or samples are missing.
+bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise);
+
+class BodyMotion {
+ public:
+  /// history: how long before a packet poses are kept (the oldest event that a packet's frame can show).
+  BodyMotion(const ImuNoise& noise, Duration history) : noise_(noise), history_(history) {}
+
+  /// Moves `now` to t, the end of imu. started: the estimator knows speed and tilt; else attitude by gyro only.
+  void predict(const std::vector<ImuSample>& imu, Timestamp t, bool started);
+
+  /// The estimator's word on `now`: the history moves along. Returns old to new world frame, T_new_old.
+  SE3 correct(const NavState& estimate);
+
+  const NavState& now() const { return now_; }
+  /// Body poses at the IMU samples of the history, oldest first.
+  const std::vector<StampedPose>& poses() const { return T_W_B_; }
+
+ private:
+  ImuNoise noise_;
+  Duration history_;
+  NavState now_;
+  std::vector<StampedPose> T_W_B_;
+};
+
+}  // namespace edged

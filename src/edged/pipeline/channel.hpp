@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One camera of the rig at work: its tracks, and where the body was at its last image and last keyframe.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "edged/camera/rig.hpp"
+#include "edged/frontend/tracker.hpp"
+
+namespace edged {
+
+/// The running mean of delta x_last, paper Eq. 2.
+struct AlignmentConfig {
+  double gain = 0.0;    ///< weight of the newest image; 0: off
+  double max_px = 3.0;  ///< bound of the mean
+};
+
+class Channel {
+ public:
+  /// image_model: of the images given to it (the ideal pinhole for undistorted event frames).
+  Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
+          const AlignmentConfig& alignment)
+      : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment) {}
+
+  /// The next image: corners are followed on `image` and found on `corners`. Empty: this packet brought none.
+  void show(const cv::Mat& image, const cv::Mat& corners);
+  bool has_image() const { return !image_.empty(); }
+
+  SE3 T_W_C(const SE3& T_W_B) const { return T_W_B * camera.T_B_C; }
+  /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
+  Eigen::Matrix3d since_keyframe(const SE3& T_W_B) const;
+
+  /// Follows the tracks into the image. T_W_B: the body now, as predicted; scene_depth [m] for corners whose depth is
+  /// not known.
+  void track(Timestamp t, const SE3& T_W_B, double scene_depth,
+             const std::function<std::optional<double>(FeatureId)>& depth);
+  /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
+  void reject(const SE3& T_W_B, bool trust_gyro);
+  /// Finds new corners and makes the image the keyframe.
+  void mark_keyframe(const SE3& T_W_B, FeatureId& next_feature);
+
+  /// The body at the present image (and keyframe), now better known.
+  void settle(const SE3& T_W_B, bool keyframe);
+  /// Everything remembered moves into another world frame.
+  void move(const SE3& T_new_old);
+
+  RigCamera camera;
+  FeatureTracker tracker;
+  SE3 T_W_Blast;      ///< at the last image
+  SE3 T_W_Bkeyframe;  ///< at the last keyframe
+
+ private:
+  void align(const TrackSummary& summary);
+
+  AlignmentConfig alignment_;
+  cv::Mat image_, corners_;
+  bool any_image_ = false;
+  // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;
+  // to shift the places where they are searched instead is the same, and leaves the frame where the poses put it.
+  Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace edged
