@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/statistics.hpp"
 #include "edged/depth/depth_config.hpp"
 #include "edged/events/voxel_grid.hpp"
 #include "exit_code.hpp"
@@ -50,8 +51,7 @@ double inference_ms(DepthNetwork& network) {
     network.infer(grid);
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin(), times.begin() + 10, times.end());
-  return times[10];
+  return median(std::move(times));
 }
 
 void print_text(const DepthModel& m, const std::filesystem::path& file, double ms) {

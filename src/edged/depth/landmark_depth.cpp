@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "edged/depth/robust.hpp"
+#include "edged/core/statistics.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {
@@ -29,7 +29,7 @@ void LandmarkDepth::add_landmarks(Timestamp t, std::span<const SeenDepth> landma
     if (inside && seen.depth_m > 0.0) logs.push_back(std::log(seen.depth_m));
   }
   if (static_cast<int>(logs.size()) < config_.min_landmarks) return;
-  const double middle = upper_median(logs), spread = robust_deviation(logs, middle);
+  const double middle = median(logs), spread = robust_deviation(logs, middle);
   // The median of n values is known to 1.25 spread / sqrt(n); a twentieth for what they have in common.
   const double sigma = std::hypot(0.05, 1.25 * spread / std::sqrt(static_cast<double>(logs.size())));
   filter_.add({t, std::exp(middle), sigma, spread});

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
-#include "edged/depth/robust.hpp"
+#include "edged/core/statistics.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {
@@ -74,7 +74,7 @@ void NetworkDepth::end_window() {
   logs.reserve(depth.total());
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) logs.push_back(std::log(scale_ * static_cast<double>(depth.at<float>(y, x))));
-  const double middle = upper_median(logs);
+  const double middle = median(logs);
   measured_ = {window.back().t, std::exp(middle), network_.model().sigma_ln, robust_deviation(logs, middle)};
   filter_.add(*measured_);
 }

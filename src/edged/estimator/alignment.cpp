@@ -8,6 +8,7 @@
 #include <map>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {
@@ -322,9 +323,7 @@ double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, con
       const Vector3d turned = R * pair.ray_1;
       angles.push_back(std::atan2(pair.ray_0.cross(turned).norm(), pair.ray_0.dot(turned)));
     }
-    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-    std::nth_element(angles.begin(), middle, angles.end());
-    return *middle;
+    return median(std::move(angles));
   }
   return 0.0;
 }

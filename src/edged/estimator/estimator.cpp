@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "edged/core/check.hpp"
+#include "edged/core/statistics.hpp"
 #include "edged/estimator/marginalization.hpp"
 #include "edged/estimator/solver.hpp"
 
@@ -148,9 +149,7 @@ std::optional<double> Estimator::median_depth(const std::string& camera) const {
     if (const auto z = depth(id)) depths.push_back(*z);
   }
   if (depths.size() < 5) return std::nullopt;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median(std::move(depths));
 }
 
 std::string Estimator::try_to_start(const EstimatorInput& input) {

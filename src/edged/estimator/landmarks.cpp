@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {
@@ -119,9 +120,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera) 
     }
   }
   if (residuals.size() < kMinSights) return std::nullopt;
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return *middle;
+  return median(std::move(residuals));
 }
 
 bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config) {

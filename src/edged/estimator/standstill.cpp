@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {
@@ -92,13 +95,12 @@ bool StandstillDetector::image_still() {
     reason_ = quiet ? "" : fmt::format("{} of {} corners to tell rest from steady motion", travel.size(), kMinCorners);
     return quiet;
   }
-  const auto middle = travel.begin() + static_cast<std::ptrdiff_t>(travel.size() / 2);
-  std::nth_element(travel.begin(), middle, travel.end());
-  if (*middle <= config_.max_image_motion) {
+  const double middle = median(std::move(travel));
+  if (middle <= config_.max_image_motion) {
     reason_.clear();
     return true;
   }
-  reason_ = fmt::format("corners move {:.4f} of {:.4f} rad", *middle, config_.max_image_motion);
+  reason_ = fmt::format("corners move {:.4f} of {:.4f} rad", middle, config_.max_image_motion);
   return false;
 }
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "edged/core/check.hpp"
-#include "edged/frontend/median.hpp"
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 

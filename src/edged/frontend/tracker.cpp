@@ -9,7 +9,7 @@
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/check.hpp"
-#include "edged/frontend/median.hpp"
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {
@@ -108,12 +109,6 @@ std::vector<Vector7d> solve(const Samples& samples, const std::vector<double>& w
   std::vector<Vector7d> control(controls);
   for (int i = 0; i < n; ++i) control[static_cast<std::size_t>(i)] = x.row(i).transpose();
   return control;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Cauchy weights, residuals in units of their own median; position and rotation are judged apart, the worse counts.

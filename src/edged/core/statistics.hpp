@@ -5,21 +5,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace edged {
 
-/// Upper median; values must not be empty.
-inline double upper_median(std::vector<double> values) {
+/// Upper median; 0 for no values.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-/// 1.4826 times the median distance from `centre`: the standard deviation of normal values without outliers.
+/// 1.4826 times the median distance from `centre`: the standard deviation of normal values, outliers or not.
 inline double robust_deviation(std::vector<double> values, double centre) {
   for (double& v : values) v = std::abs(v - centre);
-  return 1.4826 * upper_median(std::move(values));
+  return 1.4826 * median(std::move(values));
 }
 
 }  // namespace edged
