@@ -24,11 +24,12 @@ void DepthConfig::visit(ConfigFields& fields) {
   fields.group("scale", scale);
 }
 
-std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera) {
+std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera,
+                                             Inference inference) {
   const ConstantDepth constant(config.constant_m, config.constant_sigma_ln);
   const LandmarkDepth landmarks(camera, config.region_share, config.landmarks, config.filter);
   const auto network = [&] {
-    return std::make_unique<NetworkDepth>(camera, config.region_share, config.network, config.filter);
+    return std::make_unique<NetworkDepth>(camera, config.region_share, config.network, config.filter, inference);
   };
   switch (config.source) {
     case DepthSource::Constant:

@@ -25,6 +25,7 @@ struct DepthConfig {
 };
 
 /// camera: the event camera, raw (distorted). Throws InputError when the network's model cannot be used.
-std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera);
+std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera,
+                                             Inference inference = Inference::Synchronous);
 
 }  // namespace edged

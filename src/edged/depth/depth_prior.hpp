@@ -27,7 +27,7 @@ struct SeenDepth {
 
 /// Fed with what its kind can use (the rest is ignored), asked for the depth at any later time. All stamps are on one
 /// clock, the caller's choice, and go forward; measurements older than the newest of their kind are ignored.
-/// Deterministic: the same feed gives the same bits.
+/// Deterministic: the same feed gives the same bits (but for a network in its own thread, Inference::OwnThread).
 class DepthPrior {
  public:
   virtual ~DepthPrior() = default;

@@ -114,6 +114,30 @@ TEST(NetworkDepthPrior, DoesNotDependOnHowItsEventsArePackaged) {
   EXPECT_EQ(one.inferences(), many.inferences());
 }
 
+TEST(NetworkDepthPrior, InItsOwnThreadMeasuresTheSameWhenThereIsTime) {
+  const DepthConfig config = config_of(DepthSource::Network);
+  NetworkDepth here(kCamera, config.region_share, config.network, config.filter);
+  NetworkDepth there(kCamera, config.region_share, config.network, config.filter, Inference::OwnThread);
+  for (int ms = 0; ms < 400; ms += 25) {
+    here.add_events(events_between(ms, ms + 25));
+    there.add_events(events_between(ms, ms + 25));
+    there.finish();
+  }
+  EXPECT_EQ(there.inferences(), here.inferences());
+  EXPECT_EQ(there.at(at_ms(400))->depth_m, here.at(at_ms(400))->depth_m);
+  EXPECT_EQ(there.at(at_ms(400))->t, here.at(at_ms(400))->t) << "the stamp is that of the events";
+}
+
+TEST(NetworkDepthPrior, InItsOwnThreadNeverMakesItsCallerWait) {
+  const DepthConfig config = config_of(DepthSource::Network);
+  NetworkDepth prior(kCamera, config.region_share, config.network, config.filter, Inference::OwnThread);
+  prior.add_events(events_between(0, 3000));  // sixty windows at once
+  prior.finish();
+  EXPECT_GE(prior.inferences(), 1);
+  EXPECT_LE(prior.inferences(), 59);
+  EXPECT_EQ(prior.at(at_ms(3000))->t, at_ms(2949)) << "the newest window is never left out";
+}
+
 TEST(NetworkDepthPrior, SaysNothingOfAQuietWindow) {
   const DepthConfig config = config_of(DepthSource::Network);
   NetworkDepth prior(kCamera, config.region_share, config.network, config.filter);

@@ -31,7 +31,7 @@ void NetworkDepthConfig::visit(ConfigFields& fields) {
 }
 
 NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,
-                           const DepthFilterConfig& filter)
+                           const DepthFilterConfig& filter, Inference inference)
     : config_(config),
       network_(find_depth_model(config.model)),
       window_(duration_from_seconds(network_.model().window_s)),
@@ -46,37 +46,54 @@ NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const
         "option 'network.margin_px' leaves {} x {} pixels to the depth network, which wants {} x {}", seen_.width,
         seen_.height, least, least);
   if (network_.model().focal_px > 0.0) scale_ = camera.mean_focal() / network_.model().focal_px;
+  if (inference == Inference::OwnThread)
+    thread_.emplace([this](const std::vector<Event>& window) { return measure(window); });
 }
 
 void NetworkDepth::add_events(std::span<const Event> events) {
   for (const Event& event : events) {
     if (!events_.empty() && event.t < events_.back().t) continue;
-    if (!events_.empty() && event.t - events_.front().t >= window_) {
-      const Timestamp end = events_.back().t;
-      end_window();
-      if (event.t - end > kForgetAfter) network_.reset();
-    }
+    if (!events_.empty() && event.t - events_.front().t >= window_) end_window();
     events_.push_back(event);
   }
+  if (!thread_) return;
+  for (const DepthEstimate& measured : thread_->take()) take(measured);
 }
 
 void NetworkDepth::end_window() {
-  const std::vector<Event> window = std::exchange(events_, {});
+  std::vector<Event> window = std::exchange(events_, {});
+  if (thread_) return thread_->put(std::move(window));
+  if (const auto measured = measure(window)) take(*measured);
+}
+
+void NetworkDepth::finish() {
+  if (!thread_) return;
+  thread_->finish();
+  for (const DepthEstimate& measured : thread_->take()) take(measured);
+}
+
+void NetworkDepth::take(const DepthEstimate& measured) {
+  ++inferences_;
+  measured_ = measured;
+  filter_.add(measured);
+}
+
+std::optional<DepthEstimate> NetworkDepth::measure(const std::vector<Event>& window) {
+  if (seen_until_ && window.front().t - *seen_until_ > kForgetAfter) network_.reset();
+  seen_until_ = window.back().t;
   const auto is_seen = [this](const Event& event) { return seen_.contains(cv::Point(event.x, event.y)); };
   if (static_cast<double>(std::count_if(window.begin(), window.end(), is_seen)) <
       config_.min_events_per_pixel * seen_.area())
-    return;
+    return std::nullopt;
   cv::Mat grid = voxel_grid(window, seen_, network_.model().bins);
   normalise_voxels(grid);
   const cv::Mat depth = network_.infer(grid)(region_);
-  ++inferences_;
   std::vector<double> logs;
   logs.reserve(depth.total());
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) logs.push_back(std::log(scale_ * static_cast<double>(depth.at<float>(y, x))));
   const double middle = median(logs);
-  measured_ = {window.back().t, std::exp(middle), network_.model().sigma_ln, robust_deviation(logs, middle)};
-  filter_.add(*measured_);
+  return DepthEstimate{window.back().t, std::exp(middle), network_.model().sigma_ln, robust_deviation(logs, middle)};
 }
 
 }  // namespace edged

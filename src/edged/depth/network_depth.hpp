@@ -9,6 +9,7 @@
 
 #include "edged/camera/camera_model.hpp"
 #include "edged/depth/depth_filter.hpp"
+#include "edged/depth/latest_window.hpp"
 #include "edged/depth/network.hpp"
 
 namespace edged {
@@ -22,14 +23,18 @@ struct NetworkDepthConfig {
   void visit(ConfigFields& fields);
 };
 
-/// Cuts the events into windows of the model's length and runs the network at the end of each, within add_events. Only
-/// the pixels around the central region reach it. Depths are scaled by the ratio of the focal lengths, for which an
-/// image looks the same.
+/// Where the network runs: within add_events, every window (the same events give the same bits), or in a thread of its
+/// own, the newest window only, so that add_events never waits for it.
+enum class Inference { Synchronous, OwnThread };
+
+/// Cuts the events into windows of the model's length and runs the network at the end of each. Only the pixels around
+/// the central region reach it. Depths are scaled by the ratio of the focal lengths, for which an image looks the same.
+/// In its own thread, a depth counts from the first add_events after it is there; its stamp is that of its events.
 class NetworkDepth : public DepthPrior {
  public:
   /// Throws InputError when the model cannot be used or the image is too small for it.
   NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,
-               const DepthFilterConfig& filter);
+               const DepthFilterConfig& filter, Inference inference = Inference::Synchronous);
 
   void add_events(std::span<const Event> events) override;
   std::optional<DepthEstimate> at(Timestamp t) const override { return filter_.at(t); }
@@ -39,9 +44,13 @@ class NetworkDepth : public DepthPrior {
   const std::optional<DepthEstimate>& measured() const { return measured_; }
   /// Windows the network has seen.
   int inferences() const { return inferences_; }
+  /// Waits for a network in its own thread, and takes what it has measured.
+  void finish();
 
  private:
   void end_window();
+  std::optional<DepthEstimate> measure(const std::vector<Event>& window);
+  void take(const DepthEstimate& measured);
 
   NetworkDepthConfig config_;
   DepthNetwork network_;
@@ -52,6 +61,8 @@ class NetworkDepth : public DepthPrior {
   std::optional<DepthEstimate> measured_;
   DepthFilter filter_;
   int inferences_ = 0;
+  std::optional<Timestamp> seen_until_;       // by measure
+  std::optional<LatestWindowThread> thread_;  // last: it runs measure
 };
 
 }  // namespace edged
