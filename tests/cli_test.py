@@ -37,7 +37,7 @@ class CommandLine(WithFolder):
         text = edged("--help").stdout
         for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
             self.assertIn(word, text)
-        for command in ("run", "simulate", "eval", "enhance"):
+        for command in ("run", "simulate", "eval", "enhance", "depth"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
     def test_a_wrong_command_line_is_code_2(self):
@@ -109,6 +109,42 @@ class Eval(WithFolder):
         later = self.folder / "later.txt"
         later.write_text("".join(f"{5000 + i} 0 0 {i} 0 0 0 1\n" for i in range(9)))
         self.assert_refused(edged("eval", self.truth, later), "clock")
+
+
+class Depth(WithFolder):
+    def test_a_network_is_shown_with_its_cost(self):
+        for model in ("small",):
+            shown = json.loads(edged("depth", model, "--json").stdout)
+            self.assertEqual(shown["name"], model)
+            self.assertGreater(shown["inference_ms"], 0.0)
+        text = edged("depth").stdout
+        for word in ("bins", "one core", "edged depth fetch"):
+            self.assertIn(word, text)
+
+    def test_fetch_says_where_the_published_weights_go(self):
+        result = edged("depth", "fetch")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for word in ("E2DEPTH_si_grad_loss_mixed.pth.tar", "convert_checkpoint.py", "config/depth/e2depth.onnx"):
+            self.assertIn(word, result.stdout)
+
+    def test_a_model_that_cannot_be_used_is_refused_with_the_file(self):
+        self.assert_refused(edged("depth", "nonsense"), "no depth model 'nonsense'", "small")
+        self.assert_refused(edged("depth", self.folder / "none.onnx"), "none.onnx", "edged depth fetch")
+        file = self.folder / "broken.onnx"
+        file.write_bytes(b"no network")
+        self.assert_refused(edged("depth", file), "broken.json", "docs/depth_model.md")
+        file.with_suffix(".json").write_text('{"name": "x", "bins": 5, "multiple": 8, "d_max_m": 10, "alpha": 3.7}')
+        self.assert_refused(edged("depth", file), "broken.onnx", "cannot be used as a depth network")
+        file.with_suffix(".json").write_text('{"name": "x"}')
+        self.assert_refused(edged("depth", file), "broken.json", "'bins'")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may read everything")
+    def test_a_model_that_may_not_be_read_is_refused(self):
+        file = self.folder / "secret.onnx"
+        file.with_suffix(".json").write_text('{"name": "x", "bins": 5, "multiple": 8, "d_max_m": 10, "alpha": 3.7}')
+        file.write_bytes(b"")
+        file.chmod(0)
+        self.assert_refused(edged("depth", file), "secret.onnx")
 
 
 class Config(WithFolder):

@@ -77,10 +77,12 @@ struct DepthNetwork::Runtime {
   cv::dnn::Net net;
 };
 
+fs::path depth_model_folder() { return EDGED_DEPTH_FOLDER; }
+
 std::vector<fs::path> shipped_depth_models() {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(EDGED_DEPTH_FOLDER, error))
+  for (const auto& entry : fs::directory_iterator(depth_model_folder(), error))
     if (entry.path().extension() == ".onnx") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -94,7 +96,7 @@ fs::path find_depth_model(const std::string& name_or_path) {
     names.push_back(file.stem().string());
   }
   throw InputError::format("there is no depth model '{}' in {}; choose one of {} or give the path of an .onnx file",
-                           name_or_path, EDGED_DEPTH_FOLDER, fmt::join(names, ", "));
+                           name_or_path, depth_model_folder().string(), fmt::join(names, ", "));
 }
 
 DepthModel read_depth_model(const fs::path& onnx) {
@@ -114,7 +116,8 @@ DepthModel read_depth_model(const fs::path& onnx) {
 
 DepthNetwork::DepthNetwork(const fs::path& onnx) : file_(onnx), runtime_(std::make_unique<Runtime>()) {
   if (!fs::is_regular_file(onnx))
-    throw InputError::format("{}: there is no such file; `edged depth` tells where models come from", onnx.string());
+    throw InputError::format("{}: there is no such file; `edged depth fetch` tells where models come from",
+                             onnx.string());
   model_ = read_depth_model(onnx);
   const QuietOpenCv quiet;
   try {

@@ -30,7 +30,10 @@ struct DepthModel {
   std::vector<State> states;  ///< empty: not recurrent
 };
 
-/// The ONNX files that ship (config/depth), by name.
+/// config/depth: models there are known by name.
+std::filesystem::path depth_model_folder();
+
+/// The ONNX files there, by name.
 std::vector<std::filesystem::path> shipped_depth_models();
 
 /// NAME (config/depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models there are.

@@ -70,17 +70,19 @@ TEST(DepthNetwork, AgreesWithTorch) {
 }
 
 TEST(DepthNetwork, CarriesItsStateAsTorchDoes) {
-  DepthNetwork network(kData / "tiny_recurrent.onnx");
-  ASSERT_EQ(network.model().states.size(), 6U);
-  const auto expected = expected_of("tiny_recurrent");
-  for (int round = 0; round < 2; ++round) {
-    for (int step = 0; step < 3; ++step)
-      EXPECT_LT(difference(network.infer(fixed_grid(step)), network.model(), expected[static_cast<std::size_t>(step)]),
-                2e-6)
-          << "round " << round << ", step " << step;
-    network.reset();
+  // A ConvLSTM in all of three encoders, and in the deepest one only; each has two states.
+  for (const auto& [name, states] : {std::pair("tiny_recurrent", 6U), std::pair("tiny_deep", 2U)}) {
+    DepthNetwork network(kData / (std::string(name) + ".onnx"));
+    ASSERT_EQ(network.model().states.size(), states);
+    const auto expected = expected_of(name);
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t step = 0; step < 3; ++step)
+        EXPECT_LT(difference(network.infer(fixed_grid(static_cast<int>(step))), network.model(), expected[step]), 2e-6)
+            << name << ", round " << round << ", step " << step;
+      network.reset();
+    }
+    EXPECT_GT(difference(network.infer(fixed_grid(1)), network.model(), expected[1]), 1e-4) << name << " without past";
   }
-  EXPECT_GT(difference(network.infer(fixed_grid(1)), network.model(), expected[1]), 1e-4) << "without its past";
 }
 
 TEST(DepthNetwork, StartsAfreshWhenTheSizeChanges) {
