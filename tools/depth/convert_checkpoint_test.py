@@ -36,7 +36,7 @@ class Evil:
 
 def checkpoint(base=32, recurrent=True, **changes):
     torch.manual_seed(1)
-    network = DepthNetwork(base=base, recurrent=recurrent)
+    network = DepthNetwork(base=base, memories=3 if recurrent else 0)
     return {"arch": "E2VIDRecurrent" if recurrent else "E2VID", "state_dict": network.state_dict(),
             "model": {**MODEL, "base_num_channels": base, **changes}}
 

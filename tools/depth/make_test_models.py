@@ -23,15 +23,15 @@ def fixed_grid(step, height=16, width=24):
 
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for name, recurrent in (("tiny", False), ("tiny_recurrent", True)):
+    for name, memories in (("tiny", 0), ("tiny_recurrent", 3), ("tiny_deep", 1)):  # ConvLSTMs
         torch.manual_seed(5)
-        model = DepthNetwork(base=1, encoders=3, recurrent=recurrent).eval()
+        model = DepthNetwork(base=1, encoders=3, memories=memories).eval()
         with torch.no_grad():
             for key, p in model.named_parameters():
                 p.mul_(2.5 if key.endswith("weight") else 1.0)  # fresh weights hardly let the input through
             model_states, expected = None, []
             for step in range(3):
-                output, model_states = model(fixed_grid(step), model_states if recurrent else None)
+                output, model_states = model(fixed_grid(step), model_states)
                 expected.append([float(f"{v:.7g}") for v in output[0, 0, ::5, ::7].flatten()])
         state = {key: p.detach().numpy() for key, p in model.named_parameters()}
         info = write_onnx(state, FOLDER / f"{name}.onnx", "random weights, for a test")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The depth network in torch: a U-Net with additive skips, ConvLSTMs optional, parameters named as in e2depth's files.
+"""The depth network in torch: a U-Net with additive skips, a ConvLSTM in as many of its deepest encoders as wanted (all of
+them in e2depth), parameters named as in e2depth's files.
 
 Hidalgo-Carrio, Gehrig, Scaramuzza, "Learning Monocular Dense Depth from Events", 3DV 2020. The input is a normalised
 voxel grid [N, bins, H, W], H and W multiples of 2^encoders; the output [N, 1, H, W] is the normalised log depth in (0, 1).
@@ -51,25 +52,25 @@ class Residual(nn.Module):
 
 
 class UNet(nn.Module):
-    def __init__(self, base, encoders, bins, recurrent):
+    def __init__(self, base, encoders, bins, memories):
         super().__init__()
         widths = [base << i for i in range(encoders + 1)]
-        make = RecurrentEncoder if recurrent else lambda a, b: Conv(a, b, 5, 2)
         self.head = Conv(bins, base, 5)
-        self.encoders = nn.ModuleList(make(a, b) for a, b in zip(widths, widths[1:]))
+        self.encoders = nn.ModuleList(RecurrentEncoder(a, b) if i + memories >= encoders else Conv(a, b, 5, 2)
+                                      for i, (a, b) in enumerate(zip(widths, widths[1:])))
         self.resblocks = nn.ModuleList(Residual(widths[-1]) for _ in range(2))
         self.decoders = nn.ModuleList(Conv(b, a, 5) for a, b in reversed(list(zip(widths, widths[1:]))))
         self.pred = nn.Module()
         self.pred.conv2d = nn.Conv2d(base, 1, 1)
-        self.recurrent = recurrent
 
     def forward(self, x, states=None):
-        """Returns the output and the new states, one (h, c) an encoder (empty where not recurrent)."""
+        """Returns the output and the new states, one (h, c) a ConvLSTM."""
         head = x = self.head(x)
         skips, new_states = [], []
-        for i, encoder in enumerate(self.encoders):
-            if self.recurrent:
-                new_states.append(encoder.recurrent_block(encoder.conv(x), states[i] if states else None))
+        for encoder in self.encoders:
+            if isinstance(encoder, RecurrentEncoder):
+                before = states[len(new_states)] if states else None
+                new_states.append(encoder.recurrent_block(encoder.conv(x), before))
                 x = new_states[-1][0]
             else:
                 x = encoder(x)
@@ -84,10 +85,10 @@ class UNet(nn.Module):
 class DepthNetwork(nn.Module):
     """Only so that the names of the parameters begin as in the original's files."""
 
-    def __init__(self, base=8, encoders=3, bins=5, recurrent=False):
+    def __init__(self, base=8, encoders=3, bins=5, memories=0):
         super().__init__()
-        self.root = "unetrecurrent" if recurrent else "unet"
-        setattr(self, self.root, UNet(base, encoders, bins, recurrent))
+        self.root = "unetrecurrent" if memories else "unet"
+        setattr(self, self.root, UNet(base, encoders, bins, memories))
 
     def forward(self, x, states=None):
         return getattr(self, self.root)(x, states)

@@ -78,7 +78,6 @@ def write_onnx(parameters, path, source):
     """
     root = next(iter(parameters)).split(".")[0]
     writer = GraphWriter(parameters, root)
-    recurrent = f"{root}.encoders.0.recurrent_block.Gates.weight" in parameters
     encoders = len({name.split(".")[2] for name in parameters if name.startswith(f"{root}.encoders.")})
     bins = writer.shape("head.conv2d")[1]
     writer.constant("roi", np.zeros(0, np.float32))
@@ -86,6 +85,7 @@ def write_onnx(parameters, path, source):
     head = x = writer.conv_relu(writer.add_input("events", bins, 1), "head.conv2d")
     skips, states = [], []
     for i in range(encoders):
+        recurrent = f"{root}.encoders.{i}.recurrent_block.Gates.weight" in parameters
         x = writer.conv_relu(x, f"encoders.{i}.conv.conv2d" if recurrent else f"encoders.{i}.conv2d", 2)
         if recurrent:
             x = writer.lstm(x, i, f"encoders.{i}.recurrent_block.Gates")

@@ -62,7 +62,8 @@ World random_world(int seed, double duration_s) {
   c.seed = seed;
   c.duration_s = duration_s;
   c.motion.rest_s = c.motion.blend_s = 0.0;
-  c.motion.extent_m = log_uniform(random, 0.1, 0.8);
+  // Long enough ways that the depth changes within a scene.
+  c.motion.extent_m = log_uniform(random, 0.2, 1.6);
   c.motion.max_angle_deg = random.uniform(3.0, 50.0);
   c.motion.max_speed = log_uniform(random, 0.15, 2.5) / world.scale;
   c.motion.max_rate_deg_s = log_uniform(random, 2.0, 150.0);

@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trains the depth network on the samples of edged_depth_samples, on one thread; or measures one on held-out scenes.
 
-  train.py --train 'DATA/train_*.bin' --held-out DATA/held.bin --minutes 30 --out depth.pt
-  train.py --held-out DATA/held.bin --evaluate depth.pt --export small.onnx
+  train.py --train 'DATA/train_*.bin' --minutes 30 --out small.pt
+  train.py --train 'DATA/train_*.bin' --minutes 60 --out r.pt --start small.pt --memories 1 --sequence 20 --chunks 3 --batch 8
+  train.py --held-out DATA/held.bin --evaluate small.pt --export small.onnx
 """
 import argparse
 import glob
@@ -14,7 +15,9 @@ import pathlib
 import time
 
 import numpy as np
+import onnx
 import torch
+from onnx import numpy_helper
 from torch.nn import functional
 
 from network import DepthNetwork
@@ -52,6 +55,11 @@ class Samples:
     def __len__(self):
         return len(self.row)
 
+    def by_scene(self):
+        """The samples of each scene, in the order of time."""
+        order = np.lexsort((self.windows, self.scenes))
+        return np.split(order, np.flatnonzero(np.diff(self.scenes[order])) + 1)
+
     def batch(self, indices):
         voxels = np.stack([self.voxels[self.file[i]][self.row[i]] for i in indices])
         depths = np.stack([self.depths[self.file[i]][self.row[i]] for i in indices]).astype(np.float32) * 1e-3
@@ -59,15 +67,38 @@ class Samples:
         return functional.avg_pool2d(voxels, SHRINK), torch.from_numpy(depths)
 
 
-def augmented(voxels, depths, random):
-    """Mirrors, a quarter turn, and the opposite contrast: none of them changes the depth."""
-    if random.random() < 0.5:
-        voxels, depths = voxels.flip(3), depths.flip(2)
-    if random.random() < 0.5:
-        voxels, depths = voxels.flip(2), depths.flip(1)
-    if random.random() < 0.5:
-        voxels, depths = voxels.transpose(2, 3), depths.transpose(1, 2)
-    return (-voxels if random.random() < 0.5 else voxels), depths
+class Streams:
+    """Random stretches of scenes, `count` beside each other, handed out `length` windows at a time, `chunks` times each."""
+
+    def __init__(self, samples, random, count, length, chunks):
+        self.samples, self.random, self.length, self.chunks = samples, random, length, chunks
+        self.scenes = [scene for scene in samples.by_scene() if len(scene) >= length]
+        self.left, self.turned = [[] for _ in range(count)], [None] * count
+
+    def start(self, k):
+        scene = self.scenes[self.random.integers(len(self.scenes))]
+        longest = min(len(scene) // self.length, self.chunks) * self.length
+        begin = self.random.integers(len(scene) - longest + 1)
+        self.left[k] = list(scene[begin : begin + longest])
+        # Mirrors, a quarter turn, and the opposite contrast: none of them changes the depth.
+        self.turned[k] = self.random.random(4) < 0.5
+
+    def next(self):
+        """voxels [length, count, bins, H, W], depths likewise, and which of the streams begin."""
+        fresh = [not left for left in self.left]
+        parts = []
+        for k, begins in enumerate(fresh):
+            if begins:
+                self.start(k)
+            voxels, depths = self.samples.batch(self.left[k][: self.length])
+            del self.left[k][: self.length]
+            mirror_x, mirror_y, turn, negative = self.turned[k]
+            axes = [axis for axis, mirrored in ((-1, mirror_x), (-2, mirror_y)) if mirrored]
+            voxels, depths = voxels.flip(axes), depths.flip(axes)
+            if turn:
+                voxels, depths = voxels.transpose(-2, -1), depths.transpose(-2, -1)
+            parts.append((-voxels if negative else voxels, depths))
+        return *(torch.stack(x, 1) for x in zip(*parts)), torch.tensor(fresh)
 
 
 def log_depth(output):
@@ -75,27 +106,34 @@ def log_depth(output):
     return np.log(D_MAX) + ALPHA * (functional.avg_pool2d(output, 4 // SHRINK)[:, 0] - 1.0)
 
 
-def loss_of(output, depths):
-    """Absolute error of log depth: of every block, and half of it again for the mean of the central region."""
-    valid = (depths > 0).float()
-    truth = torch.log(depths.clamp(0.25, 11.9))
-    error = (log_depth(output) - truth) * valid
-    dense = error.abs().sum() / valid.sum()
-    centre = error[:, CENTRE, CENTRE].mean((1, 2)).abs().mean()
-    return dense + 0.5 * centre
+def loss_of(outputs, depths):
+    """Absolute error of log depth: of every block, and half of it again for the mean of the central region; in a
+    sequence, once more for what this mean does about its own average over the sequence. outputs, depths: a window each."""
+    dense, centre = 0.0, []
+    for output, depth in zip(outputs, depths):
+        valid = (depth > 0).float()
+        error = (log_depth(output) - torch.log(depth.clamp(0.25, 11.9))) * valid
+        dense = dense + error.abs().sum() / valid.sum().clamp(min=1.0) / len(outputs)
+        centre.append(error[:, CENTRE, CENTRE].mean((1, 2)))
+    centre = torch.stack(centre)
+    return dense + 0.5 * centre.abs().mean() + (centre - centre.mean(0)).abs().mean()
 
 
 @torch.no_grad()
-def central_depths(model, samples, batch=32):
-    """ln of the median depth of the central region of every sample: estimated and true."""
-    estimated, true = [], []
-    for i in range(0, len(samples), batch):
-        voxels, depths = samples.batch(range(i, min(i + batch, len(samples))))
-        y = log_depth(model(voxels)[0])[:, CENTRE, CENTRE].flatten(1)
-        d = depths[:, CENTRE, CENTRE].flatten(1)
-        estimated.append(y.median(1).values.numpy())
-        true.append(np.array([np.log(np.median(row[row > 0])) if (row > 0).any() else np.nan for row in d.numpy()]))
-    return np.concatenate(estimated), np.concatenate(true)
+def central_depths(model, samples):
+    """ln of the median depth of the central region of every sample: estimated (a recurrent network follows each scene from
+    its first window) and true."""
+    estimated, true = np.zeros(len(samples)), np.full(len(samples), np.nan)
+    for indices in samples.by_scene():
+        states = None
+        for i in indices:
+            voxels, depths = samples.batch([i])
+            output, states = model(voxels, states)
+            estimated[i] = log_depth(output)[:, CENTRE, CENTRE].median()
+            d = depths[:, CENTRE, CENTRE]
+            if (d > 0).any():
+                true[i] = np.log(np.median(d[d > 0]))
+    return estimated, true
 
 
 def running_median(values):
@@ -103,28 +141,40 @@ def running_median(values):
     return np.array([np.median(values[:i]) if i else values[0] for i in range(len(values))])
 
 
+def smoothed(values, seconds):
+    """Paper Eq. 4 as DepthFilter applies it, for windows of 50 ms."""
+    share, out = 1.0 - math.exp(-0.05 / seconds), [values[0]]
+    for value in values[1:]:
+        out.append(share * value + (1.0 - share) * out[-1])
+    return np.array(out)
+
+
 def report(samples, estimated, true, constant):
-    """Log-depth errors on held-out scenes, beside the guesses they must beat."""
+    """Log-depth errors on held-out scenes, beside the guesses they must beat; and again with each scene's mean error taken
+    away, which leaves how well the changes within a scene are followed."""
     good = np.isfinite(true)
-    error = {name: guess[good] - true[good] for name, guess in (
-        ("network", estimated), ("constant", np.full_like(true, constant)))}
-    scenes = samples.scenes[good]
-    e, t = estimated[good], true[good]
-    history, within, scene_e, scene_t = np.zeros_like(e), [], [], []
-    for scene in np.unique(scenes):
-        m = scenes == scene
-        history[m] = running_median(e[m])
-        scene_e.append(np.median(e[m])), scene_t.append(np.median(t[m]))
-        within.append((e[m] - e[m].mean(), t[m] - t[m].mean()))
-    error["network, running median of its history"] = history - t
-    print(f"{good.sum()} windows of {len(np.unique(scenes))} held-out scenes; error of ln depth of the central region")
-    for name, x in error.items():
+    scenes, truth = samples.scenes[good], true[good]
+    guesses = {"network": estimated[good], "constant": np.full_like(truth, constant)}
+    rows = [np.flatnonzero(scenes == scene) for scene in np.unique(scenes)]
+    for name, of in (("network, running median of its history", running_median),
+                     ("network, Eq. 4 with 0.5 s", lambda x: smoothed(x, 0.5))):
+        guesses[name] = np.zeros_like(truth)
+        for r in rows:
+            guesses[name][r] = of(guesses["network"][r])
+    print(f"{len(truth)} windows of {len(rows)} held-out scenes; error of ln depth of the central region; within: without "
+          "the mean error of each scene")
+    for name, guess in guesses.items():
+        x = guess - truth
+        within = np.concatenate([x[r] - x[r].mean() for r in rows])
         print(f"  {name:42s} mean |e| {np.abs(x).mean():.3f}  median |e| {np.median(np.abs(x)):.3f}  rms "
-              f"{np.sqrt((x * x).mean()):.3f}  bias {x.mean():+.3f}  AbsRel {np.abs(np.exp(x) - 1).mean():.3f}")
-    we, wt = (np.concatenate(x) for x in zip(*within))
-    print(f"  correlation of ln depth: all windows {np.corrcoef(e, t)[0, 1]:.3f}, medians of scenes "
-          f"{np.corrcoef(scene_e, scene_t)[0, 1]:.3f}, within scenes {np.corrcoef(we, wt)[0, 1]:.3f}")
-    return {name: float(np.sqrt((x * x).mean())) for name, x in error.items()}
+              f"{np.sqrt((x * x).mean()):.3f}  bias {x.mean():+.3f}  AbsRel {np.abs(np.exp(x) - 1).mean():.3f}  within: "
+              f"mean |e| {np.abs(within).mean():.3f}  rms {np.sqrt((within * within).mean()):.3f}")
+    e = guesses["network"]
+    medians = np.array([(np.median(e[r]), np.median(truth[r])) for r in rows])
+    within = np.concatenate([np.stack([e[r] - e[r].mean(), truth[r] - truth[r].mean()], 1) for r in rows])
+    print(f"  correlation of ln depth: all windows {np.corrcoef(e, truth)[0, 1]:.3f}, medians of scenes "
+          f"{np.corrcoef(medians.T)[0, 1]:.3f}, within scenes {np.corrcoef(within.T)[0, 1]:.3f}")
+    return float(np.sqrt(((e - truth) ** 2).mean()))
 
 
 def rate_at(share):
@@ -132,69 +182,105 @@ def rate_at(share):
     return min(1.0, (share + 1e-3) / 0.05) * 0.5 * (1.0 + math.cos(math.pi * min(1.0, share)))
 
 
+def kept(states, fresh):
+    """What a recurrent network knows of the streams that go on; nothing of those that begin. Gradients end here."""
+    go_on = (~fresh).float().view(-1, 1, 1, 1)
+    return [tuple(x.detach() * go_on for x in state) for state in states] if states else None
+
+
 def train(arguments):
     torch.manual_seed(arguments.seed)
     random = np.random.default_rng(arguments.seed)
-    model = DepthNetwork(base=arguments.base).to(memory_format=torch.channels_last)  # a third faster
+    model = DepthNetwork(base=arguments.base, memories=arguments.memories).to(memory_format=torch.channels_last)  # faster
     if arguments.start:
-        model.load_state_dict(torch.load(arguments.start))
+        print(f"{warm_start(model, read_parameters(arguments.start))} tensors of {arguments.start}")
     optimiser = torch.optim.Adam(model.parameters(), arguments.rate)
-    begin, running, step = time.time(), 0.0, 0
+    begin, running, step, states = time.time(), 0.0, 0, None
     while (share := (time.time() - begin) / (60.0 * arguments.minutes)) < 1.0:
-        if step % 500 == 0:  # the simulation of more samples may still be going on
+        if step % 200 == 0:  # the simulation of more samples may still be going on
             samples = Samples(sorted(glob.glob(arguments.train)))
+            streams = Streams(samples, random, arguments.batch, arguments.sequence, arguments.chunks)
             torch.save(model.state_dict(), arguments.out)
             print(f"step {step}: loss {running:.4f}, {60 * arguments.minutes * share:.0f} s, {time.process_time():.0f} s of"
-                  f" the processor, {len(samples)} samples of {len(np.unique(samples.scenes))} scenes", flush=True)
+                  f" the processor, {len(samples)} samples of {len(samples.by_scene())} scenes", flush=True)
         for group in optimiser.param_groups:
             group["lr"] = arguments.rate * rate_at(share)
-        voxels, depths = augmented(*samples.batch(random.integers(len(samples), size=arguments.batch)), random)
-        loss = loss_of(model(voxels.contiguous(memory_format=torch.channels_last))[0], depths)
+        voxels, depths, fresh = streams.next()
+        states = kept(states, fresh)
+        outputs = []
+        for window in voxels:
+            output, states = model(window.contiguous(memory_format=torch.channels_last), states)
+            outputs.append(output)
+        loss = loss_of(outputs, depths)
         optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimiser.step()
         step += 1
         running += (loss.item() - running) * max(0.005, 1.0 / step)
-    constant = float(np.median(central_truths(samples, random)))
     torch.save(model.state_dict(), arguments.out)
-    with open(arguments.out + ".json", "w") as f:
-        json.dump({"steps": step, "samples": len(samples), "constant": constant}, f)
-    print(f"{step} steps; constant guess {np.exp(constant):.2f} m, the median of the training samples")
-    held = Samples(arguments.held_out)
-    report(held, *central_depths(model, held), constant)
+    print(f"{step} steps of {arguments.batch} sequences of {arguments.sequence} windows; constant guess, the median of the "
+          f"training samples: {np.exp(constant_guess(samples, random)):.3f} m")
 
 
-def central_truths(samples, random):
+def constant_guess(samples, random):
     _, depths = samples.batch(random.permutation(len(samples))[:2000])
-    return np.log(np.median(depths[:, CENTRE, CENTRE].flatten(1).numpy(), axis=1).clip(0.05))
+    return float(np.median(np.log(np.median(depths[:, CENTRE, CENTRE].flatten(1).numpy(), axis=1).clip(0.05))))
+
+
+def read_parameters(file):
+    """Name -> tensor, of a file of --out or of an exported model."""
+    if file.endswith(".onnx"):
+        return {t.name: torch.from_numpy(numpy_helper.to_array(t).copy()) for t in onnx.load(file).graph.initializer}
+    return torch.load(file)
+
+
+def warm_start(model, parameters):
+    """Takes over every tensor that fits: a recurrent network can go on from one without memory. Returns how many."""
+    plain = {name.replace("unetrecurrent", "unet").replace(".conv.conv2d", ".conv2d"): p for name, p in parameters.items()}
+    state = model.state_dict()
+    taken = {name: p for name, old in state.items() for p in
+             [parameters.get(name, plain.get(name.replace("unetrecurrent", "unet").replace(".conv.conv2d", ".conv2d")))]
+             if p is not None and p.shape == old.shape}
+    model.load_state_dict({**state, **taken})
+    return len(taken)
+
+
+def read_model(file):
+    parameters = read_parameters(file)
+    memories = sum(name.endswith("Gates.weight") for name in parameters)
+    head = next(p for name, p in parameters.items() if name.endswith("head.conv2d.weight"))
+    model = DepthNetwork(base=head.shape[0], memories=memories)
+    if warm_start(model, parameters) != len(model.state_dict()):
+        raise SystemExit(f"{file}: not a network of this program")
+    return model.eval()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--train", help="pattern of sample files, read anew every 500 steps")
-    parser.add_argument("--held-out", nargs="+", required=True)
+    parser.add_argument("--held-out", nargs="+", help="sample files, to measure on")
+    parser.add_argument("--constant", type=float, default=1.83, help="the guess to compare with [m]; training prints one")
     parser.add_argument("--minutes", type=float, default=30.0)
-    parser.add_argument("--batch", type=int, default=16)
+    parser.add_argument("--memories", type=int, default=0, help="ConvLSTMs, in the deepest encoders")
+    parser.add_argument("--sequence", type=int, default=1, help="windows of each scene a step follows")
+    parser.add_argument("--chunks", type=int, default=1, help="steps that a recurrent network keeps its state for")
+    parser.add_argument("--batch", type=int, default=16, help="scenes a step")
     parser.add_argument("--rate", type=float, default=2e-3, help="largest learning rate")
-    parser.add_argument("--start", help="parameters to go on from")
+    parser.add_argument("--start", help="parameters to go on from: a file of --out, or .onnx")
     parser.add_argument("--base", type=int, default=8, help="channels of the first layer")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", default="depth.pt")
-    parser.add_argument("--evaluate", help="only measure these parameters")
+    parser.add_argument("--evaluate", help="only measure these parameters, likewise")
     parser.add_argument("--export", help="and write them as this ONNX file")
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     if not arguments.evaluate:
         return train(arguments)
-    held = Samples(arguments.held_out)
-    state = torch.load(arguments.evaluate)
-    model = DepthNetwork(base=state["unet.head.conv2d.weight"].shape[0])
-    model.load_state_dict(state)
-    with open(arguments.evaluate + ".json") as f:
-        errors = report(held, *central_depths(model, held), json.load(f)["constant"])
+    model, held = read_model(arguments.evaluate), Samples(arguments.held_out)
+    sigma_ln = report(held, *central_depths(model, held), math.log(arguments.constant))
     if arguments.export:
-        export(model, pathlib.Path(arguments.export), errors["network"])
+        export(model, pathlib.Path(arguments.export), sigma_ln)
 
 
 def export(model, path, sigma_ln):
