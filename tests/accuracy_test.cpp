@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The whole system on simulated flights. tools/sim_suite.py does the same at length, for figures rather than a verdict.
+// The whole system on simulated flights. bench/sim_suite does the same at length, for figures rather than a verdict.
 #include <gtest/gtest.h>
 
 #include <iostream>

@@ -225,6 +225,18 @@ class Run(WithFolder):
         self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
         self.assertEqual(json.loads(result.stdout)["status"], "never good")
 
+    def test_an_error_on_the_way_leaves_complete_files_of_what_came_before(self):
+        damaged, out = self.folder / "damaged", self.folder / "run"
+        shutil.copytree(self.flight, damaged)
+        with open(damaged / "events.txt", "a", encoding="ascii") as events:
+            events.write("x" * 2_000_000)
+        self.assert_refused(edged("run", damaged, "--out", out, "--quiet"), "events.txt")
+        metrics = json.loads((out / "metrics.json").read_text())
+        self.assertEqual(metrics["status"], "broken off")
+        self.assertGreater(metrics["poses"], 0)
+        self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+        self.assertIn("events.txt", (out / "run.log").read_text())
+
     def test_enhance_draws_every_step_and_a_sheet(self):
         result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "enhance.erosion_px=3")
         self.assertEqual(result.returncode, 0, result.stderr)

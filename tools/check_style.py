@@ -16,8 +16,10 @@ FUNCTION_LINES = (60, 100)
 SPDX = ("SPDX-FileCopyrightText: 2026 Edged USLAM developers", "SPDX-License-Identifier: Apache-2.0")
 CODE = {".cpp", ".hpp"}
 SCRIPTS = {".py", ".sh", ".cmake"}
-# Namespace contents are not indented, so a function begins and ends at column 0.
-NO_FUNCTION = re.compile(r"^(namespace|class|struct|enum|union|extern|using|#|//|/\*|\}|constexpr std::array)")
+# What holds functions; every other brace outside a function opens one, or a list of values.
+CONTAINER = re.compile(r"\s*(template\s*<.*>\s*)?(namespace|class|struct|union|enum|extern)\b", re.DOTALL)
+NOT_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|^\s*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\])*"|(?<![0-9A-Fa-f])'(?:\\.|[^'\\])'""",
+                      re.DOTALL | re.MULTILINE)
 
 
 def files(root):
@@ -29,22 +31,25 @@ def files(root):
     return [p for p in root.rglob("*") if p.is_file() and "build" not in p.relative_to(root).parts]
 
 
-def functions(lines):
-    """(first line, length) of every function that begins at column 0, counted from its opening brace."""
-    begin = None
-    for number, line in enumerate(lines, 1):
-        if begin is None:
-            if line.endswith("{") and line[:1].strip() and not NO_FUNCTION.match(line):
-                begin = number
-            elif line.endswith(") {") and line.startswith("    "):  # a signature over several lines
-                begin = number
-        elif line.startswith("}"):
-            yield begin, number - begin + 1
-            begin = None
+def functions(text):
+    """(first line, length) of every function, members too, counted from its opening brace to its closing one."""
+    code = NOT_CODE.sub(lambda match: "\n" * match.group().count("\n"), text)
+    line, head, open_braces = 1, "", []  # of each open brace: the line of a function's, None of a container's
+    for character in code:
+        if character == "{":
+            inside = any(begin is not None for begin in open_braces)
+            open_braces.append(None if not inside and CONTAINER.match(head) else line)
+        elif character == "}" and open_braces:
+            begin = open_braces.pop()
+            if begin is not None and all(outer is None for outer in open_braces):
+                yield begin, line - begin + 1
+        line += character == "\n"
+        head = "" if character in "{};" else head + character
 
 
 def check(path, name, errors, warnings):
-    lines = path.read_text(errors="replace").splitlines()
+    text = path.read_text(errors="replace")
+    lines = text.splitlines()
     head = lines[1:3] if lines and lines[0].startswith("#!") else lines[:2]
     if len(head) < 2 or any(want not in line for want, line in zip(SPDX, head)):
         errors.append(f"{name}:1: the two SPDX lines are missing")
@@ -56,7 +61,7 @@ def check(path, name, errors, warnings):
         if len(lines) < 3 or not lines[2].startswith("// "):
             errors.append(f"{name}:3: says in no sentence what the file is")
     for (soft, hard), what, sizes in ((FILE_LINES, "file", [(1, len(lines))]),
-                                      (FUNCTION_LINES, "function", functions(lines))):
+                                      (FUNCTION_LINES, "function", functions(text))):
         for line, size in sizes:
             if size > soft:
                 (errors if size > hard else warnings).append(f"{name}:{line}: {what} of {size} lines (aim: {soft})")

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the benchmarks share: recordings made once, runs of the program, what counts as a failure, and the progress bar."""
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
+MODES = ["fused", "frames", "events"]
+NEVER_GOOD = 4  # exit code of edged run
+# A run that loses its way has failed, and so has one that does not know that it has.
+LEAST_COVERAGE = 0.5
+WORST_SHARE_OF_PATH = 0.05
+WHAT_FAILS = (f"Failed: never good, lost at the end, good for less than {LEAST_COVERAGE:.0%} of the time, or a mean error "
+              f"above {WORST_SHARE_OF_PATH:.0%} of the path.")
+
+
+class ProgramError(Exception):
+    """The program refused or crashed; its own words."""
+
+
+def call(command, accepted=(0,)):
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
+    if done.returncode not in accepted:
+        raise ProgramError(f"{' '.join(map(str, command))}\n{done.stderr.strip()}")
+    return done.stdout
+
+
+def add_program_option(parser):
+    parser.add_argument("--edged", default=DEFAULT_PROGRAM, type=pathlib.Path,
+                        help="the program [$EDGED, or build/release/bin/edged]")
+
+
+def check_program(edged):
+    if not edged.is_file():
+        sys.exit(f"{edged}: no such program; build it, or give --edged")
+
+
+def simulated(edged, cache, preset, seed, duration=None, fresh=False):
+    """The folder of the recording in the cache, made if it is not there or was made with other options."""
+    chosen = ["--preset", preset, "--seed", str(seed)]
+    if duration is not None:
+        chosen += ["--duration", f"{duration:g}"]
+    folder = cache / (f"{preset}_{seed}" if duration is None else f"{preset}_{seed}_{duration:g}s")
+    resolved = call([edged, "simulate", *chosen, "--list"])
+    made_with = folder / "simulation.yaml"
+    if not fresh and made_with.is_file() and made_with.read_text() == resolved:
+        return folder
+    # Named last: an interrupted simulation is none.
+    unfinished = folder.with_name(folder.name + ".unfinished")
+    for old in (folder, unfinished):
+        shutil.rmtree(old, ignore_errors=True)
+    call([edged, "simulate", *chosen, "--out", unfinished, "--quiet"])
+    (unfinished / "simulation.yaml").write_text(resolved)
+    unfinished.rename(folder)
+    return folder
+
+
+def estimate(edged, recording, mode, out, settings=(), rig=None):
+    """Runs the odometry; the content of metrics.json."""
+    command = [edged, "run", recording, "--mode", mode, "--out", out, "--json", "--quiet"]
+    if rig:
+        command += ["--rig", rig]
+    for setting in settings:
+        command += ["--set", setting]
+    return json.loads(call(command, accepted=(0, NEVER_GOOD)))
+
+
+def failure(metrics):
+    """Why the run counts as failed; empty when it does not."""
+    evaluation = metrics["evaluation"]
+    if evaluation is None or metrics["first_good_s"] is None:
+        return "never good"
+    if metrics["status"] not in ("good", "degraded"):
+        return "lost at the end"
+    if metrics["coverage"] < LEAST_COVERAGE:
+        return f"coverage {metrics['coverage']:.0%}"
+    share = evaluation["ate_m"]["mean"] / evaluation["path_length_m"]
+    return f"error {share:.1%} of the path" if share > WORST_SHARE_OF_PATH else ""
+
+
+def file_name(text):
+    return re.sub(r"[^\w.+]+", "_", text)
+
+
+def clock(seconds):
+    minutes = int(seconds) // 60
+    return f"{minutes // 60}:{minutes % 60:02d} h" if minutes >= 60 else f"{minutes}:{int(seconds) % 60:02d} min"
+
+
+class Progress:
+    """Done of total, time taken and left: a bar on a terminal that is written over; in a file, a line each."""
+
+    def __init__(self, total):
+        self.total, self.done, self.begin = total, 0, time.monotonic()
+        self.active, self.lock = {}, threading.Lock()
+
+    def step(self, job, what, done=0):
+        """The job is now at `what` (empty: it has ended), with `done` more pieces of work behind it."""
+        with self.lock:
+            self.done += done
+            self.active.pop(job, None)
+            if what:
+                self.active[job] = what
+            print(self.line(), end="" if sys.stderr.isatty() else "\n", file=sys.stderr, flush=True)
+
+    def line(self):
+        elapsed = time.monotonic() - self.begin
+        left = f", {clock(elapsed / self.done * (self.total - self.done))} left" if self.done else ""
+        text = f"{self.done} of {self.total}, {clock(elapsed)}{left}: {', '.join(self.active.values())}"
+        if not sys.stderr.isatty():
+            return text
+        filled = 20 * self.done // max(1, self.total)
+        return f"\r\033[K[{'#' * filled}{'.' * (20 - filled)}] {text}"[:shutil.get_terminal_size().columns + 3]
+
+    def finish(self):
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def in_parallel(work, items, jobs, progress):
+    """work(item) of every item, in their order, `jobs` at a time. A program error or Ctrl-C ends the program after the
+    runs in hand."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        futures = [pool.submit(work, item) for item in items]
+        try:
+            for future in concurrent.futures.as_completed(futures):
+                future.result()
+            return [future.result() for future in futures]
+        except BaseException as error:
+            pool.shutdown(wait=True, cancel_futures=True)
+            progress.finish()
+            sys.exit(str(error) if isinstance(error, ProgramError) else 130)
+        finally:
+            progress.finish()
+
+
+def markdown(rows):
+    """Lines of a table whose first row is the head and whose second row holds the alignment."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |" for row in rows]

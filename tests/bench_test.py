@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""The benchmarks of bench/ on recordings of a few seconds: that they run, go on where they stopped, and write their tables.
+Usage: EDGED=path/to/edged bench_test.py"""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
+
+
+def bench(name, *args):
+    return subprocess.run([sys.executable, BENCH / name, *map(str, args)], capture_output=True, text=True, check=False,
+                          timeout=500)
+
+
+class Bench(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_bench_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def test_every_benchmark_tells_what_it_does(self):
+        for name in ("ablation", "flights", "sim_suite"):
+            self.assertIn("usage", bench(name, "--help").stdout)
+
+    def test_a_missing_program_is_one_line(self):
+        result = bench("flights", "--edged", self.folder / "none")
+        self.assertEqual(result.stderr.strip(), f"{self.folder / 'none'}: no such program; build it, or give --edged")
+
+    def test_ablation_writes_a_table_and_keeps_what_it_has_run(self):
+        args = ["ablation", "--out", self.folder, "--parts", "compensation", "--modes", "events", "--presets", "room",
+                "--seeds", 1, "--duration", 4, "--no-mirrors"]
+        first = bench(*args)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        table = (self.folder / "table.md").read_text()
+        for variant in ("defaults", "compensation none", "compensation single twist"):
+            self.assertIn(f"| {variant} ", table)
+        self.assertIn("3 of 3, ", first.stderr)
+        runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
+        self.assertEqual(len(runs), 3)
+        self.assertEqual(bench(*args).returncode, 0)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_flights_prints_a_row_a_flight_and_counts_failures(self):
+        result = bench("flights", "--cache", self.folder, "--flights", "line", "--modes", "fused", "--duration", 4,
+                       "--out", self.folder / "table.md")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("| line ", result.stdout)
+        self.assertIn("| Failures ", result.stdout)
+        self.assertEqual((self.folder / "table.md").read_text(), result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
