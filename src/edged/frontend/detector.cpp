@@ -4,6 +4,7 @@
 #include "edged/frontend/detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -79,7 +80,27 @@ double harris_response(const cv::Mat& image, int x, int y) {
   return xx * yy - xy * xy - kHarrisK * (xx + yy) * (xx + yy);
 }
 
-std::vector<Candidate> fast_corners(const cv::Mat& image, const cv::Rect& cell, int threshold) {
+// The highest threshold at which the pixel is still a FAST-9 corner: nine neighbours in a row on the circle that are
+// all brighter, or all darker, by at least that.
+double fast_response(const cv::Mat& image, int x, int y) {
+  constexpr int kCircle = 16, kArc = 9;
+  constexpr std::array<int, kCircle> kX{0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
+  constexpr std::array<int, kCircle> kY{-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
+  std::array<int, kCircle> brighter{};
+  for (std::size_t i = 0; i < kCircle; ++i) brighter[i] = image.at<uchar>(y + kY[i], x + kX[i]) - image.at<uchar>(y, x);
+  int best = 0;
+  for (std::size_t first = 0; first < kCircle; ++first) {
+    int least = 255, most = -255;
+    for (std::size_t i = 0; i < kArc; ++i) {
+      const int difference = brighter[(first + i) % kCircle];
+      least = std::min(least, difference), most = std::max(most, difference);
+    }
+    best = std::max({best, least, -most});
+  }
+  return best;
+}
+
+std::vector<Candidate> fast_corners(const cv::Mat& image, const cv::Rect& cell, int threshold, CornerKind kind) {
   const cv::Rect area(cell.x - kFastRadius, cell.y - kFastRadius, cell.width + 2 * kFastRadius,
                       cell.height + 2 * kFastRadius);
   // No suppression of neighbours: event frames have few grey levels, and FAST drops both of two equal corners.
@@ -89,7 +110,7 @@ std::vector<Candidate> fast_corners(const cv::Mat& image, const cv::Rect& cell, 
   found.reserve(keypoints.size());
   for (const cv::KeyPoint& k : keypoints) {
     const int x = cvRound(k.pt.x) + area.x, y = cvRound(k.pt.y) + area.y;
-    found.push_back({0, x, y, harris_response(image, x, y)});
+    found.push_back({0, x, y, kind == CornerKind::Fast ? fast_response(image, x, y) : harris_response(image, x, y)});
   }
   return found;
 }
@@ -114,8 +135,8 @@ std::vector<Candidate> shi_tomasi_corners(const cv::Mat& image, const cv::Rect& 
 
 std::vector<Candidate> corners_in(const cv::Mat& image, const cv::Rect& cell, const DetectorConfig& config) {
   if (config.corners == CornerKind::ShiTomasi) return shi_tomasi_corners(image, cell, config.min_gradient);
-  std::vector<Candidate> found = fast_corners(image, cell, config.fast_threshold);
-  if (found.empty()) found = fast_corners(image, cell, config.fast_threshold_low);
+  std::vector<Candidate> found = fast_corners(image, cell, config.fast_threshold, config.corners);
+  if (found.empty()) found = fast_corners(image, cell, config.fast_threshold_low, config.corners);
   std::erase_if(found, [](const Candidate& c) { return c.response <= 0.0; });  // on an edge, not at a corner
   return found;
 }
@@ -204,8 +225,10 @@ void refine_positions(const cv::Mat& image, std::vector<Corner>& corners) {
 }  // namespace
 
 void DetectorConfig::visit(ConfigFields& fields) {
-  fields.choice("corners", corners, {{"fast_harris", CornerKind::FastHarris}, {"shi_tomasi", CornerKind::ShiTomasi}},
-                {.effect = "what counts as a corner: FAST ranked by Harris (as ORB), or the smaller eigenvalue"});
+  fields.choice(
+      "corners", corners,
+      {{"fast_harris", CornerKind::FastHarris}, {"fast", CornerKind::Fast}, {"shi_tomasi", CornerKind::ShiTomasi}},
+      {.effect = "what counts as a corner: FAST ranked by Harris (as ORB), FAST by itself, or the smaller eigenvalue"});
   fields.add("max_features", max_features,
              {.unit = "1", .min = 8, .max = 2000, .effect = "most live tracks per camera; one per cell"});
   fields.add("cell_px", cell_px,

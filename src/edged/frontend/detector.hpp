@@ -19,6 +19,7 @@ enum class CornerKind {
   /// beside it. What ORB adds are scales (DetectorConfig::levels), a cut to the strongest of the whole image, which
   /// would come before the grid and defeat it, and descriptors, which tracking by optical flow does not use.
   FastHarris,
+  Fast,       ///< FAST-9 ranked by its own score: the detector of USLAM
   ShiTomasi,  ///< local maxima of the smaller eigenvalue of the structure tensor (Shi and Tomasi, 1994)
 };
 
