@@ -44,6 +44,7 @@ class Run {
   RunSummary go();
 
  private:
+  void process_recording();
   std::optional<Measurement> read();
   void take(Measurement measurement);
   void process_ready_packets();
@@ -64,6 +65,7 @@ class Run {
   LiveliestMoment moment_;
   StatusLine status_line_;
   ResourceMeter meter_;
+  bool broken_off_ = false;  ///< an error ended the run
 };
 
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
@@ -183,9 +185,7 @@ std::optional<Measurement> Run::read() {
   return source_.dataset->next();
 }
 
-RunSummary Run::go() {
-  catch_interrupts();
-  meter_ = ResourceMeter();
+void Run::process_recording() {
   while (interrupt_signal() == 0) {
     std::optional<Measurement> measurement = read();
     if (!measurement) {
@@ -196,8 +196,20 @@ RunSummary Run::go() {
     take(std::move(*measurement));
     process_ready_packets();
   }
-  writer_->flush();
-  status_line_.clear();
+}
+
+RunSummary Run::go() {
+  catch_interrupts();
+  meter_ = ResourceMeter();
+  try {
+    process_recording();
+  } catch (const std::exception& e) {
+    // What came before it stays, in complete files.
+    spdlog::info("broken off: {}", e.what());  // main tells the user
+    broken_off_ = true;
+    summarize();
+    throw;
+  }
   return summarize();
 }
 
@@ -234,6 +246,8 @@ std::string run_status(const RunStatistics& statistics) {
 }
 
 RunSummary Run::summarize() {
+  writer_->flush();
+  status_line_.clear();
   const DatasetInfo& info = source_.dataset->info();
   RunSummary summary;
   summary.wall_s = meter_.wall_s();
@@ -244,7 +258,7 @@ RunSummary Run::summarize() {
   summary.frame = frame_.name();
   summary.folder = folder_.string();
   summary.seed = source_.seed;
-  summary.status = run_status(statistics_);
+  summary.status = broken_off_ ? "broken off" : run_status(statistics_);
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
   summary.repairs = source_.dataset->repairs();

@@ -18,7 +18,7 @@ namespace edged {
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::optional<int> seed;
-  std::string status;  ///< "good", "degraded", "lost", "never good" or "interrupted"
+  std::string status;  ///< "good", "degraded", "lost", "never good", "interrupted" or "broken off" (by an error)
   RunStatistics statistics;
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
