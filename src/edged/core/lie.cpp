@@ -63,7 +63,8 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) {
   const double theta = std::sqrt(theta2);
   const Eigen::Matrix3d F = skew(phi);
   if (theta < kSmallAngle) return Eigen::Matrix3d::Identity() - 0.5 * F + F * F / 6.0;
-  return Eigen::Matrix3d::Identity() - (1.0 - std::cos(theta)) / theta2 * F +
+  const double half_sine = std::sin(0.5 * theta);
+  return Eigen::Matrix3d::Identity() - 2.0 * half_sine * half_sine / theta2 * F +
          (theta - std::sin(theta)) / (theta2 * theta) * F * F;
 }
 

@@ -93,6 +93,16 @@ TEST(SO3, RightJacobianAgreesWithNumericDifferences) {
   }
 }
 
+TEST(SO3, RightJacobianKeepsAllDigitsAboveTheSmallAngles) {
+  for (const double angle : {1.01e-4, 1e-3}) {
+    const Eigen::Matrix3d F = skew(angle * directions().back());
+    const double theta2 = angle * angle;
+    const Eigen::Matrix3d series =
+        Eigen::Matrix3d::Identity() - (0.5 - theta2 / 24.0) * F + (1.0 / 6.0 - theta2 / 120.0) * F * F;
+    EXPECT_LT((so3::right_jacobian(angle * directions().back()) - series).cwiseAbs().maxCoeff(), 5e-15) << angle;
+  }
+}
+
 TEST(SO3, RightJacobianInverseIsTheInverse) {
   for (const auto& direction : directions()) {
     for (const double angle : angles()) {

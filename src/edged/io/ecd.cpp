@@ -3,6 +3,7 @@
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
@@ -19,15 +20,9 @@ namespace {
 std::optional<ImuSample> parse_imu(std::string_view line) {
   FieldReader fields(line);
   const auto t = parse_seconds(fields.next());
-  if (!t) return std::nullopt;
-  Eigen::Matrix<double, 6, 1> v;
-  for (double& x : v) {
-    const auto number = parse_number(fields.next());
-    if (!number) return std::nullopt;
-    x = *number;
-  }
-  if (!fields.rest().empty()) return std::nullopt;
-  return ImuSample{*t, v.tail<3>(), v.head<3>()};
+  std::array<double, 6> v;
+  if (!t || !read_numbers(fields, v) || !fields.rest().empty()) return std::nullopt;
+  return ImuSample{*t, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
 }
 
 StampedLines<FrameEntry>::Spec image_list(const fs::path& folder) {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The ASL folders of the EuRoC data set (Burri et al., IJRR 2016).
+#include <array>
+
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/text_dataset.hpp"
@@ -16,14 +18,9 @@ constexpr const char* kTruthFolder = "state_groundtruth_estimate0";
 std::optional<ImuSample> parse_imu(std::string_view line) {
   FieldReader fields(line);
   const auto t = parse_nanoseconds(fields.next());
-  if (!t) return std::nullopt;
-  Eigen::Matrix<double, 6, 1> v;
-  for (double& x : v) {
-    const auto number = parse_number(fields.next());
-    if (!number) return std::nullopt;
-    x = *number;
-  }
-  return ImuSample{*t, v.head<3>(), v.tail<3>()};
+  std::array<double, 6> v;
+  if (!t || !read_numbers(fields, v)) return std::nullopt;
+  return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
 StampedLines<FrameEntry>::Spec image_list(const fs::path& cam0) {

@@ -3,6 +3,7 @@
 // Reading large text files in bounded memory, and numbers and stamps without rounding.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -78,6 +79,17 @@ inline constexpr std::int64_t kMaxStampNs = 4'600'000'000'000'000'000;
 
 /// A finite number that fills the whole field, or nothing.
 std::optional<double> parse_number(std::string_view field);
+
+/// The next N fields as finite numbers; false when one is missing or is none.
+template <std::size_t N>
+bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
+  for (double& x : numbers) {
+    const auto number = parse_number(fields.next());
+    if (!number) return false;
+    x = *number;
+  }
+  return true;
+}
 
 /// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a
 /// number or does not fit.

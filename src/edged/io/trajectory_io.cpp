@@ -26,16 +26,6 @@ struct ParsedLine {
 
 using ParseLine = ParsedLine (*)(std::string_view line, std::size_t index);
 
-template <std::size_t N>
-bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
-  for (double& x : numbers) {
-    const auto number = parse_number(fields.next());
-    if (!number) return false;
-    x = *number;
-  }
-  return true;
-}
-
 ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quaterniond& q) {
   if (std::abs(q.norm() - 1.0) > kQuaternionTolerance)
     return {std::nullopt, fmt::format("the quaternion has norm {:.3f}, not 1", q.norm())};

@@ -35,9 +35,7 @@ struct Stream {
   std::vector<std::pair<Timestamp, Measurement>> measurements;
 
   Stream& imu(double from, double to, double step) {
-    for (double ms = from; ms <= to + 1e-9; ms += step) {
-      measurements.emplace_back(at_ms(ms), imu_at(ms));
-    }
+    for (double ms = from; ms <= to + 1e-9; ms += step) measurements.emplace_back(at_ms(ms), imu_at(ms));
     return *this;
   }
   Stream& events(double from, double to, double step) {
