@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/events/voxel_grid.hpp"
 
 namespace edged {
 namespace {
@@ -136,6 +138,22 @@ TEST(NetworkDepthPrior, InItsOwnThreadNeverMakesItsCallerWait) {
   EXPECT_GE(prior.inferences(), 1);
   EXPECT_LE(prior.inferences(), 59);
   EXPECT_EQ(prior.at(at_ms(3000))->t, at_ms(2949)) << "the newest window is never left out";
+}
+
+TEST(NetworkDepthPrior, TakesTheMeanOfTheRegionWhenAsked) {
+  DepthConfig config = config_of(DepthSource::Network);
+  config.network.region_value = RegionValue::Mean;
+  config.network.margin_px = 0;
+  NetworkDepth prior(kCamera, 1.0, config.network, config.filter);  // the region is the image
+  const std::vector<Event> events = events_between(0, 50);
+  prior.add_events(events);
+  prior.add_events(events_between(50, 51));
+  cv::Mat grid = voxel_grid(events, cv::Rect(0, 0, 240, 180), prior.model().bins);
+  normalise_voxels(grid);
+  DepthNetwork network(kModel);
+  const double scale = prior.model().focal_px > 0.0 ? kCamera.mean_focal() / prior.model().focal_px : 1.0;
+  ASSERT_TRUE(prior.measured());
+  EXPECT_NEAR(prior.measured()->depth_m, scale * cv::mean(network.infer(grid))[0], 1e-6);
 }
 
 TEST(NetworkDepthPrior, SaysNothingOfAQuietWindow) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
@@ -24,6 +25,8 @@ DepthFilterConfig with_time_constant(DepthFilterConfig filter, double time_const
 void NetworkDepthConfig::visit(ConfigFields& fields) {
   fields.add("model", model, {.effect = "name of a network in config/depth, or the path of an .onnx file"});
   fields.add("margin_px", margin_px, {"px", 0, 4096, "the network sees that much more than the region on each side"});
+  fields.choice("region_value", region_value, {{"median", RegionValue::Median}, {"mean", RegionValue::Mean}},
+                {.effect = "what stands for all depths of the region: their median, or their mean as in the paper"});
   fields.add("min_events_per_pixel", min_events_per_pixel,
              {"", 0, 100, "a window with fewer events around the region gives no depth"});
   fields.add("time_constant_s", time_constant_s,
@@ -93,7 +96,8 @@ std::optional<DepthEstimate> NetworkDepth::measure(const std::vector<Event>& win
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) logs.push_back(std::log(scale_ * static_cast<double>(depth.at<float>(y, x))));
   const double middle = median(logs);
-  return DepthEstimate{window.back().t, std::exp(middle), network_.model().sigma_ln, robust_deviation(logs, middle)};
+  const double value = config_.region_value == RegionValue::Mean ? scale_ * cv::mean(depth)[0] : std::exp(middle);
+  return DepthEstimate{window.back().t, value, network_.model().sigma_ln, robust_deviation(logs, middle)};
 }
 
 }  // namespace edged
