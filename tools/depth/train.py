@@ -34,7 +34,7 @@ class Samples:
     """Files of edged_depth_samples, mapped into memory."""
 
     def __init__(self, files):
-        self.voxels, self.depths, self.scenes, self.windows, self.events = [], [], [], [], []
+        self.voxels, self.depths, self.scenes, self.windows = [], [], [], []
         for file in files:
             with open(file, "rb") as f:
                 header = f.read(24)
@@ -45,12 +45,11 @@ class Samples:
             rows = rows[: len(rows) // size * size].reshape(-1, size)
             self.voxels.append(rows[:, 16 : 16 + bins * side * side].view(np.int8).reshape(-1, bins, side, side))
             self.depths.append(rows[:, 16 + bins * side * side :].view(np.uint16).reshape(-1, depth_side, depth_side))
-            head = np.ascontiguousarray(rows[:, :12]).view(np.int32)
-            self.scenes.append(head[:, 0]), self.windows.append(head[:, 1]), self.events.append(head[:, 2])
+            head = np.ascontiguousarray(rows[:, :8]).view(np.int32)
+            self.scenes.append(head[:, 0]), self.windows.append(head[:, 1])
         self.file = np.concatenate([np.full(len(v), i) for i, v in enumerate(self.voxels)])
         self.row = np.concatenate([np.arange(len(v)) for v in self.voxels])
         self.scenes, self.windows = np.concatenate(self.scenes), np.concatenate(self.windows)
-        self.events = np.concatenate(self.events)
 
     def __len__(self):
         return len(self.row)
@@ -237,11 +236,15 @@ def read_parameters(file):
 
 def warm_start(model, parameters):
     """Takes over every tensor that fits: a recurrent network can go on from one without memory. Returns how many."""
-    plain = {name.replace("unetrecurrent", "unet").replace(".conv.conv2d", ".conv2d"): p for name, p in parameters.items()}
-    state = model.state_dict()
-    taken = {name: p for name, old in state.items() for p in
-             [parameters.get(name, plain.get(name.replace("unetrecurrent", "unet").replace(".conv.conv2d", ".conv2d")))]
-             if p is not None and p.shape == old.shape}
+    def plain(name):
+        return name.replace("unetrecurrent", "unet").replace(".conv.conv2d", ".conv2d")
+
+    given = {plain(name): p for name, p in parameters.items()}
+    state, taken = model.state_dict(), {}
+    for name, old in state.items():
+        new = given.get(plain(name))
+        if new is not None and new.shape == old.shape:
+            taken[name] = new
     model.load_state_dict({**state, **taken})
     return len(taken)
 
@@ -258,7 +261,7 @@ def read_model(file):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--train", help="pattern of sample files, read anew every 500 steps")
+    parser.add_argument("--train", help="pattern of sample files, read anew every 200 steps")
     parser.add_argument("--held-out", nargs="+", help="sample files, to measure on")
     parser.add_argument("--constant", type=float, default=1.83, help="the guess to compare with [m]; training prints one")
     parser.add_argument("--minutes", type=float, default=30.0)
