@@ -17,6 +17,7 @@
 
 #include "edged/camera/rig.hpp"
 #include "edged/core/types.hpp"
+#include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
@@ -26,6 +27,7 @@ struct InitFrame {
   Timestamp t;
   std::vector<ImuSample> imu;  ///< from the frame before to t; of the first frame unused
   std::vector<CameraObservations> observations;
+  std::optional<RegionDepth> depth = std::nullopt;  ///< not used by the alignment, but by the window made from it
 };
 
 struct Alignment {

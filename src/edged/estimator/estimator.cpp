@@ -8,8 +8,7 @@
 #include <numbers>
 
 #include "edged/core/check.hpp"
-#include "edged/core/statistics.hpp"
-#include "edged/estimator/marginalization.hpp"
+#include "edged/estimator/sliding.hpp"
 #include "edged/estimator/solver.hpp"
 
 namespace edged {
@@ -49,23 +48,18 @@ WindowState to_window_state(const NavState& nav, Preintegration imu, bool keyfra
   return state;
 }
 
-/// The prior (always) and every other factor with a block that leaves.
-std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
-  std::vector<Factor> factors = window.factors();
-  const bool has_prior = !window.prior.empty();
-  std::size_t index = 0;
-  std::erase_if(factors, [&](const Factor& factor) {
-    if (index++ == 0 && has_prior) return false;
-    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
-                        [&](const BlockKey& key) { return leaving.contains(key); });
-  });
-  return factors;
-}
-
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
   return state.T_W_B.translation().allFinite() && state.v_W.norm() < kMaxSpeed &&
          state.bias_gyro.norm() < kMaxGyroBias && state.bias_accel.norm() < kMaxAccelBias;
+}
+
+/// Whether it is time for another depth factor, of the newest state.
+bool depth_due(const Window& window) {
+  if (!window.depth_config.enabled) return false;
+  const Timestamp before = window.newest().t - duration_from_seconds(window.depth_config.min_interval_s);
+  return std::none_of(window.states.begin(), window.states.end(),
+                      [&](const auto& state) { return state.second.depth && state.second.t > before; });
 }
 
 /// Root mean square of the landmarks' residuals in sigmas.
@@ -112,7 +106,8 @@ void EstimatorConfig::visit(ConfigFields& fields) {
 }
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
-    : noise_(noise), rig_(rig), config_(config), window_(rig, config.cauchy_scale), standstill_(config.standstill) {}
+    : noise_(noise), rig_(rig), config_(config), window_(rig, config.cauchy_scale, config.depth_factor),
+      standstill_(config.standstill), depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
@@ -124,7 +119,9 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   }
   append(input);
   triangulate_features(window_, config_.landmarks);
+  const bool new_depth = take_depth();
   optimize(result, config_.iterations);
+  if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise();
   slide();
   return result;
@@ -142,14 +139,8 @@ std::optional<double> Estimator::depth(FeatureId id) const {
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
 
-std::optional<double> Estimator::median_depth(const std::string& camera) const {
-  std::vector<double> depths;
-  for (const auto& [id, feature] : window_.features) {
-    if (window_.cameras[feature.camera].name != camera || !feature.anchor) continue;
-    if (const auto z = depth(id)) depths.push_back(*z);
-  }
-  if (depths.size() < 5) return std::nullopt;
-  return median(std::move(depths));
+std::optional<LogScale> Estimator::depth_scale() const {
+  return config_.depth_factor.enabled ? std::optional(depth_scale_) : std::nullopt;
 }
 
 std::string Estimator::try_to_start(const EstimatorInput& input) {
@@ -162,7 +153,7 @@ std::string Estimator::try_to_start(const EstimatorInput& input) {
                                       [](const CameraObservations& view) { return !view.features.empty(); });
   const bool due = buffer_.empty() ? any_corner : any_corner && input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s);
   if (due) {
-    buffer_.push_back({input.t, std::move(pending_imu_), input.observations});
+    buffer_.push_back({input.t, std::move(pending_imu_), input.observations, input.depth});
     pending_imu_.clear();
     if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) buffer_.erase(buffer_.begin());
   }
@@ -215,13 +206,14 @@ void Estimator::start_at_rest(const EstimatorInput& input) {
 bool Estimator::start_in_motion() {
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_);
   if (!alignment) return false;
-  Window window(rig_, config_.cauchy_scale);
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const NavState& nav = alignment->states[i];
     Preintegration imu =
         i == 0 ? Preintegration{} : Preintegration(buffer_[i].imu, nav.bias_gyro, nav.bias_accel, noise_);
     const StateId id = window.add_state(to_window_state(nav, std::move(imu), true));
     window.add_observations(id, buffer_[i].observations);
+    if (depth_due(window)) window.states.at(id).depth = buffer_[i].depth;
   }
   const auto& [first, state] = *window.states.begin();
   window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
@@ -256,10 +248,20 @@ void Estimator::append(const EstimatorInput& input) {
   state.t = input.t;
   const StateId id = window_.add_state(to_window_state(state, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
+  if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed) {
     window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
                                                {config_.zero_velocity_sigma, kFree, kFree}));
   }
+}
+
+/// The newest state's depth, if it has one that is believable. True when it has.
+bool Estimator::take_depth() {
+  std::optional<RegionDepth>& depth = window_.states.rbegin()->second.depth;
+  if (!depth) return false;
+  const auto error = depth_error_sigmas(window_, window_.states.rbegin()->first, depth_scale_);
+  if (!error || *error > config_.depth_factor.gate) depth.reset();
+  return depth.has_value();
 }
 
 void Estimator::optimize(EstimatorResult& result, int iterations) {
@@ -290,65 +292,15 @@ void Estimator::slide() {
   // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
   if (window_.states.size() > static_cast<std::size_t>(config_.recent_states)) {
     const auto aged = std::prev(window_.states.end(), config_.recent_states + 1);
-    if (!aged->second.keyframe) drop_recent(aged->first);
+    // At rest new keyframes would push those with a baseline out of the window.
+    const double longest_s = config_.max_interval_s * (standstill_.still() ? kRestStretch : 1.0);
+    if (!aged->second.keyframe) drop_or_promote(window_, aged->first, longest_s);
   }
-  while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) drop_oldest_keyframe();
+  while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) {
+    drop_oldest_keyframe(window_, config_.landmarks);
+  }
   // Tracks that ended before they became landmarks.
   std::erase_if(window_.features, [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
-}
-
-void Estimator::drop_recent(StateId id) {
-  const auto state = window_.states.find(id);
-  const auto next = std::next(state);
-  Preintegration joined = state->second.imu.joined(next->second.imu);
-  // At rest new keyframes would push those with a baseline out of the window.
-  if (joined.dt() > config_.max_interval_s * (standstill_.still() ? kRestStretch : 1.0)) {
-    state->second.keyframe = true;
-    return;
-  }
-  next->second.imu = std::move(joined);
-  for (auto& [feature_id, feature] : window_.features) feature.seen.erase(id);
-  window_.states.erase(state);
-  window_.drop_orphaned_priors();
-}
-
-void Estimator::drop_oldest_keyframe() {
-  const StateId id = window_.states.begin()->first;
-  // The youngest keyframe takes over the landmarks that it still sees; its sight and later ones are kept for that.
-  StateId heir = id;
-  for (const auto& [state, content] : window_.states) {
-    if (content.keyframe) heir = state;
-  }
-  std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
-  std::map<FeatureId, bool> inherited;
-  for (auto& [feature_id, feature] : window_.features) {
-    if (feature.anchor != id) continue;
-    leaving.insert({BlockKind::InverseDepth, feature_id});
-    inherited[feature_id] = heir != id && feature.seen.contains(heir);
-  }
-  std::vector<Factor> touching = factors_touching(window_, leaving);
-  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
-  std::erase_if(touching, [&](const Factor& factor) {
-    const BlockKey& depth = factor.blocks.back();
-    if (depth.kind != BlockKind::InverseDepth) return false;
-    const auto found = inherited.find(depth.id);
-    if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
-    const StateId seen_by = factor.blocks[1].id;
-    return !window_.states.at(seen_by).keyframe || (found->second && seen_by >= heir);
-  });
-  window_.prior = marginalize(window_, touching, leaving);
-  for (auto it = window_.features.begin(); it != window_.features.end();) {
-    const auto found = inherited.find(it->first);
-    bool keep = true;
-    if (found != inherited.end()) {
-      keep = found->second && move_anchor(window_, it->second, heir, config_.landmarks);
-      std::erase_if(it->second.seen, [&](const auto& sight) { return sight.first < heir; });
-    }
-    it->second.seen.erase(id);
-    it = keep ? std::next(it) : window_.features.erase(it);
-  }
-  window_.states.erase(id);
-  window_.drop_orphaned_priors();
 }
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 
 #include "edged/core/timing.hpp"
 #include "edged/estimator/alignment.hpp"
+#include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
@@ -35,6 +36,7 @@ struct EstimatorConfig {
   double max_noise_scale = 4.0;
   LandmarkConfig landmarks;
   StandstillConfig standstill;
+  DepthFactorConfig depth_factor;  ///< its options stand beside those of the depth source, not in visit
   void visit(ConfigFields& fields);
 };
 
@@ -45,6 +47,7 @@ struct EstimatorInput {
   std::vector<CameraObservations> observations;
   bool keyframe = false;
   bool events_quiet = false;   ///< the event camera sees nothing move
+  std::optional<RegionDepth> depth = std::nullopt;  ///< for Eq. 5, used at keyframes when depth_factor is enabled
 };
 
 struct EstimatorResult {
@@ -71,8 +74,8 @@ class Estimator {
 
   /// z-depth of a landmark in its own camera at the newest state [m].
   std::optional<double> depth(FeatureId id) const;
-  /// Median z-depth of the landmarks in a camera at the newest state [m].
-  std::optional<double> median_depth(const std::string& camera) const;
+  /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
+  std::optional<LogScale> depth_scale() const;
 
   const Window& window() const { return window_; }
 
@@ -81,11 +84,10 @@ class Estimator {
   void start_at_rest(const EstimatorInput& input);
   bool start_in_motion();
   void append(const EstimatorInput& input);
+  bool take_depth();
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise();
   void slide();
-  void drop_oldest_keyframe();
-  void drop_recent(StateId id);
 
   ImuNoise noise_;
   Rig rig_;
@@ -93,6 +95,7 @@ class Estimator {
   Window window_;
   StandstillDetector standstill_;
   bool initialized_ = false;
+  LogScale depth_scale_;
   std::vector<InitFrame> buffer_;        ///< start-up views
   std::vector<ImuSample> pending_imu_;   ///< since the last start-up view
 };

@@ -58,7 +58,8 @@ LinearFactor linearise(Window& window, const Factor& factor) {
   return out;
 }
 
-/// The normal equations H d = -g of all factors, ordered: leaving inverse depths, other leaving blocks, staying blocks.
+/// The normal equations H d = -g of all factors, ordered: leaving inverse depths that do not couple, other leaving
+/// blocks, staying blocks.
 struct NormalEquations {
   std::map<BlockKey, Eigen::Index> offset;
   std::vector<BlockKey> staying;
@@ -75,12 +76,16 @@ NormalEquations order_blocks(const std::vector<Factor>& factors, const std::set<
     eq.offset[key] = eq.size;
     eq.size += tangent_size(key.kind);
   };
+  const std::set<BlockKey> coupled = coupled_depths(factors);
+  const auto alone = [&](const BlockKey& key) {
+    return key.kind == BlockKind::InverseDepth && !coupled.contains(key);
+  };
   for (const BlockKey& key : used) {
-    if (leaving.contains(key) && key.kind == BlockKind::InverseDepth) place(key);
+    if (leaving.contains(key) && alone(key)) place(key);
   }
   eq.depths = eq.size;
   for (const BlockKey& key : used) {
-    if (leaving.contains(key) && key.kind != BlockKind::InverseDepth) place(key);
+    if (leaving.contains(key) && !alone(key)) place(key);
   }
   eq.leaving = eq.size;
   for (const BlockKey& key : used) {
@@ -102,7 +107,7 @@ void accumulate(NormalEquations& eq, const Factor& factor, const LinearFactor& l
   }
 }
 
-/// Inverse depths do not couple with one another: each is one rank-one update.
+/// These do not couple with one another: each is one rank-one update.
 void eliminate_depths(NormalEquations& eq) {
   const Eigen::Index n = eq.size - eq.depths;
   for (Eigen::Index i = 0; i < eq.depths; ++i) {
@@ -119,7 +124,7 @@ VectorXd unit_diagonal_scale(const MatrixXd& H) {
   return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
 }
 
-/// Schur complement of the leaving poses and motions, with the directions nothing has measured left out.
+/// Schur complement of the other leaving blocks, with the directions nothing has measured left out.
 void eliminate_states(NormalEquations& eq) {
   const Eigen::Index m = eq.leaving - eq.depths, n = eq.size - eq.leaving;
   if (m == 0) return;

@@ -46,6 +46,7 @@ SolveSummary solve(Window& window, int max_iterations) {
   auto* ordering = new ceres::ParameterBlockOrdering;
 
   Arena arena(window, factors);
+  const std::set<BlockKey> coupled = coupled_depths(factors);
   for (const auto& [key, offset] : arena.offsets) {
     double* block = arena.values.data() + offset;
     if (key.kind == BlockKind::Pose) {
@@ -53,7 +54,8 @@ SolveSummary solve(Window& window, int max_iterations) {
     } else {
       problem.AddParameterBlock(block, block_size(key.kind));
     }
-    ordering->AddElementToGroup(block, key.kind == BlockKind::InverseDepth ? 0 : 1);
+    const bool alone = key.kind == BlockKind::InverseDepth && !coupled.contains(key);
+    ordering->AddElementToGroup(block, alone ? 0 : 1);
   }
   std::vector<double*> blocks;
   for (const Factor& factor : factors) {

@@ -3,8 +3,10 @@
 #include "edged/estimator/window.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "edged/core/check.hpp"
+#include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/reprojection_factor.hpp"
 
@@ -20,11 +22,17 @@ NavState WindowState::nav() const {
   return nav;
 }
 
-Window::Window(const Rig& rig, double cauchy_scale)
+Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
     : cameras(rig.cameras),
       noise_scale(rig.cameras.size(), 1.0),
+      depth_config(depth),
       last_image_(rig.cameras.size(), 0),
-      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {}
+      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)),
+      depth_loss_(std::make_unique<ceres::CauchyLoss>(depth.cauchy_scale)) {
+  if (!depth.enabled) return;
+  ln_scale[0] = 0.0;
+  soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
+}
 
 StateId Window::add_state(WindowState state) {
   states.emplace(next_state_, std::move(state));
@@ -57,6 +65,10 @@ double* Window::block(BlockKey key) {
     const auto found = features.find(key.id);
     return found == features.end() ? nullptr : &found->second.inverse_depth;
   }
+  if (key.kind == BlockKind::LogScale) {
+    const auto found = ln_scale.find(key.id);
+    return found == ln_scale.end() ? nullptr : &found->second;
+  }
   const auto found = states.find(key.id);
   if (found == states.end()) return nullptr;
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
@@ -88,6 +100,7 @@ std::vector<Factor> Window::factors() {
                    {{BlockKind::Pose, a}, {BlockKind::Motion, a}, {BlockKind::Pose, b}, {BlockKind::Motion, b}}});
   }
   add_visual_factors(out);
+  add_depth_factors(*this, out);
   return out;
 }
 
@@ -103,6 +116,16 @@ void Window::add_visual_factors(std::vector<Factor>& out) {
                      {{BlockKind::Pose, *feature.anchor}, {BlockKind::Pose, state}, {BlockKind::InverseDepth, id}}});
     }
   }
+}
+
+std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors) {
+  std::set<BlockKey> coupled;
+  for (const Factor& factor : factors) {
+    const auto is_depth = [](const BlockKey& key) { return key.kind == BlockKind::InverseDepth; };
+    if (std::count_if(factor.blocks.begin(), factor.blocks.end(), is_depth) < 2) continue;
+    std::copy_if(factor.blocks.begin(), factor.blocks.end(), std::inserter(coupled, coupled.end()), is_depth);
+  }
+  return coupled;
 }
 
 }  // namespace edged

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "edged/core/types.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
+#include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
@@ -30,6 +32,7 @@ struct WindowState {
   MotionBlock motion{};
   bool keyframe = false;
   Preintegration imu;  ///< from the state before this one; of the window's first state unused
+  std::optional<RegionDepth> depth;  ///< of a keyframe: what a depth source says
 
   SE3 T_W_B() const { return pose_of(pose.data()); }
   NavState nav() const;
@@ -53,7 +56,7 @@ struct Factor {
 
 class Window {
  public:
-  Window(const Rig& rig, double cauchy_scale);
+  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
   // --- contents -------------------------------------------------------------------------------------------------------
   std::map<StateId, WindowState> states;      ///< ids grow with time
@@ -62,6 +65,8 @@ class Window {
   std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
   std::vector<RigCamera> cameras;
   std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
+  DepthFactorConfig depth_config;
+  std::map<std::uint64_t, double> ln_scale;   ///< the present piece of ln s (Eq. 5), and the next while one is left behind
 
   /// Appends a state; ids are given in order of time.
   StateId add_state(WindowState state);
@@ -85,13 +90,17 @@ class Window {
 
   /// The terms of the present window, each once, the prior first. They borrow from the window: use them before it changes.
   std::vector<Factor> factors();
+  ceres::LossFunction* depth_loss() { return depth_loss_.get(); }
 
  private:
   void add_visual_factors(std::vector<Factor>& out);
 
   StateId next_state_ = 0;
   std::vector<StateId> last_image_;  ///< newest state with an image, one a camera
-  std::unique_ptr<ceres::LossFunction> visual_loss_;
+  std::unique_ptr<ceres::LossFunction> visual_loss_, depth_loss_;
 };
+
+/// The inverse depths that share a factor with another: they cannot be eliminated one by one.
+std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors);
 
 }  // namespace edged

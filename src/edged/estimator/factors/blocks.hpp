@@ -19,12 +19,12 @@ using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
 using MotionBlock = std::array<double, 9>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth };
+enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale };
 
-/// Names one parameter block: a state's pose or motion, or a feature's inverse depth.
+/// Names one parameter block: a state's pose or motion, a feature's inverse depth, or ln s of the depth source (Eq. 5).
 struct BlockKey {
   BlockKind kind;
-  std::uint64_t id;  ///< state number or FeatureId
+  std::uint64_t id;  ///< state number, FeatureId, or number of the piece of ln s
   auto operator<=>(const BlockKey&) const = default;
 };
 

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "edged/estimator/factors/depth_factor.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/factors/reprojection_factor.hpp"
@@ -131,6 +132,50 @@ TEST(ReprojectionFactor, RefusesAPointBehindTheCamera) {
   const double rho = 1.0;
   const double* blocks[] = {here.data(), turned.data(), &rho};
   double r[2];
+  EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
+}
+
+/// Three landmarks of two cameras, anchored in the observing state and in two others.
+struct DepthScene {
+  SE3 T_B_E{so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}}, T_B_F{so3::exp({-0.1, 0.05, 1.4}), {-0.04, 0.01, 0.0}};
+  std::vector<DepthLandmark> landmarks = {
+      {T_B_E, {0.2, -0.1}, 0}, {T_B_F, {-0.1, 0.15}, 1}, {T_B_E, {0.05, 0.0}, 2}};
+  Blocks blocks = {{0.3},
+                   pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
+                   pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
+                   pose({0.02, 0.25, -0.2}, {0.8, 0.6, 0.1}),
+                   {0.5},
+                   {0.02},
+                   {2.0}};
+};
+
+TEST(DepthFactor, JacobiansMatchCentralDifferencesInBothForms) {
+  const DepthScene scene;
+  for (const DepthResidual form : {DepthResidual::Log, DepthResidual::Paper}) {
+    const DepthFactor factor(form, scene.T_B_E, scene.landmarks, 3, 1.7, 2.5);
+    check_jacobians(factor,
+                    {BlockKind::LogScale, BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::InverseDepth,
+                     BlockKind::InverseDepth, BlockKind::InverseDepth},
+                    scene.blocks);
+  }
+}
+
+TEST(DepthFactor, IsZeroWhereTheSourceTimesItsScaleIsTheMiddleOfTheLandmarks) {
+  const DepthScene scene;
+  const std::vector<DepthLandmark> own = {scene.landmarks[0]};
+  const double s = 1.4, depth = 2.0;  // of the only landmark, in its own anchor view
+  for (const DepthResidual form : {DepthResidual::Log, DepthResidual::Paper}) {
+    const DepthFactor factor(form, scene.T_B_E, own, 1, s * depth, 3.0);
+    EXPECT_NEAR(evaluate(factor, {{std::log(s)}, scene.blocks[1], {1.0 / depth}})[0], 0.0, 1e-12);
+  }
+}
+
+TEST(DepthFactor, RefusesALandmarkBehindTheCamera) {
+  const DepthFactor factor(DepthResidual::Log, SE3(), {{SE3(), {0.0, 0.0}, 1}}, 2, 1.0, 1.0);
+  const double ln_s = 0.0, rho = 1.0;
+  const auto turned = pose({0, 3.1, 0}, {0, 0, 0}), here = pose({0, 0, 0}, {0, 0, 0});
+  const double* blocks[] = {&ln_s, turned.data(), here.data(), &rho};
+  double r[1];
   EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
 }
 

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/depth_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+#include "edged/estimator/marginalization.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kMostLandmarks = 12;  // in one factor: they are coupled by it, which costs time
+constexpr double kNearestShare = 0.01;      // of the anchor depth: nearer is too close to being behind the camera
+constexpr double kLeastSigma = 0.05;
+
+struct Middle {
+  std::vector<FeatureId> landmarks;  ///< around the median
+  double mean_ln = 0.0;              ///< of their ln 1/z
+  std::size_t in_region = 0;
+};
+
+const RigCamera& camera_of(const Window& window, const RegionDepth& depth) {
+  const auto found = std::find_if(window.cameras.begin(), window.cameras.end(),
+                                  [&](const RigCamera& camera) { return camera.name == depth.camera; });
+  EDGED_CHECK(found != window.cameras.end(), "no camera '{}' in the rig", depth.camera);
+  return *found;
+}
+
+/// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.
+std::optional<Middle> middle_landmarks(const Window& window, StateId state) {
+  const WindowState& at = window.states.at(state);
+  const RegionDepth& region = *at.depth;
+  const SE3 T_E_W = (at.T_W_B() * camera_of(window, region).T_B_C).inverse();
+  std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
+  for (const auto& [id, feature] : window.features) {
+    if (!feature.anchor || !feature.seen.contains(state) || feature.inverse_depth <= 0.0) continue;
+    const Eigen::Vector3d p_E = T_E_W * window.position(feature);
+    if (p_E.z() * feature.inverse_depth < kNearestShare) continue;
+    const Eigen::Array2d point = p_E.hnormalized();
+    if ((point >= region.low.array()).all() && (point <= region.high.array()).all()) {
+      seen.emplace_back(-std::log(p_E.z()), id);
+    }
+  }
+  if (seen.size() < static_cast<std::size_t>(window.depth_config.min_landmarks)) return std::nullopt;
+  std::sort(seen.begin(), seen.end());
+  const std::size_t n = std::min((seen.size() + 1) / 2, kMostLandmarks), begin = (seen.size() - n) / 2;
+  Middle middle;
+  middle.in_region = seen.size();
+  for (std::size_t i = begin; i < begin + n; ++i) {
+    middle.landmarks.push_back(seen[i].second);
+    middle.mean_ln += seen[i].first / static_cast<double>(n);
+  }
+  return middle;
+}
+
+/// Standard deviation of the residual in logarithms, s apart: what the source gets wrong from time to time, and how
+/// well so many landmarks stand for the whole region (docs/math.md, D4).
+double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::size_t landmarks) {
+  const double sampling = 1.25 * depth.spread_ln / std::sqrt(static_cast<double>(landmarks));
+  return std::max(kLeastSigma, std::hypot(config.noise_share * depth.sigma_ln, sampling));
+}
+
+Factor depth_factor(Window& window, StateId state, const Middle& middle) {
+  const RegionDepth& depth = *window.states.at(state).depth;
+  const auto [scale, ln_s] = *window.ln_scale.rbegin();
+  std::vector<BlockKey> poses = {{BlockKind::Pose, state}}, depths;
+  std::vector<DepthLandmark> landmarks;
+  for (const FeatureId id : middle.landmarks) {
+    const Feature& feature = window.features.at(id);
+    const BlockKey anchor{BlockKind::Pose, *feature.anchor};
+    const auto known = std::find(poses.begin(), poses.end(), anchor);
+    landmarks.push_back({window.cameras[feature.camera].T_B_C, feature.seen.at(*feature.anchor).point,
+                         static_cast<std::size_t>(known - poses.begin())});
+    if (known == poses.end()) poses.push_back(anchor);
+    depths.push_back({BlockKind::InverseDepth, id});
+  }
+  double weight = 1.0 / sigma_ln(window.depth_config, depth, middle.in_region);
+  // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
+  if (window.depth_config.form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(ln_s);
+  Factor factor;
+  factor.cost = std::make_unique<DepthFactor>(window.depth_config.form, camera_of(window, depth).T_B_C,
+                                              std::move(landmarks), poses.size(), depth.depth_m, weight);
+  factor.loss = window.depth_loss();
+  factor.blocks = {{BlockKind::LogScale, scale}};
+  factor.blocks.insert(factor.blocks.end(), poses.begin(), poses.end());
+  factor.blocks.insert(factor.blocks.end(), depths.begin(), depths.end());
+  return factor;
+}
+
+}  // namespace
+
+void DepthFactorConfig::visit(ConfigFields& fields) {
+  fields.add("enabled", enabled,
+             {.effect = "hold the landmarks' median depth to the depth network's, up to its scale (paper Eq. 5)"});
+  fields.choice("form", form, {{"log", DepthResidual::Log}, {"paper", DepthResidual::Paper}},
+                {.effect = "difference of logarithms, or of inverse depths as the paper prints it"});
+  fields.add("scale_sigma", scale_sigma, {"", 0.001, 10, "how far ln s may lie from 0 before anything is known"});
+  fields.add("scale_walk", scale_walk, {"1/sqrt(s)", 0, 10, "random walk of ln s"});
+  fields.add("noise_share", noise_share,
+             {"", 0.01, 10, "share of the source's sigma_ln that changes with time, and that s cannot explain"});
+  fields.add("min_interval_s", min_interval_s, {"s", 0, 60, "keyframes sooner than this after a factor get none"});
+  fields.add("min_landmarks", min_landmarks, {"", 1, 1000, "in the region, for a factor"});
+  fields.add("gate", gate, {"sigma", 0.1, 100, "a depth that is farther off than this is not used"});
+  fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "residuals beyond this are weighted down"});
+}
+
+void add_depth_factors(Window& window, std::vector<Factor>& out) {
+  for (const auto& [id, state] : window.states) {
+    if (!state.depth) continue;
+    if (const auto middle = middle_landmarks(window, id)) out.push_back(depth_factor(window, id, *middle));
+  }
+}
+
+std::optional<double> depth_error_sigmas(Window& window, StateId state, const LogScale& scale) {
+  const std::optional<Middle> middle = middle_landmarks(window, state);
+  if (!middle) return std::nullopt;
+  const RegionDepth& depth = *window.states.at(state).depth;
+  const double error = middle->mean_ln - scale.value + std::log(depth.depth_m);
+  return std::abs(error) / std::hypot(sigma_ln(window.depth_config, depth, middle->in_region), scale.sigma);
+}
+
+LogScale estimate_scale(Window& window) {
+  const std::vector<Factor> factors = window.factors();
+  const auto& [id, ln_s] = *window.ln_scale.rbegin();
+  std::set<BlockKey> others;
+  for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
+  others.erase({BlockKind::LogScale, id});
+  const LinearPrior marginal = marginalize(window, factors, others);
+  return {ln_s, marginal.J.size() == 1 ? 1.0 / std::abs(marginal.J(0, 0)) : window.depth_config.scale_sigma};
+}
+
+LinearPrior scale_prior(BlockKey scale, double sigma) {
+  LinearPrior prior;
+  prior.blocks = {scale};
+  prior.x0 = {{0.0}};
+  prior.J = Eigen::MatrixXd::Constant(1, 1, 1.0 / sigma);
+  prior.r = Eigen::VectorXd::Zero(1);
+  return prior;
+}
+
+LinearPrior begin_scale(Window& window, double dt_s) {
+  const auto [id, ln_s] = *window.ln_scale.rbegin();
+  window.ln_scale.emplace(id + 1, ln_s);
+  // Without any walk a piece is the one before, up to what numbers can hold.
+  const double sigma = std::max(1e-4, window.depth_config.scale_walk * std::sqrt(dt_s));
+  LinearPrior walk;
+  walk.blocks = {{BlockKind::LogScale, id}, {BlockKind::LogScale, id + 1}};
+  walk.x0 = {{ln_s}, {ln_s}};
+  walk.J = Eigen::RowVector2d(-1.0, 1.0) / sigma;
+  walk.r = Eigen::VectorXd::Zero(1);
+  return walk;
+}
+
+}  // namespace edged

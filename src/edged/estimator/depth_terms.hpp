@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Depth in the window (paper Eq. 5): which landmarks stand for a region, the factors on them, and the scale s.
+//
+// s is what the source's depths are too large by: inverse depth of the scene = s * (1 / depth of the source). It is
+// held as ln s, one value for the whole window; its random walk acts at the window's old end, where a keyframe leaves.
+#pragma once
+
+#include <vector>
+
+#include "edged/estimator/window.hpp"
+
+namespace edged {
+
+/// The factor of every state with a depth and enough landmarks in its region. A median has no derivative: the factor
+/// takes the mean over the landmarks around it, the middle half but twelve at most, chosen anew at every call.
+void add_depth_factors(Window& window, std::vector<Factor>& out);
+
+/// Residual of the state's depth over its standard deviation, that of s included; nothing without enough landmarks.
+std::optional<double> depth_error_sigmas(Window& window, StateId state, const LogScale& scale);
+
+/// ln s given everything in the window and before it.
+LogScale estimate_scale(Window& window);
+
+/// ln s near zero, before any measurement.
+LinearPrior scale_prior(BlockKey scale, double sigma);
+
+/// Begins a new piece of ln s after the present one, and returns the walk between the two.
+LinearPrior begin_scale(Window& window, double dt_s);
+
+}  // namespace edged

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Eq. 5 in the estimator: what a depth source adds where the motion does not show the scale, and what it must leave
+// alone.
+#include "edged/estimator/depth_terms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "edged/estimator/marginalization.hpp"
+#include "edged/estimator/solver.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kStep_s = 0.05;
+
+/// A source whose depths of the whole view are the true median times `bias`. A copy of the world: its noise goes on as
+/// if nobody had looked.
+RegionDepth depth_of_view(TestWorld world, double t, double bias, double sigma_ln) {
+  const RigCamera& camera = world.rig().cameras.front();
+  const SE3 T_C_W = (world.T_W_B(t) * camera.T_B_C).inverse();
+  std::vector<double> depths;
+  for (const FeatureObservation& seen : world.observe(t).features) {
+    depths.push_back((T_C_W * world.point_W(seen.id)).z());
+  }
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  return {camera.name, {-1, -1}, {1, 1}, bias * depths[depths.size() / 2], sigma_ln, 0.2};
+}
+
+struct Outcome {
+  double scale_error = 0.0;     ///< |path estimated / path - 1| from `from_s` on
+  double position_error = 0.0;  ///< largest, of the motion since the start [m]
+  std::optional<LogScale> s;
+};
+
+/// bias 0: no source.
+Outcome fly(const TestWorldOptions& options, double duration_s, double bias, const EstimatorConfig& config,
+            double sigma_ln = 0.6) {
+  TestWorld world(options);
+  Estimator estimator(world.rig(), world.noise(), config);
+  double travelled = 0.0, estimated = 0.0;
+  Outcome outcome;
+  std::optional<std::pair<SE3, SE3>> first, before;  // truth and estimate
+  for (int i = 1; i * kStep_s <= duration_s; ++i) {
+    const double t = i * kStep_s;
+    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+    if (bias > 0.0) input.depth = depth_of_view(world, t, bias, sigma_ln);
+    estimator.add(input);
+    if (!estimator.initialized()) continue;
+    const std::pair<SE3, SE3> now(world.T_W_B(t), estimator.newest().T_W_B);
+    if (!first) first = now;
+    if (before) {
+      travelled += (now.first.translation() - before->first.translation()).norm();
+      estimated += (now.second.translation() - before->second.translation()).norm();
+    }
+    before = now;
+    const SE3 true_motion = first->first.inverse() * now.first, motion = first->second.inverse() * now.second;
+    outcome.position_error =
+        std::max(outcome.position_error, (true_motion.translation() - motion.translation()).norm());
+  }
+  EXPECT_TRUE(estimator.initialized());
+  outcome.scale_error = std::abs(estimated / travelled - 1.0);
+  outcome.s = estimator.depth_scale();
+  return outcome;
+}
+
+EstimatorConfig with_depth(DepthResidual form = DepthResidual::Log) {
+  EstimatorConfig config;
+  config.depth_factor.enabled = true;
+  config.depth_factor.form = form;
+  return config;
+}
+
+TEST(DepthTerms, TheScaleOfABiasedSourceIsFound) {
+  for (const DepthResidual form : {DepthResidual::Log, DepthResidual::Paper}) {
+    for (const double bias : {0.6, 1.7}) {
+      const Outcome outcome = fly({.rest_s = 1.0}, 10.0, bias, with_depth(form));
+      ASSERT_TRUE(outcome.s);
+      EXPECT_NEAR(outcome.s->value, std::log(bias), 0.12) << "bias " << bias;
+      EXPECT_LT(outcome.s->sigma, 0.2);
+      EXPECT_LT(std::abs(outcome.s->value - std::log(bias)), 3.0 * outcome.s->sigma);
+    }
+  }
+}
+
+TEST(DepthTerms, NothingIsSaidOfTheScaleWithoutTheFactor) {
+  EXPECT_FALSE(fly({.rest_s = 1.0}, 2.0, 1.0, EstimatorConfig()).s);
+}
+
+TEST(DepthTerms, ASourceThatIsFarOffLeavesAWellConditionedRunAlone) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const TestWorldOptions world{.rest_s = 1.0, .seed = seed};
+    const Outcome without = fly(world, 8.0, 0.0, EstimatorConfig());
+    for (const double bias : {0.5, 0.7, 1.3, 1.5}) {
+      const Outcome with = fly(world, 8.0, bias, with_depth());
+      EXPECT_LT(with.position_error, 1.1 * without.position_error + 0.002) << "seed " << seed << " bias " << bias;
+      EXPECT_LT(with.scale_error, without.scale_error + 0.003) << "seed " << seed << " bias " << bias;
+    }
+  }
+}
+
+// Started in slow motion: the accelerometer bias hides the scale for seconds.
+TEST(DepthTerms, AGoodSourceGivesTheScaleThatSlowMotionDoesNot) {
+  EstimatorConfig config = with_depth();
+  config.depth_factor.scale_sigma = 0.1;
+  double without = 0.0, with = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const TestWorldOptions slow{.speed = 0.3, .bias_accel = {0.1, -0.15, 0.1}, .seed = seed};
+    without += fly(slow, 5.0, 0.0, EstimatorConfig()).scale_error / 4.0;
+    with += fly(slow, 5.0, 1.0, config, 0.15).scale_error / 4.0;
+  }
+  EXPECT_LT(with, 0.6 * without) << "scale error " << with << ", without the factor " << without;
+}
+
+TEST(DepthTerms, RepeatToTheBit) {
+  const Outcome a = fly({.rest_s = 0.5}, 4.0, 1.2, with_depth()), b = fly({.rest_s = 0.5}, 4.0, 1.2, with_depth());
+  EXPECT_EQ(a.position_error, b.position_error);
+  EXPECT_EQ(a.s->value, b.s->value);
+  EXPECT_EQ(a.s->sigma, b.s->sigma);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/sliding.hpp"
+
+#include <algorithm>
+
+#include "edged/estimator/depth_terms.hpp"
+#include "edged/estimator/marginalization.hpp"
+
+namespace edged {
+namespace {
+
+/// The prior (always) and every other factor with a block that leaves.
+std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
+  std::vector<Factor> factors = window.factors();
+  const bool has_prior = !window.prior.empty();
+  std::size_t index = 0;
+  std::erase_if(factors, [&](const Factor& factor) {
+    if (index++ == 0 && has_prior) return false;
+    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
+                        [&](const BlockKey& key) { return leaving.contains(key); });
+  });
+  return factors;
+}
+
+/// The youngest keyframe takes over the landmarks that it still sees; its sight and later ones are kept for that.
+StateId youngest_keyframe(const Window& window) {
+  StateId youngest = window.states.begin()->first;
+  for (const auto& [state, content] : window.states) {
+    if (content.keyframe) youngest = state;
+  }
+  return youngest;
+}
+
+/// Whether a factor that touches leaving blocks is to stay out of the prior. inherited: the landmarks anchored in the
+/// leaving state, and whether the heir goes on with them.
+bool stays_out(const Factor& factor, const Window& window, const std::map<FeatureId, bool>& inherited, StateId heir) {
+  const BlockKey& depth = factor.blocks.back();
+  if (depth.kind != BlockKind::InverseDepth) return false;
+  const StateId seen_by = factor.blocks[1].id;
+  if (factor.blocks.front().kind == BlockKind::LogScale) {
+    // A depth factor leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
+    return seen_by != window.states.begin()->first || factor.blocks[2].kind == BlockKind::Pose;
+  }
+  const auto found = inherited.find(depth.id);
+  if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
+  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
+  return !window.states.at(seen_by).keyframe || (found->second && seen_by >= heir);
+}
+
+}  // namespace
+
+void drop_or_promote(Window& window, StateId id, double max_interval_s) {
+  const auto state = window.states.find(id);
+  const auto next = std::next(state);
+  Preintegration joined = state->second.imu.joined(next->second.imu);
+  if (joined.dt() > max_interval_s) {
+    state->second.keyframe = true;
+    return;
+  }
+  next->second.imu = std::move(joined);
+  for (auto& [feature_id, feature] : window.features) feature.seen.erase(id);
+  window.states.erase(state);
+  window.drop_orphaned_priors();
+}
+
+void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
+  const auto& [id, oldest] = *window.states.begin();
+  const StateId heir = youngest_keyframe(window);
+  std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
+  for (const auto& [piece, ln_s] : window.ln_scale) leaving.insert({BlockKind::LogScale, piece});
+  std::map<FeatureId, bool> inherited;
+  for (auto& [feature_id, feature] : window.features) {
+    if (feature.anchor != id) continue;
+    leaving.insert({BlockKind::InverseDepth, feature_id});
+    inherited[feature_id] = heir != id && feature.seen.contains(heir);
+  }
+  std::vector<Factor> touching = factors_touching(window, leaving);
+  std::erase_if(touching, [&](const Factor& factor) { return stays_out(factor, window, inherited, heir); });
+  LinearPrior scale_walk;
+  if (!window.ln_scale.empty()) {
+    scale_walk = begin_scale(window, to_seconds(std::next(window.states.begin())->second.t - oldest.t));
+    touching.push_back({std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
+  }
+  window.prior = marginalize(window, touching, leaving);
+  for (auto it = window.features.begin(); it != window.features.end();) {
+    const auto found = inherited.find(it->first);
+    bool keep = true;
+    if (found != inherited.end()) {
+      keep = found->second && move_anchor(window, it->second, heir, config);
+      std::erase_if(it->second.seen, [&](const auto& sight) { return sight.first < heir; });
+    }
+    it->second.seen.erase(id);
+    it = keep ? std::next(it) : window.features.erase(it);
+  }
+  window.states.erase(window.states.begin());
+  std::erase_if(window.ln_scale, [&](const auto& piece) {
+    return leaving.contains({BlockKind::LogScale, piece.first});
+  });
+  window.drop_orphaned_priors();
+}
+
+}  // namespace edged

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How the window moves on: states that leave, and what is kept of them.
+#pragma once
+
+#include "edged/estimator/landmarks.hpp"
+#include "edged/estimator/window.hpp"
+
+namespace edged {
+
+/// A state that is no keyframe leaves by joining its IMU interval to the next one's, which is exact; where that would
+/// be longer than max_interval_s, it becomes a keyframe.
+void drop_or_promote(Window& window, StateId id, double max_interval_s);
+
+/// Marginalises the oldest state. Landmarks anchored there that are still in view go on in the youngest keyframe with
+/// the sights from there on, so that nothing is used twice.
+void drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
+
+}  // namespace edged
