@@ -3,6 +3,7 @@
 #include "run_folder.hpp"
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -20,7 +21,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "t
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
-    "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m\n";
+    "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
+    "depth_scale,depth_scale_sigma_ln\n";
 
 std::ofstream open_for_writing(const std::filesystem::path& file) {
   std::ofstream out(file);
@@ -43,8 +45,10 @@ std::string state_line(Timestamp packet, const OdometryOutput& output) {
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
   }
-  return line + fmt::format(",{},{},{},{},{},{}\n", output.keyframe ? 1 : 0, output.event_tracks, output.frame_tracks,
-                            output.landmarks, output.event_rate_hz, output.scene_depth);
+  line += fmt::format(",{},{},{},{},{},{}", output.keyframe ? 1 : 0, output.event_tracks, output.frame_tracks,
+                      output.landmarks, output.event_rate_hz, output.scene_depth);
+  const auto& ln_s = output.ln_depth_scale;
+  return line + (ln_s ? fmt::format(",{},{}\n", std::exp(ln_s->value), ln_s->sigma) : ",,\n");
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
     for (const TrackingStatus status :
          {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
       output.status = status;
+      if (status == TrackingStatus::Degraded) output.ln_depth_scale = LogScale{0.1, 0.2};
       writer.add(timestamp_from_seconds(1.0 + static_cast<double>(writer.poses())), output);
     }
     EXPECT_EQ(writer.poses(), 2u);

@@ -38,6 +38,7 @@ void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
   if (output.keyframe) ++keyframes_;
   if (output.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
   last_status_ = output.status;
+  ln_depth_scale_ = output.ln_depth_scale;
   const Timestamp begin = first_visual_.value_or(packet);
   seconds_[static_cast<std::size_t>(output.status)] += std::max(0.0, to_seconds(packet - last_packet_.value_or(begin)));
   last_packet_ = packet;

@@ -32,6 +32,8 @@ class RunStatistics {
   /// From the first visual measurement to the first Good packet [s].
   std::optional<double> first_good_s() const { return first_good_s_; }
   TrackingStatus last_status() const { return last_status_; }
+  /// ln s of Eq. 5 at the end; nothing without the depth factor.
+  const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
 
  private:
   std::optional<Timestamp> first_visual_;
@@ -41,6 +43,7 @@ class RunStatistics {
   std::array<double, 4> seconds_{};
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;
+  std::optional<LogScale> ln_depth_scale_;
 };
 
 /// Wall and processor time since construction, without the pauses; peak memory since the process began.

@@ -77,6 +77,9 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
        {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
     json["seconds_in"][to_string(status)] = s.statistics.time_in_s(status);
   }
+  const auto& ln_s = s.statistics.ln_depth_scale();
+  json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
+  json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["repairs"] = s.repairs;
   json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
@@ -104,6 +107,10 @@ std::string to_table(const RunSummary& s) {
       s.statistics.first_good_s() ? fmt::format("first good pose after {:.2f} s", *s.statistics.first_good_s()) : "");
   table += line("real-time factor", fmt::format("{:.2f}", per(span, s.wall_s)),
                 fmt::format("{:.2f} cpu s per s, peak {:.0f} MB", per(s.cpu_s, span), s.peak_rss_mb));
+  if (const auto& ln_s = s.statistics.ln_depth_scale()) {
+    table += line("depth source", fmt::format("x {:.3f}", std::exp(ln_s->value)),
+                  fmt::format("its depths over the landmarks', +- {:.0f} %", 100.0 * ln_s->sigma));
+  }
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
   return table;
 }

@@ -14,19 +14,20 @@ void LandmarkDepthConfig::visit(ConfigFields& fields) {
   fields.add("min_landmarks", min_landmarks, {"", 1, 1000, "in the central region, for a measurement of its depth"});
 }
 
+CentralRegion::CentralRegion(const CameraModel& camera, double share) {
+  const cv::Rect region = central_region(cv::Size(camera.width(), camera.height()), share);
+  low = camera.pixel_to_point(Eigen::Vector2d(region.x - 0.5, region.y - 0.5));
+  high = camera.pixel_to_point(Eigen::Vector2d(region.x + region.width - 0.5, region.y + region.height - 0.5));
+}
+
 LandmarkDepth::LandmarkDepth(const CameraModel& camera, double region_share, const LandmarkDepthConfig& config,
                              const DepthFilterConfig& filter)
-    : config_(config), filter_(filter) {
-  const cv::Rect region = central_region(cv::Size(camera.width(), camera.height()), region_share);
-  low_ = camera.pixel_to_point(Eigen::Vector2d(region.x - 0.5, region.y - 0.5));
-  high_ = camera.pixel_to_point(Eigen::Vector2d(region.x + region.width - 0.5, region.y + region.height - 0.5));
-}
+    : config_(config), region_(camera, region_share), filter_(filter) {}
 
 void LandmarkDepth::add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) {
   std::vector<double> logs;
   for (const SeenDepth& seen : landmarks) {
-    const bool inside = (seen.point.array() >= low_.array()).all() && (seen.point.array() <= high_.array()).all();
-    if (inside && seen.depth_m > 0.0) logs.push_back(std::log(seen.depth_m));
+    if (region_.contains(seen.point) && seen.depth_m > 0.0) logs.push_back(std::log(seen.depth_m));
   }
   if (static_cast<int>(logs.size()) < config_.min_landmarks) return;
   const double middle = median(logs), spread = robust_deviation(logs, middle);

@@ -16,6 +16,16 @@ struct LandmarkDepthConfig {
   void visit(ConfigFields& fields);
 };
 
+/// The central region of an image on the unit plane of its camera: what lies between two corners.
+struct CentralRegion {
+  CentralRegion(const CameraModel& camera, double share);  ///< share: of each side of the image
+  bool contains(const Eigen::Vector2d& point) const {
+    return (point.array() >= low.array()).all() && (point.array() <= high.array()).all();
+  }
+
+  Eigen::Vector2d low, high;
+};
+
 class LandmarkDepth : public DepthPrior {
  public:
   /// region_share: of each side of the image, around its middle.
@@ -27,7 +37,7 @@ class LandmarkDepth : public DepthPrior {
 
  private:
   LandmarkDepthConfig config_;
-  Eigen::Vector2d low_, high_;  // corners of the region on the unit plane
+  CentralRegion region_;
   DepthFilter filter_;
 };
 

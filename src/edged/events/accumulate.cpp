@@ -51,7 +51,7 @@ void EventFrameConfig::visit(ConfigFields& fields) {
                            "one constant twist per packet, or not at all (no motion compensation)"});
   fields.add("saturation_events", saturation_events,
              {"events", 0.1, 1000, "events on one pixel that make it white; fewer give more contrast and more noise"});
-  fields.choice("depth", depth, {{"scene", DepthSource::Scene}, {"landmarks", DepthSource::Landmarks}},
+  fields.choice("depth", depth, {{"scene", EventDepth::Scene}, {"landmarks", EventDepth::Landmarks}},
                 {.effect = "depth that events are moved at: one of the whole scene, or that of the nearest landmark"});
   fields.add("depth_cell_px", depth_grid.cell_px, {"px", 1, 64, "depth = landmarks: side of a cell of equal depth"});
   fields.add("depth_reach_px", depth_grid.reach_px,

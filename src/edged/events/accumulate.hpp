@@ -12,7 +12,7 @@
 namespace edged {
 
 /// The d_i of Eq. 2.
-enum class DepthSource {
+enum class EventDepth {
   Scene,      ///< one depth for all events
   Landmarks,  ///< per event that of the nearest landmark
 };
@@ -20,8 +20,8 @@ enum class DepthSource {
 struct EventFrameConfig {
   WarpInterpolation interpolation = WarpInterpolation::Piecewise;
   double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
-  DepthSource depth = DepthSource::Scene;
-  DepthGridSettings depth_grid;  ///< with DepthSource::Landmarks
+  EventDepth depth = EventDepth::Scene;
+  DepthGridSettings depth_grid;  ///< with EventDepth::Landmarks
   double blur_sigma_px = 0.8;    ///< Gaussian on the sum, before the scaling; 0: none
 
   void visit(ConfigFields& fields);

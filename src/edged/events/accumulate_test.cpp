@@ -109,7 +109,7 @@ TEST(EventFrame, ListsItsOptions) {
   fields.set("interpolation=single_twist");
   EXPECT_EQ(config.interpolation, WarpInterpolation::SingleTwist);
   fields.set("depth=landmarks");
-  EXPECT_EQ(config.depth, DepthSource::Landmarks);
+  EXPECT_EQ(config.depth, EventDepth::Landmarks);
   EXPECT_THROW(fields.set("saturation_events=0"), InputError);
 }
 

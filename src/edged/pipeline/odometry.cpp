@@ -11,6 +11,7 @@
 #include "edged/core/check.hpp"
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/channel.hpp"
+#include "edged/pipeline/scene_depth.hpp"
 
 namespace edged {
 namespace {
@@ -56,7 +57,9 @@ struct Odometry::Impl {
   OdometryOutput process(const Packet& packet);
 
   void predict(const Packet& packet);
+  void measure_depth(const Packet& packet);
   void draw_event_frame(const Packet& packet);
+  std::vector<SeenDepth> landmarks_in_view() const;
   DepthGrid event_depths() const;
   void take_frame(const Packet& packet);
   void track(Channel& channel, Timestamp t);
@@ -64,7 +67,6 @@ struct Odometry::Impl {
   bool is_keyframe(const Packet& packet) const;
   void mark_keyframe(Timestamp t);
   EstimatorResult estimate(const Packet& packet, bool keyframe);
-  void update_depth();
   void start_frame(const SE3& T_new_old);
   NavState in_world(const NavState& state) const;
   void restart(Timestamp t);
@@ -86,7 +88,8 @@ struct Odometry::Impl {
   BodyMotion body;                  ///< predicted, then optimised
   bool gyro_saturated = false;      ///< since the last keyframe
   bool quiet = false;               ///< the event camera sees nothing move
-  double scene_depth;
+  SceneDepth depth;
+  double scene_depth = 0.0;         ///< of the present packet, for the warp and the tracks [m]
   std::optional<Timestamp> last_keyframe, last_frame, last_supported;
   cv::Mat event_frame;
 };
@@ -98,7 +101,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
       used_rig(rig_of_mode(rig, used_mode)),
       estimator(used_rig, imu_noise, used_config.estimator),
       body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
-      scene_depth(used_config.initial_depth_m) {
+      depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled) {
   config.validate();
   for (const RigCamera& camera : used_rig.cameras) {
     if (camera.modality == Modality::Events) {
@@ -114,6 +117,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
 OdometryOutput Odometry::Impl::process(const Packet& packet) {
   EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   predict(packet);
+  measure_depth(packet);
   draw_event_frame(packet);
   take_frame(packet);
   for (Channel& channel : channels) track(channel, packet.t);
@@ -121,7 +125,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   const bool keyframe = is_keyframe(packet);
   if (keyframe) mark_keyframe(packet.t);
   const EstimatorResult result = estimate(packet, keyframe);
-  update_depth();
+  if (estimator.initialized()) depth.add_landmarks(packet.t, landmarks_in_view());
 
   OdometryOutput output;
   output.status = judge(result, packet.t);
@@ -132,6 +136,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   output.landmarks = result.landmarks;
   output.event_rate_hz = packet.event_rate_hz;
   output.scene_depth = scene_depth;
+  output.ln_depth_scale = estimator.depth_scale();
   output.waiting_for = result.waiting_for;
   if (output.status == TrackingStatus::Lost && estimator.initialized()) restart(packet.t);
   return output;
@@ -141,6 +146,12 @@ void Odometry::Impl::predict(const Packet& packet) {
   const auto timer = timings.measure("predict");
   gyro_saturated |= !gyro_trusted(packet.imu, noise);
   body.predict(packet.imu, packet.t, estimator.initialized());
+}
+
+void Odometry::Impl::measure_depth(const Packet& packet) {
+  const auto timer = timings.measure("depth");
+  depth.add_events(std::span(packet.events).last(packet.new_events));
+  scene_depth = depth.at(packet.t);
 }
 
 void Odometry::Impl::draw_event_frame(const Packet& packet) {
@@ -154,7 +165,7 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels) return;
   const std::span<const StampedPose> poses = covering(body.poses(), packet.window().front().t);
   const CameraMotion motion = camera_motion(poses, body.now().T_W_B, channels.front().camera.T_B_C);
-  if (config.event_frame.depth == DepthSource::Landmarks && estimator.initialized()) {
+  if (config.event_frame.depth == EventDepth::Landmarks && estimator.initialized()) {
     const DepthGrid depths = event_depths();
     event_frame = renderer->render(packet.window(), motion, scene_depth, &depths);
   } else {
@@ -164,20 +175,29 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   channels.front().show(config.enhance_track ? enhanced : event_frame, config.enhance_detect ? enhanced : event_frame);
 }
 
-/// The landmarks of both cameras as the event camera is predicted to see them now.
-DepthGrid Odometry::Impl::event_depths() const {
-  std::vector<DepthSample> samples;
+/// The landmarks of both cameras as the first camera (that of the events, where there is one) sees them now.
+std::vector<SeenDepth> Odometry::Impl::landmarks_in_view() const {
+  std::vector<SeenDepth> seen;
   const SE3 T_C_W = channels.front().T_W_C(body.now().T_W_B).inverse();
   for (const Channel& channel : channels) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
     for (const Track& track : channel.tracker.tracks()) {
-      const std::optional<double> depth = estimator.depth(track.id);
-      if (!depth) continue;
-      const Eigen::Vector3d p_C = T_C_last * (*depth * track.point.homogeneous());
-      if (const auto pixel = renderer->camera().project(p_C)) samples.push_back({*pixel, p_C.z()});
+      const std::optional<double> z = estimator.depth(track.id);
+      if (!z) continue;
+      const Eigen::Vector3d p_C = T_C_last * (*z * track.point.homogeneous());
+      if (p_C.z() > 0.0) seen.push_back({p_C.hnormalized(), p_C.z()});
     }
   }
+  return seen;
+}
+
+DepthGrid Odometry::Impl::event_depths() const {
+  std::vector<DepthSample> samples;
   const CameraModel& camera = renderer->camera();
+  for (const SeenDepth& seen : landmarks_in_view()) {
+    const Eigen::Vector3d p_C = seen.depth_m * seen.point.homogeneous();
+    if (const auto pixel = camera.project(p_C)) samples.push_back({*pixel, seen.depth_m});
+  }
   return DepthGrid(camera.width(), camera.height(), config.event_frame.depth_grid, samples, scene_depth);
 }
 
@@ -231,7 +251,7 @@ void Odometry::Impl::mark_keyframe(Timestamp t) {
 
 EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   const auto timer = timings.measure("estimate");
-  EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet};
+  EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet, depth.for_factor(packet.t)};
   for (Channel& channel : channels) {
     if (!channel.has_image()) continue;
     channel.T_W_Blast = body.now().T_W_B;
@@ -247,16 +267,6 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
     if (channel.has_image()) channel.settle(body.now().T_W_B, keyframe);
   }
   return result;
-}
-
-void Odometry::Impl::update_depth() {
-  if (!estimator.initialized()) return;
-  for (const Channel& channel : channels) {
-    if (const auto depth = estimator.median_depth(channel.camera.name)) {
-      scene_depth = *depth;
-      return;
-    }
-  }
 }
 
 /// The estimator has started, in a frame S of its own. The first start makes it the world; later ones are put where the
@@ -285,7 +295,6 @@ NavState Odometry::Impl::in_world(const NavState& state) const {
 void Odometry::Impl::restart(Timestamp t) {
   spdlog::warn("lost at {:.3f} s: starting again", to_seconds(t));
   estimator = Estimator(used_rig, noise, config.estimator);
-  scene_depth = config.initial_depth_m;
 }
 
 TrackingStatus Odometry::Impl::judge(const EstimatorResult& result, Timestamp t) {

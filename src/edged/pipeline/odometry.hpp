@@ -28,7 +28,8 @@ struct OdometryOutput {
   int frame_tracks = 0;      ///< live corners on the standard frame
   int landmarks = 0;         ///< in the window
   double event_rate_hz = 0;  ///< of this packet
-  double scene_depth = 0;    ///< [m], median z-depth used by the warp
+  double scene_depth = 0;    ///< z-depth [m] used by the warp
+  std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
   std::string waiting_for;   ///< while Initializing: what is missing, with numbers
 };
 

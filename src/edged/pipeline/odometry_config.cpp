@@ -23,8 +23,9 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("event_tracker", event_tracker);
   fields.group("frame_tracker", frame_tracker);
   fields.group("keyframes", keyframes);
+  fields.group("depth", depth);
+  fields.group("depth_factor", estimator.depth_factor);
   fields.group("estimator", estimator);
-  fields.add("initial_depth_m", initial_depth_m, {"m", 0.05, 1000, "scene depth until landmarks tell"});
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
              {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
   fields.add("min_events_per_pixel", min_events_per_pixel, {"", 0, 10, "a packet with fewer events draws no event frame"});

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "edged/core/config.hpp"
+#include "edged/depth/depth_config.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
@@ -26,8 +27,8 @@ struct OdometryConfig {
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
+  DepthConfig depth;
   EstimatorConfig estimator;
-  double initial_depth_m = 2.0;      ///< scene depth until landmarks tell
   double quiet_rate_per_pixel = 1.2; ///< event rate [1/s/px] below which nothing moves in view
   double min_events_per_pixel = 0.1; ///< a packet with fewer events draws no event frame
   double degraded_after_s = 0.7;     ///< without enough landmarks or rest the status falls

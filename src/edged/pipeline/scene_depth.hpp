@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The depth of the scene at work: for the warp and the prediction of tracks (paper Eq. 2, 4), and for the estimator's
+// depth factor (Eq. 5), which needs a source that does not know the landmarks.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "edged/camera/rig.hpp"
+#include "edged/depth/depth_config.hpp"
+#include "edged/estimator/region_depth.hpp"
+
+namespace edged {
+
+class SceneDepth {
+ public:
+  /// camera: the event camera, or the frame camera where there is none: then a network has nothing to say. for_factor:
+  /// run the network for the depth factor, whatever the source of the warp's depth is.
+  SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor);
+
+  /// New events, raw pixels, in time order.
+  void add_events(std::span<const Event> events);
+  /// All landmarks in view at t, as the camera sees them.
+  void add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) { prior_->add_landmarks(t, landmarks); }
+
+  /// z-depth [m]; the constant where nothing is known.
+  double at(Timestamp t) const;
+  /// What Eq. 5 compares the landmarks with.
+  std::optional<RegionDepth> for_factor(Timestamp t) const;
+
+ private:
+  double constant_m_;
+  std::string camera_;
+  CentralRegion region_;
+  std::unique_ptr<DepthPrior> prior_;
+  std::unique_ptr<DepthPrior> own_network_;  // of the factor, unless the prior is a network already
+  const DepthPrior* factor_source_ = nullptr;
+};
+
+}  // namespace edged
