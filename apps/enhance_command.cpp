@@ -56,7 +56,7 @@ class RunUpTo {
   Moment go() {
     check_time(source_.dataset->info().end);
     while (std::optional<Measurement> measurement = source_.dataset->next()) {
-      newest_ = std::visit([](const auto& m) { return last_stamp(m); }, *measurement).value_or(newest_);
+      newest_ = last_stamp(*measurement).value_or(newest_);
       if (!begin_) begin_ = source_.dataset->info().begin.value_or(newest_);
       packetizer_.add(std::move(*measurement));
       if (std::optional<Moment> moment = process()) return std::move(*moment);
@@ -70,12 +70,6 @@ class RunUpTo {
   }
 
  private:
-  static std::optional<Timestamp> last_stamp(const EventBatch& batch) {
-    return batch.events.empty() ? std::nullopt : std::optional(batch.events.back().t);
-  }
-  static std::optional<Timestamp> last_stamp(const Frame& frame) { return frame.t; }
-  static std::optional<Timestamp> last_stamp(const ImuSample& sample) { return sample.t; }
-
   /// Refuses a time after the end, once begin and end are known.
   void check_time(std::optional<Timestamp> end) const {
     const std::optional<Timestamp> begin = begin_ ? begin_ : source_.dataset->info().begin;

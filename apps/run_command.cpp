@@ -16,6 +16,7 @@
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "live_clock.hpp"
 #include "log.hpp"
 #include "overview.hpp"
 #include "run_folder.hpp"
@@ -35,6 +36,7 @@ struct RunOptions {
   std::filesystem::path out;
   bool quiet = false;
   bool json = false;
+  bool live = false;
 };
 
 /// One run from the first measurement to the files' end.
@@ -65,6 +67,7 @@ class Run {
   LiveliestMoment moment_;
   StatusLine status_line_;
   ResourceMeter meter_;
+  std::optional<LiveClock> live_;
   bool broken_off_ = false;  ///< an error ended the run
 };
 
@@ -113,9 +116,13 @@ Run::Run(const RunOptions& options, Source source, const OdometryConfig& config)
       frame_(source_.calibration.rig, options.frame == "auto" ? source_.dataset->info().pose_frame : options.frame),
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
       packetizer_(source_.calibration.rig, mode_, config.packets),
-      odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config),
+      odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config,
+                options.live ? Inference::OwnThread : Inference::Synchronous),
       status_line_(options.quiet) {
   const DatasetInfo& info = source_.dataset->info();
+  if (options.live && source_.seed)
+    throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
+  if (options.live) live_.emplace();
   make_run_folder(folder_);
   write_text_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
   write_text_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
@@ -149,6 +156,7 @@ void Run::process_ready_packets() {
       const auto timer = program_timings_.measure("process");
       output = odometry_.process(*packet);
     }
+    if (live_) live_->note_result(packet->t);
     if (output.status != before) {
       spdlog::info("{:.3f} s: {}", to_seconds(packet->t), to_string(output.status));
     }
@@ -193,6 +201,7 @@ void Run::process_recording() {
       process_ready_packets();
       break;
     }
+    if (live_) live_->wait_for(last_stamp(*measurement));
     take(std::move(*measurement));
     process_ready_packets();
   }
@@ -261,6 +270,7 @@ RunSummary Run::summarize() {
   summary.status = broken_off_ ? "broken off" : run_status(statistics_);
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
+  if (live_) summary.latency = Latency{live_->median_latency_s(), live_->worst_latency_s()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
@@ -321,12 +331,16 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
           "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
       ->capture_default_str();
   run_app->add_option("--out", options->out, "Run folder; an earlier run there is replaced [runs/NAME-MODE]");
+  run_app->add_flag(
+      "--live", options->live,
+      "At the recording's own speed, the depth network in a thread of its own; not repeatable to the bit");
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as json");
   run_app->footer(
       "Examples:\n"
       "  edged run data/boxes_6dof --rig davis240c_ecd\n"
       "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
+      "  edged run data/boxes_6dof --live --set depth.source=fused\n"
       "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet");
   run_app->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -80,6 +80,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   const auto& ln_s = s.statistics.ln_depth_scale();
   json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
+  if (s.latency) json["latency"] = {{"median_s", s.latency->median_s}, {"worst_s", s.latency->worst_s}};
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["repairs"] = s.repairs;
   json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
@@ -111,6 +112,9 @@ std::string to_table(const RunSummary& s) {
     table += line("depth source", fmt::format("x {:.3f}", std::exp(ln_s->value)),
                   fmt::format("its depths over the landmarks', +- {:.0f} %", 100.0 * ln_s->sigma));
   }
+  if (s.latency)
+    table += line("latency", fmt::format("{:.1f} ms", 1e3 * s.latency->median_s),
+                  fmt::format("median, worst {:.1f} ms", 1e3 * s.latency->worst_s));
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
   return table;
 }

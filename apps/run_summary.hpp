@@ -15,6 +15,11 @@
 
 namespace edged {
 
+/// From a measurement's due time to its result [s].
+struct Latency {
+  double median_s = 0, worst_s = 0;
+};
+
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::optional<int> seed;
@@ -22,6 +27,7 @@ struct RunSummary {
   RunStatistics statistics;
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
+  std::optional<Latency> latency;              ///< of a live run
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
   std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied

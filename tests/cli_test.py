@@ -211,6 +211,19 @@ class Run(WithFolder):
             self.assertIn(result.returncode, (0, 4), result.stderr)
             self.assertTrue((self.folder / "runs" / f"flight-{mode}" / "metrics.json").is_file())
 
+    def test_a_live_run_takes_as_long_as_the_recording_and_uses_all_of_it(self):
+        out = self.folder / "live"
+        result = edged("run", self.flight, "--out", out, "--live", "--json", "--quiet", "--set", "depth.source=fused")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        live = json.loads(result.stdout)
+        self.assertGreaterEqual(live["wall_s"], 4.9)
+        self.assertGreaterEqual(live["latency"]["worst_s"], live["latency"]["median_s"])
+        edged("run", self.flight, "--out", self.folder / "run", "--quiet", "--set", "depth.source=fused")
+        offline = json.loads((self.folder / "run" / "metrics.json").read_text())
+        self.assertNotIn("latency", offline)
+        self.assertEqual((live["packets"], live["repairs"]), (offline["packets"], offline["repairs"]))
+        self.assert_refused(edged("run", "sim:room", "--live"), "--live", "edged simulate")
+
     def test_the_output_frame_can_be_chosen(self):
         out = self.folder / "body"
         edged("run", self.flight, "--out", out, "--frame", "body", "--quiet")

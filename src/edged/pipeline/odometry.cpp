@@ -19,8 +19,8 @@ namespace {
 const RigCamera& need(const Rig& rig, Modality modality) {
   const RigCamera* camera = rig.find(modality);
   if (camera == nullptr) {
-    throw InputError::format("rig '{}' has no {} camera, which this mode needs: choose another --mode or --rig", rig.name,
-                             modality == Modality::Events ? "event" : "frame");
+    throw InputError::format("rig '{}' has no {} camera, which this mode needs: choose another --mode or --rig",
+                             rig.name, modality == Modality::Events ? "event" : "frame");
   }
   return *camera;
 }
@@ -43,16 +43,21 @@ Rig rig_of_mode(const Rig& rig, Mode mode) {
 
 std::string to_string(TrackingStatus status) {
   switch (status) {
-    case TrackingStatus::Initializing: return "Initializing";
-    case TrackingStatus::Good: return "Good";
-    case TrackingStatus::Degraded: return "Degraded";
-    case TrackingStatus::Lost: return "Lost";
+    case TrackingStatus::Initializing:
+      return "Initializing";
+    case TrackingStatus::Good:
+      return "Good";
+    case TrackingStatus::Degraded:
+      return "Degraded";
+    case TrackingStatus::Lost:
+      return "Lost";
   }
   EDGED_CHECK(false, "status {}", static_cast<int>(status));
 }
 
 struct Odometry::Impl {
-  Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config);
+  Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config,
+       Inference inference);
 
   OdometryOutput process(const Packet& packet);
 
@@ -76,32 +81,33 @@ struct Odometry::Impl {
   Mode mode;
   OdometryConfig config;
   ImuNoise noise;
-  Rig used_rig;                     ///< the cameras of the mode
+  Rig used_rig;  ///< the cameras of the mode
   Estimator estimator;
   std::vector<Channel> channels;  ///< events first
   std::optional<EventFrameRenderer> renderer;
   StageTimings timings;
 
-  SE3 T_W_S;                        ///< the estimator's own frame in the world: moved when it starts again after a loss
+  SE3 T_W_S;  ///< the estimator's own frame in the world: moved when it starts again after a loss
   bool ever_started = false;
   FeatureId next_feature = 1;
-  BodyMotion body;                  ///< predicted, then optimised
-  bool gyro_saturated = false;      ///< since the last keyframe
-  bool quiet = false;               ///< the event camera sees nothing move
+  BodyMotion body;              ///< predicted, then optimised
+  bool gyro_saturated = false;  ///< since the last keyframe
+  bool quiet = false;           ///< the event camera sees nothing move
   SceneDepth depth;
-  double scene_depth = 0.0;         ///< of the present packet, for the warp and the tracks [m]
+  double scene_depth = 0.0;  ///< of the present packet, for the warp and the tracks [m]
   std::optional<Timestamp> last_keyframe, last_frame, last_supported;
   cv::Mat event_frame;
 };
 
-Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config)
+Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config,
+                     Inference inference)
     : mode(used_mode),
       config(used_config),
       noise(imu_noise),
       used_rig(rig_of_mode(rig, used_mode)),
       estimator(used_rig, imu_noise, used_config.estimator),
       body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
-      depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled) {
+      depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled, inference) {
   config.validate();
   for (const RigCamera& camera : used_rig.cameras) {
     if (camera.modality == Modality::Events) {
@@ -225,7 +231,8 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   const bool any_image = std::any_of(channels.begin(), channels.end(), [](const Channel& c) { return c.has_image(); });
   if (!any_image) return false;
   // With both cameras at work a keyframe waits for the next frame, so that both see it.
-  const bool frame_due = mode == Mode::Fused && !packet.frame && last_frame && packet.t - *last_frame < std::chrono::milliseconds(60);
+  const bool frame_due =
+      mode == Mode::Fused && !packet.frame && last_frame && packet.t - *last_frame < std::chrono::milliseconds(60);
   if (frame_due) return false;
   SinceKeyframe since;
   since.any = last_keyframe.has_value();
@@ -313,8 +320,9 @@ int Odometry::Impl::tracks(Modality modality) const {
   return 0;
 }
 
-Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config)
-    : impl_(std::make_unique<Impl>(rig, imu_noise, mode, config)) {}
+Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
+                   Inference inference)
+    : impl_(std::make_unique<Impl>(rig, imu_noise, mode, config, inference)) {}
 Odometry::~Odometry() = default;
 
 OdometryOutput Odometry::process(const Packet& packet) { return impl_->process(packet); }

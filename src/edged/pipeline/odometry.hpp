@@ -22,22 +22,24 @@ std::string to_string(TrackingStatus status);
 /// What one packet brought.
 struct OdometryOutput {
   TrackingStatus status = TrackingStatus::Initializing;
-  NavState state;            ///< at the packet's time; meaningful unless status is Initializing
-  bool keyframe = false;     ///< this packet became a keyframe
-  int event_tracks = 0;      ///< live corners on the event frame
-  int frame_tracks = 0;      ///< live corners on the standard frame
-  int landmarks = 0;         ///< in the window
-  double event_rate_hz = 0;  ///< of this packet
-  double scene_depth = 0;    ///< z-depth [m] used by the warp
+  NavState state;                          ///< at the packet's time; meaningful unless status is Initializing
+  bool keyframe = false;                   ///< this packet became a keyframe
+  int event_tracks = 0;                    ///< live corners on the event frame
+  int frame_tracks = 0;                    ///< live corners on the standard frame
+  int landmarks = 0;                       ///< in the window
+  double event_rate_hz = 0;                ///< of this packet
+  double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
-  std::string waiting_for;   ///< while Initializing: what is missing, with numbers
+  std::string waiting_for;                 ///< while Initializing: what is missing, with numbers
 };
 
-/// Synchronous and deterministic: the same packets give the same bits.
+/// Synchronous and deterministic: the same packets give the same bits; but for a depth network that has a thread of its
+/// own (Inference::OwnThread, for live use).
 class Odometry {
  public:
   /// Throws InputError when the rig lacks a camera the mode needs or the config contradicts itself.
-  Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config);
+  Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
+           Inference inference = Inference::Synchronous);
   ~Odometry();
 
   /// Packets in time order. Never throws on data; lost tracking is a status.

@@ -9,16 +9,16 @@ constexpr Duration kFresh = std::chrono::milliseconds(500);  // a held depth is 
 
 }  // namespace
 
-SceneDepth::SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor)
+SceneDepth::SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor, Inference inference)
     : constant_m_(config.constant_m),
       camera_(camera.name),
       region_(camera.model, config.region_share),
-      prior_(make_depth_prior(config, camera.model)) {
+      prior_(make_depth_prior(config, camera.model, inference)) {
   if (!for_factor || camera.modality != Modality::Events) return;
   if (config.source != DepthSource::Network) {
     DepthConfig network = config;
     network.source = DepthSource::Network;
-    own_network_ = make_depth_prior(network, camera.model);
+    own_network_ = make_depth_prior(network, camera.model, inference);
   }
   factor_source_ = own_network_ ? own_network_.get() : prior_.get();
 }

@@ -17,7 +17,8 @@ class SceneDepth {
  public:
   /// camera: the event camera, or the frame camera where there is none: then a network has nothing to say. for_factor:
   /// run the network for the depth factor, whatever the source of the warp's depth is.
-  SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor);
+  SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor,
+             Inference inference = Inference::Synchronous);
 
   /// New events, raw pixels, in time order.
   void add_events(std::span<const Event> events);
