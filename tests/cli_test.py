@@ -113,7 +113,7 @@ class Eval(WithFolder):
 
 class Depth(WithFolder):
     def test_a_network_is_shown_with_its_cost(self):
-        for model in ("small",):
+        for model in ("small", "small_recurrent"):
             shown = json.loads(edged("depth", model, "--json").stdout)
             self.assertEqual(shown["name"], model)
             self.assertGreater(shown["inference_ms"], 0.0)

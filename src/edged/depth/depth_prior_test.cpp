@@ -170,16 +170,17 @@ TEST(NetworkDepthPrior, WantsAnImageLargeEnough) {
   EXPECT_THROW(make_depth_prior(config, CameraModel(12, 12, 10, 10, 5.5, 5.5)), InputError);
 }
 
-TEST(NetworkDepthPrior, RunsTheModelThatShips) {
-  const auto prior = [] {
+TEST(NetworkDepthPrior, RunsTheModelsThatShip) {
+  for (const char* model : {"small", "small_recurrent"}) {
     DepthConfig config;
     config.source = DepthSource::Network;
-    return make_depth_prior(config, kCamera);
-  }();
-  prior->add_events(events_between(0, 120));
-  ASSERT_TRUE(prior->at(at_ms(120)));
-  EXPECT_GT(prior->at(at_ms(120))->depth_m, 0.24);
-  EXPECT_LT(prior->at(at_ms(120))->depth_m, 12.1);
+    config.network.model = model;
+    const auto prior = make_depth_prior(config, kCamera);
+    prior->add_events(events_between(0, 120));
+    ASSERT_TRUE(prior->at(at_ms(120))) << model;
+    EXPECT_GT(prior->at(at_ms(120))->depth_m, 0.24) << model;
+    EXPECT_LT(prior->at(at_ms(120))->depth_m, 12.1) << model;
+  }
 }
 
 TEST(ScaleEstimate, LearnsARatioAndWithstandsOutliers) {
