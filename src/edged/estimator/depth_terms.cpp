@@ -121,6 +121,14 @@ std::optional<double> depth_error_sigmas(Window& window, StateId state, const Lo
   return std::abs(error) / std::hypot(sigma_ln(window.depth_config, depth, middle->in_region), scale.sigma);
 }
 
+double worst_depth_error(Window& window, const LogScale& scale) {
+  double worst = 0.0;
+  for (const auto& [id, state] : window.states) {
+    if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, scale).value_or(0.0));
+  }
+  return worst;
+}
+
 LogScale estimate_scale(Window& window) {
   const std::vector<Factor> factors = window.factors();
   const auto& [id, ln_s] = *window.ln_scale.rbegin();

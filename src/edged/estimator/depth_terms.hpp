@@ -19,6 +19,9 @@ void add_depth_factors(Window& window, std::vector<Factor>& out);
 /// Residual of the state's depth over its standard deviation, that of s included; nothing without enough landmarks.
 std::optional<double> depth_error_sigmas(Window& window, StateId state, const LogScale& scale);
 
+/// The largest of these over all states; 0 without any.
+double worst_depth_error(Window& window, const LogScale& scale);
+
 /// ln s given everything in the window and before it.
 LogScale estimate_scale(Window& window);
 

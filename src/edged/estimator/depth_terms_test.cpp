@@ -116,6 +116,18 @@ TEST(DepthTerms, AGoodSourceGivesTheScaleThatSlowMotionDoesNot) {
   EXPECT_LT(with, 0.6 * without) << "scale error " << with << ", without the factor " << without;
 }
 
+TEST(DepthTerms, AStartInMotionFarFromWhatTheSourceSaysIsNotBelieved) {
+  TestWorld world({});
+  Estimator estimator(world.rig(), world.noise(), with_depth());
+  for (int i = 1; i <= 40; ++i) {
+    const double t = i * kStep_s;
+    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+    input.depth = depth_of_view(world, t, 30.0, 0.6);
+    estimator.add(input);
+  }
+  EXPECT_FALSE(estimator.initialized());
+}
+
 TEST(DepthTerms, RepeatToTheBit) {
   const Outcome a = fly({.rest_s = 0.5}, 4.0, 1.2, with_depth()), b = fly({.rest_s = 0.5}, 4.0, 1.2, with_depth());
   EXPECT_EQ(a.position_error, b.position_error);

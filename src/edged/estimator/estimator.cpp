@@ -230,7 +230,8 @@ bool Estimator::start_in_motion() {
   spdlog::info("start in motion: {} landmarks, rms {:.2f} sigma, gravity error {:.2f}, speed {:.2f} m/s", unused.landmarks,
                rms, alignment->gravity_error, window_.newest().nav().v_W.norm());
   const bool plausible = rms <= kMaxStartRms && std::abs(alignment->gravity_error) < kMaxFreeGravityError &&
-                         unused.landmarks >= kMinStartLandmarks && window_.newest().nav().T_W_B.translation().allFinite();
+                         unused.landmarks >= kMinStartLandmarks && window_.newest().nav().T_W_B.translation().allFinite() &&
+                         worst_depth_error(window_, depth_scale_) <= config_.depth_factor.gate;
   if (!plausible) {
     std::swap(window_, window);
     return false;
