@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "edged/camera/undistort.hpp"
@@ -63,6 +64,7 @@ struct Odometry::Impl {
 
   void predict(const Packet& packet);
   void measure_depth(const Packet& packet);
+  std::span<const Event> drawn_events(const Packet& packet) const;
   void draw_event_frame(const Packet& packet);
   std::vector<SeenDepth> landmarks_in_view() const;
   DepthGrid event_depths() const;
@@ -160,6 +162,21 @@ void Odometry::Impl::measure_depth(const Packet& packet) {
   scene_depth = depth.at(packet.t);
 }
 
+/// The packet's window, shortened when the body moves fast: over a long way the warp smears what does not lie at the
+/// scene's one depth. Rotation does not count, its warp knows no depth.
+std::span<const Event> Odometry::Impl::drawn_events(const Packet& packet) const {
+  const std::span<const Event> window = packet.window();
+  if (!estimator.initialized()) return window;
+  const CameraModel& camera = renderer->camera();
+  const double travel_px_per_s = camera.mean_focal() * body.now().v_W.norm() / scene_depth;
+  const double age_s = std::min(config.max_travel_px / std::max(travel_px_per_s, 1e-3), config.packets.max_age_s);
+  const auto oldest = std::lower_bound(window.begin(), window.end(), packet.t - duration_from_seconds(age_s),
+                                       [](const Event& event, Timestamp t) { return event.t < t; });
+  const double least = config.min_events_per_pixel * camera.width() * camera.height();
+  const auto young = static_cast<std::size_t>(window.end() - oldest);
+  return window.last(std::min(window.size(), std::max(young, static_cast<std::size_t>(std::ceil(least)))));
+}
+
 void Odometry::Impl::draw_event_frame(const Packet& packet) {
   event_frame.release();
   if (!renderer) return;
@@ -167,15 +184,16 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   const double pixels = static_cast<double>(renderer->camera().width()) * renderer->camera().height();
   quiet = packet.event_rate_hz < config.quiet_rate_per_pixel * pixels;
   channels.front().show({}, {});
-  if (packet.window().empty() || body.poses().size() < 2) return;
-  if (static_cast<double>(packet.window().size()) < config.min_events_per_pixel * pixels) return;
-  const std::span<const StampedPose> poses = covering(body.poses(), packet.window().front().t);
+  const std::span<const Event> events = drawn_events(packet);
+  if (events.empty() || body.poses().size() < 2) return;
+  if (static_cast<double>(events.size()) < config.min_events_per_pixel * pixels) return;
+  const std::span<const StampedPose> poses = covering(body.poses(), events.front().t);
   const CameraMotion motion = camera_motion(poses, body.now().T_W_B, channels.front().camera.T_B_C);
   if (config.event_frame.depth == EventDepth::Landmarks && estimator.initialized()) {
     const DepthGrid depths = event_depths();
-    event_frame = renderer->render(packet.window(), motion, scene_depth, &depths);
+    event_frame = renderer->render(events, motion, scene_depth, &depths);
   } else {
-    event_frame = renderer->render(packet.window(), motion, scene_depth);
+    event_frame = renderer->render(events, motion, scene_depth);
   }
   const cv::Mat enhanced = enhance(event_frame, config.enhance);
   channels.front().show(config.enhance_track ? enhanced : event_frame, config.enhance_detect ? enhanced : event_frame);
