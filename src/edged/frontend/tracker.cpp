@@ -109,12 +109,13 @@ OutlierResult FeatureTracker::reject_outliers(Reference reference, const std::op
   return result;
 }
 
-int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id) {
+int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id, int most) {
   if (image.empty()) return 0;
   check_image(image);
   std::vector<Eigen::Vector2d> occupied;
   for (const Track& track : tracks_) occupied.push_back(track.pixel);
-  const int limit = config_.detector.max_features - static_cast<int>(tracks_.size());
+  const int limit = std::min(most, config_.detector.max_features) - static_cast<int>(tracks_.size());
+  if (limit <= 0) return 0;
   const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector);
   for (const Corner& corner : corners) {
     Track track;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -93,8 +94,8 @@ class FeatureTracker {
   OutlierResult reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur);
 
   /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from
-  /// next_id. Returns how many.
-  int detect(const cv::Mat& image, FeatureId& next_id);
+  /// next_id. Returns how many. most: live tracks to end up with, if fewer than the configured number.
+  int detect(const cv::Mat& image, FeatureId& next_id, int most = std::numeric_limits<int>::max());
 
   /// True when fewer tracks are alive than refill_share of max_features.
   bool needs_corners() const;

@@ -2,7 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/channel.hpp"
 
+#include <cmath>
+
 namespace edged {
+
+void HealthConfig::visit(ConfigFields& fields) {
+  fields.add("time_constant_s", time_constant_s,
+             {"s", 0.01, 100, "of the running mean of the share of tracks that survive an image"});
+  fields.add("min_survival", min_survival, {"", 0, 1, "with a smaller share a camera's sights are ignored"});
+  fields.add("min_event_corners", min_event_corners,
+             {"", 0, 1000, "corners kept on event frames where the standard frames carry all of theirs (fused mode)"});
+}
 
 void Channel::show(const cv::Mat& image, const cv::Mat& corners) {
   image_ = image;
@@ -22,7 +32,9 @@ void Channel::track(Timestamp t, const SE3& T_W_B, double scene_depth,
     const SE3 T_cur_prev = T_W_C(T_W_B).inverse() * T_W_C(T_W_Blast);
     prediction = TrackPrediction{T_cur_prev, scene_depth, depth, alignment_px_};
   }
-  align(tracker.track(image_, t, prediction));
+  const TrackSummary summary = tracker.track(image_, t, prediction);
+  align(summary);
+  weigh(summary, t);
   any_image_ = true;
 }
 
@@ -37,13 +49,29 @@ void Channel::align(const TrackSummary& summary) {
   if (length > alignment_.max_px) alignment_px_ *= alignment_.max_px / length;
 }
 
+void Channel::weigh(const TrackSummary& summary, Timestamp t) {
+  if (any_image_ && summary.before > 0) {
+    const double share = static_cast<double>(summary.tracked) / summary.before;
+    const double gain = 1.0 - std::exp(-to_seconds(t - last_image_) / health_.time_constant_s);
+    survival_ += gain * (share - survival_);
+  }
+  last_image_ = t;
+}
+
+CameraObservations Channel::observations() const {
+  CameraObservations sights = tracker.observations();
+  if (survival_ < health_.min_survival) sights.features.clear();
+  for (FeatureObservation& sight : sights.features) sight.sigma /= survival_;
+  return sights;
+}
+
 void Channel::reject(const SE3& T_W_B, bool trust_gyro) {
   const auto rotation = trust_gyro ? std::optional(since_keyframe(T_W_B)) : std::nullopt;
   tracker.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
-void Channel::mark_keyframe(const SE3& T_W_B, FeatureId& next_feature) {
-  tracker.detect(corners_, next_feature);
+void Channel::mark_keyframe(const SE3& T_W_B, FeatureId& next_feature, int most) {
+  tracker.detect(corners_, next_feature, most);
   tracker.mark_keyframe();
   T_W_Bkeyframe = T_W_B;
 }

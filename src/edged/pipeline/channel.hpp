@@ -11,6 +11,15 @@
 
 namespace edged {
 
+/// How what a camera gives is weighed by what becomes of its tracks.
+struct HealthConfig {
+  double time_constant_s = 0.3;  ///< of the running mean of the share of tracks that survive an image
+  double min_survival = 0.4;     ///< below it the camera's sights are ignored
+  int min_event_corners = 40;    ///< kept on event frames where the standard frames carry all of theirs
+
+  void visit(ConfigFields& fields);
+};
+
 /// The running mean of delta x_last, paper Eq. 2.
 struct AlignmentConfig {
   double gain = 0.0;    ///< weight of the newest image; 0: off
@@ -21,8 +30,11 @@ class Channel {
  public:
   /// image_model: of the images given to it (the ideal pinhole for undistorted event frames).
   Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
-          const AlignmentConfig& alignment)
-      : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment) {}
+          const AlignmentConfig& alignment, const HealthConfig& health)
+      : camera(rig_camera),
+        tracker(rig_camera.name, image_model, config),
+        alignment_(alignment),
+        health_(health) {}
 
   /// The next image: corners are followed on `image` and found on `corners`. Empty: this packet brought none.
   void show(const cv::Mat& image, const cv::Mat& corners);
@@ -38,8 +50,13 @@ class Channel {
              const std::function<std::optional<double>(FeatureId)>& depth);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
   void reject(const SE3& T_W_B, bool trust_gyro);
-  /// Finds new corners and makes the image the keyframe.
-  void mark_keyframe(const SE3& T_W_B, FeatureId& next_feature);
+  /// Finds new corners, up to `most` live ones, and makes the image the keyframe.
+  void mark_keyframe(const SE3& T_W_B, FeatureId& next_feature, int most);
+
+  /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
+  double survival() const { return survival_; }
+  /// The sights of the present image, less sure the fewer tracks survive; none when the camera is ignored.
+  CameraObservations observations() const;
 
   /// The body at the present image (and keyframe), now better known.
   void settle(const SE3& T_W_B, bool keyframe);
@@ -53,8 +70,12 @@ class Channel {
 
  private:
   void align(const TrackSummary& summary);
+  void weigh(const TrackSummary& summary, Timestamp t);
 
   AlignmentConfig alignment_;
+  HealthConfig health_;
+  double survival_ = 1.0;
+  Timestamp last_image_;
   cv::Mat image_, corners_;
   bool any_image_ = false;
   // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;

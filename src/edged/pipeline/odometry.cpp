@@ -26,6 +26,8 @@ const RigCamera& need(const Rig& rig, Modality modality) {
   return *camera;
 }
 
+constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
+
 /// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
 std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
   std::size_t first = poses.size() - 2;
@@ -72,6 +74,7 @@ struct Odometry::Impl {
   void track(Channel& channel, Timestamp t);
   void reject(Channel& channel);
   bool is_keyframe(const Packet& packet) const;
+  int corners_wanted(const Channel& channel) const;
   void mark_keyframe(Timestamp t);
   EstimatorResult estimate(const Packet& packet, bool keyframe);
   void start_frame(const SE3& T_new_old);
@@ -115,9 +118,9 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
     if (camera.modality == Modality::Events) {
       const CameraModel ideal = ideal_pinhole(camera.model);
       renderer.emplace(UndistortTable(camera.model, ideal), config.event_frame);
-      channels.emplace_back(camera, ideal, config.event_tracker, config.alignment);
+      channels.emplace_back(camera, ideal, config.event_tracker, config.alignment, config.health);
     } else {
-      channels.emplace_back(camera, camera.model, config.frame_tracker, AlignmentConfig{});
+      channels.emplace_back(camera, camera.model, config.frame_tracker, AlignmentConfig{}, config.health);
     }
   }
 }
@@ -265,10 +268,22 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   return keyframe_reason(since, config.keyframes) != KeyframeReason::None;
 }
 
+/// Frames tell more about a corner than events do, where they see it at all: in good light a few corners on the event
+/// frame are enough, in the dark, in glare and without frames it takes all it can get.
+int Odometry::Impl::corners_wanted(const Channel& channel) const {
+  const int all = config.event_tracker.detector.max_features;
+  const bool frames_at_work = mode == Mode::Fused && last_frame && body.now().t - *last_frame < kFramesMissing;
+  if (channel.camera.modality == Modality::Frames) return config.frame_tracker.detector.max_features;
+  if (!frames_at_work) return all;
+  const Channel& frames = channels.back();
+  const double carried = frames.survival() * static_cast<double>(frames.tracker.tracks().size());
+  return std::max(config.health.min_event_corners, all - static_cast<int>(carried));
+}
+
 void Odometry::Impl::mark_keyframe(Timestamp t) {
   const auto timer = timings.measure("detect");
   for (Channel& channel : channels) {
-    if (channel.has_image()) channel.mark_keyframe(body.now().T_W_B, next_feature);
+    if (channel.has_image()) channel.mark_keyframe(body.now().T_W_B, next_feature, corners_wanted(channel));
   }
   last_keyframe = t;
   gyro_saturated = false;
@@ -280,7 +295,7 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   for (Channel& channel : channels) {
     if (!channel.has_image()) continue;
     channel.T_W_Blast = body.now().T_W_B;
-    input.observations.push_back(channel.tracker.observations());
+    input.observations.push_back(channel.observations());
   }
   const bool started = estimator.initialized();
   const EstimatorResult result = estimator.add(input);

@@ -24,6 +24,7 @@ struct OdometryConfig {
   bool enhance_detect = true;  ///< find corners on the enhanced event frame
   bool enhance_track = false;  ///< follow them on it too
   AlignmentConfig alignment;      ///< of the event frames
+  HealthConfig health;            ///< of each camera
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
