@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/channel.hpp"
+
+#include <gtest/gtest.h>
+
+#include "edged/frontend/test_scene.hpp"
+
+namespace edged {
+namespace {
+
+class ChannelHealth : public testing::Test {
+ protected:
+  ChannelHealth() : scene_(davis_like_pinhole(), 2.0) {
+    camera_.name = "left";
+    camera_.modality = Modality::Frames;
+  }
+
+  Channel start() {
+    Channel channel(camera_, scene_.camera(), {}, {}, {});
+    show(channel, scene_.image({}), 0);
+    channel.mark_keyframe({}, next_id_, 1000);
+    return channel;
+  }
+
+  static void show(Channel& channel, const cv::Mat& image, int index) {
+    channel.show(image, image);
+    channel.track(timestamp_from_ns(40'000'000LL * index), {}, 2.0, {});
+  }
+
+  /// Nothing but noise, another one every time.
+  cv::Mat darkness() {
+    cv::Mat image(scene_.camera().height(), scene_.camera().width(), CV_8UC1);
+    random_.fill(image, cv::RNG::NORMAL, 8, 4);
+    return image;
+  }
+
+  PlaneScene scene_;
+  RigCamera camera_;
+  FeatureId next_id_ = 1;
+  cv::RNG random_{7};
+};
+
+TEST_F(ChannelHealth, SightsOfTracksThatSurviveKeepTheirSigma) {
+  Channel channel = start();
+  for (int i = 1; i <= 10; ++i) show(channel, scene_.image({}), i);
+  EXPECT_DOUBLE_EQ(channel.survival(), 1.0);
+  const CameraObservations raw = channel.tracker.observations(), weighed = channel.observations();
+  ASSERT_GT(weighed.features.size(), 50U);
+  EXPECT_DOUBLE_EQ(weighed.features[0].sigma, raw.features[0].sigma);
+}
+
+TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
+  Channel channel = start();
+  show(channel, darkness(), 1);
+  const double after_one = channel.survival();
+  EXPECT_LT(after_one, 1.0);
+  for (int i = 2; i <= 30; ++i) {
+    channel.mark_keyframe({}, next_id_, 1000);
+    show(channel, darkness(), i);
+  }
+  EXPECT_LT(channel.survival(), HealthConfig{}.min_survival);
+  EXPECT_TRUE(channel.observations().features.empty());
+}
+
+TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
+  Channel channel = start();
+  for (int i = 1; i <= 30; ++i) {
+    channel.mark_keyframe({}, next_id_, 1000);
+    show(channel, darkness(), i);
+  }
+  for (int i = 31; i <= 80; ++i) {
+    show(channel, scene_.image({}), i);
+    channel.mark_keyframe({}, next_id_, 1000);
+  }
+  EXPECT_GT(channel.survival(), 0.95);
+  EXPECT_FALSE(channel.observations().features.empty());
+}
+
+TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
+  Channel channel(camera_, scene_.camera(), {}, {}, {});
+  show(channel, scene_.image({}), 0);
+  channel.mark_keyframe({}, next_id_, 25);
+  EXPECT_EQ(channel.tracker.tracks().size(), 25U);
+  channel.mark_keyframe({}, next_id_, 10);
+  EXPECT_EQ(channel.tracker.tracks().size(), 25U) << "live tracks stay";
+}
+
+}  // namespace
+}  // namespace edged
