@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edged/core/check.hpp"
 #include "edged/estimator/marginalization.hpp"
 
 namespace edged {
@@ -22,10 +21,7 @@ struct Middle {
 };
 
 const RigCamera& camera_of(const Window& window, const RegionDepth& depth) {
-  const auto found = std::find_if(window.cameras.begin(), window.cameras.end(),
-                                  [&](const RigCamera& camera) { return camera.name == depth.camera; });
-  EDGED_CHECK(found != window.cameras.end(), "no camera '{}' in the rig", depth.camera);
-  return *found;
+  return window.cameras[window.camera_index(depth.camera)];
 }
 
 /// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.

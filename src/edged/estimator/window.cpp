@@ -34,6 +34,12 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
   soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
 }
 
+std::size_t Window::camera_index(const std::string& name) const {
+  const auto camera = std::find_if(cameras.begin(), cameras.end(), [&](const auto& c) { return c.name == name; });
+  EDGED_CHECK(camera != cameras.end(), "no camera '{}' in the rig", name);
+  return static_cast<std::size_t>(camera - cameras.begin());
+}
+
 StateId Window::add_state(WindowState state) {
   states.emplace(next_state_, std::move(state));
   return next_state_++;
@@ -41,9 +47,7 @@ StateId Window::add_state(WindowState state) {
 
 void Window::add_observations(StateId id, const std::vector<CameraObservations>& observations) {
   for (const CameraObservations& view : observations) {
-    const auto camera = std::find_if(cameras.begin(), cameras.end(), [&](const auto& c) { return c.name == view.camera; });
-    EDGED_CHECK(camera != cameras.end(), "no camera '{}' in the rig", view.camera);
-    const auto index = static_cast<std::size_t>(camera - cameras.begin());
+    const std::size_t index = camera_index(view.camera);
     last_image_[index] = id;
     for (const FeatureObservation& observation : view.features) {
       Feature& feature = features[observation.id];

@@ -68,6 +68,9 @@ class Window {
   DepthFactorConfig depth_config;
   std::map<std::uint64_t, double> ln_scale;   ///< the present piece of ln s (Eq. 5), and the next while one is left behind
 
+  /// Index into `cameras`; the rig must have one of that name.
+  std::size_t camera_index(const std::string& name) const;
+
   /// Appends a state; ids are given in order of time.
   StateId add_state(WindowState state);
   void add_observations(StateId id, const std::vector<CameraObservations>& observations);

@@ -26,6 +26,7 @@ const RigCamera& need(const Rig& rig, Modality modality) {
   return *camera;
 }
 
+/// Without a frame for so long, events no longer count on them.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
 /// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
@@ -166,18 +167,18 @@ void Odometry::Impl::measure_depth(const Packet& packet) {
 }
 
 /// The packet's window, shortened when the body moves fast: over a long way the warp smears what does not lie at the
-/// scene's one depth. Rotation does not count, its warp knows no depth.
+/// scene's one depth. Rotation does not count, its warp knows no depth. Empty when there are too few for a frame.
 std::span<const Event> Odometry::Impl::drawn_events(const Packet& packet) const {
   const std::span<const Event> window = packet.window();
-  if (!estimator.initialized()) return window;
   const CameraModel& camera = renderer->camera();
+  const auto least = static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * camera.width() * camera.height()));
+  if (window.size() < least) return {};
+  if (!estimator.initialized()) return window;
   const double travel_px_per_s = camera.mean_focal() * body.now().v_W.norm() / scene_depth;
   const double age_s = std::min(config.max_travel_px / std::max(travel_px_per_s, 1e-3), config.packets.max_age_s);
   const auto oldest = std::lower_bound(window.begin(), window.end(), packet.t - duration_from_seconds(age_s),
                                        [](const Event& event, Timestamp t) { return event.t < t; });
-  const double least = config.min_events_per_pixel * camera.width() * camera.height();
-  const auto young = static_cast<std::size_t>(window.end() - oldest);
-  return window.last(std::min(window.size(), std::max(young, static_cast<std::size_t>(std::ceil(least)))));
+  return window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least));
 }
 
 void Odometry::Impl::draw_event_frame(const Packet& packet) {
@@ -189,7 +190,6 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   channels.front().show({}, {});
   const std::span<const Event> events = drawn_events(packet);
   if (events.empty() || body.poses().size() < 2) return;
-  if (static_cast<double>(events.size()) < config.min_events_per_pixel * pixels) return;
   const std::span<const StampedPose> poses = covering(body.poses(), events.front().t);
   const CameraMotion motion = camera_motion(poses, body.now().T_W_B, channels.front().camera.T_B_C);
   if (config.event_frame.depth == EventDepth::Landmarks && estimator.initialized()) {
