@@ -102,6 +102,13 @@ void DepthFactorConfig::visit(ConfigFields& fields) {
   fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "residuals beyond this are weighted down"});
 }
 
+bool depth_due(const Window& window) {
+  if (!window.depth_config.enabled) return false;
+  const Timestamp before = window.newest().t - duration_from_seconds(window.depth_config.min_interval_s);
+  return std::none_of(window.states.begin(), window.states.end(),
+                      [&](const auto& state) { return state.second.depth && state.second.t > before; });
+}
+
 void add_depth_factors(Window& window, std::vector<Factor>& out) {
   for (const auto& [id, state] : window.states) {
     if (!state.depth) continue;

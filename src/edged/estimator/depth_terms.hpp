@@ -12,6 +12,9 @@
 
 namespace edged {
 
+/// Whether it is time for another depth, that of the newest state.
+bool depth_due(const Window& window);
+
 /// The factor of every state with a depth and enough landmarks in its region. A median has no derivative: the factor
 /// takes the mean over the landmarks around it, the middle half but twelve at most, chosen anew at every call.
 void add_depth_factors(Window& window, std::vector<Factor>& out);

@@ -22,6 +22,22 @@ NavState WindowState::nav() const {
   return nav;
 }
 
+MotionBlock motion_block(const NavState& state) {
+  MotionBlock block;
+  Eigen::Map<Eigen::Matrix<double, 9, 1>>(block.data()) << state.v_W, state.bias_gyro, state.bias_accel;
+  return block;
+}
+
+WindowState window_state(const NavState& nav, Preintegration imu, bool keyframe) {
+  WindowState state;
+  state.t = nav.t;
+  state.pose = to_block(nav.T_W_B);
+  state.motion = motion_block(nav);
+  state.imu = std::move(imu);
+  state.keyframe = keyframe;
+  return state;
+}
+
 Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
     : cameras(rig.cameras),
       noise_scale(rig.cameras.size(), 1.0),

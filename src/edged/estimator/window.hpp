@@ -38,6 +38,9 @@ struct WindowState {
   NavState nav() const;
 };
 
+MotionBlock motion_block(const NavState& state);
+WindowState window_state(const NavState& nav, Preintegration imu, bool keyframe);
+
 /// A tracked corner and, once triangulated, the landmark behind it.
 struct Feature {
   std::size_t camera = 0;                           ///< index into Window::cameras

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/estimator_config.hpp"
+
+namespace edged {
+
+void EstimatorConfig::visit(ConfigFields& fields) {
+  fields.add("recent_states", recent_states, {"", 1, 20, "newest states in the window, keyframes or not"});
+  fields.add("keyframes", keyframes, {"", 2, 30, "older keyframes in the window; more are slower and more accurate"});
+  fields.add("max_interval_s", max_interval_s, {"s", 0.2, 10, "after this time a state becomes a keyframe in any case"});
+  fields.add("iterations", iterations, {"", 1, 50, "solver iterations a packet"});
+  fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "visual residuals beyond this are weighted down"});
+  fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the guess of a start in motion"});
+  fields.add("rest_gyro_bias_sigma", rest_gyro_bias_sigma,
+             {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the mean rate measured at rest"});
+  fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
+  fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
+  fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the views of a start in motion"});
+  fields.add("init_min_views", init_min_views, {"", 5, 30, "views a start in motion needs at least"});
+  fields.add("init_max_views", init_max_views, {"", 5, 60, "views a start in motion looks back on at most"});
+  fields.add("init_parallax_deg", init_parallax_deg, {"deg", 0.1, 30, "parallax a start in motion waits for"});
+  fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
+  fields.add("noise_inflation", noise_inflation,
+             {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});
+  fields.add("min_noise_scale", min_noise_scale, {"", 0.01, 1, "least adapted noise over the configured one"});
+  fields.add("max_noise_scale", max_noise_scale, {"", 1, 100, "largest adapted noise over the configured one"});
+  fields.group("landmarks", landmarks);
+  fields.group("standstill", standstill);
+}
+
+}  // namespace edged

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The options of the estimator, those of its start included.
+#pragma once
+
+#include "edged/core/config.hpp"
+#include "edged/estimator/landmarks.hpp"
+#include "edged/estimator/region_depth.hpp"
+#include "edged/estimator/standstill.hpp"
+
+namespace edged {
+
+struct EstimatorConfig {
+  int recent_states = 3;           ///< newest states, keyframes or not
+  int keyframes = 8;               ///< older keyframes
+  double max_interval_s = 1.0;     ///< IMU between two keyframes
+  int iterations = 4;              ///< of the solver, a packet
+  double cauchy_scale = 1.0;       ///< robust loss of visual residuals
+  double gyro_bias_sigma = 0.02;   ///< prior of a start in motion
+  double rest_gyro_bias_sigma = 0.02;  ///< prior of a start at rest, where the bias has been measured
+  double accel_bias_sigma = 0.15;
+  double zero_velocity_sigma = 0.01;
+  double init_spacing_s = 0.08;    ///< between the views of the start-up buffer
+  int init_min_views = 12;         ///< fewer views do not separate scale from accelerometer bias
+  int init_max_views = 20;         ///< the buffer's length: slow motion needs the time
+  double init_parallax_deg = 2.5;
+  double noise_gain = 0.05;        ///< adaptation of each camera's noise to its residuals, a packet
+  double noise_inflation = 2.5;    ///< sigma over the spread of the residuals: their errors last from image to image
+  double min_noise_scale = 0.3;    ///< bounds of the adapted noise over the configured one
+  double max_noise_scale = 4.0;
+  LandmarkConfig landmarks;
+  StandstillConfig standstill;
+  DepthFactorConfig depth_factor;  ///< its options stand beside those of the depth source, not in visit
+  void visit(ConfigFields& fields);
+};
+
+}  // namespace edged

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the estimator is given.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/estimator/region_depth.hpp"
+
+namespace edged {
+
+/// One packet as the estimator sees it.
+struct EstimatorInput {
+  Timestamp t;
+  std::vector<ImuSample> imu;  ///< from the previous input's t to t, both ends included
+  std::vector<CameraObservations> observations;
+  bool keyframe = false;
+  bool events_quiet = false;   ///< the event camera sees nothing move
+  std::optional<RegionDepth> depth = std::nullopt;  ///< for Eq. 5, used at keyframes when depth_factor is enabled
+};
+
+}  // namespace edged
