@@ -22,7 +22,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "t
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
     "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
-    "depth_scale,depth_scale_sigma_ln\n";
+    "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
+    "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
 
 std::ofstream open_for_writing(const std::filesystem::path& file) {
   std::ofstream out(file);
@@ -31,6 +32,13 @@ std::ofstream open_for_writing(const std::filesystem::path& file) {
 }
 
 void append(std::string& line, const Eigen::Vector3d& v) { line += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); }
+
+/// The upper triangle, row by row.
+void append(std::string& line, const Eigen::Matrix3d& P) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) line += fmt::format(",{}", P(row, column));
+  }
+}
 
 std::string state_line(Timestamp packet, const OdometryOutput& output) {
   std::string line = fmt::format("{},{}", to_ns(packet), to_string(output.status));
@@ -48,7 +56,14 @@ std::string state_line(Timestamp packet, const OdometryOutput& output) {
   line += fmt::format(",{},{},{},{},{},{}", output.keyframe ? 1 : 0, output.event_tracks, output.frame_tracks,
                       output.landmarks, output.event_rate_hz, output.scene_depth);
   const auto& ln_s = output.ln_depth_scale;
-  return line + (ln_s ? fmt::format(",{},{}\n", std::exp(ln_s->value), ln_s->sigma) : ",,\n");
+  line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
+  if (output.covariance) {
+    append(line, output.covariance->position);
+    append(line, output.covariance->rotation);
+  } else {
+    line += std::string(12, ',');
+  }
+  return line + '\n';
 }
 
 }  // namespace

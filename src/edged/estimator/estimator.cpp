@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "edged/estimator/covariance.hpp"
 #include "edged/estimator/sliding.hpp"
 #include "edged/estimator/solver.hpp"
 
@@ -53,6 +54,11 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
 
 Eigen::Vector3d Estimator::gyro_bias() const {
   return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero();
+}
+
+std::optional<Matrix15d> Estimator::covariance() {
+  if (!initialized_) return std::nullopt;
+  return edged::covariance(window_, window_.states.rbegin()->first);
 }
 
 std::optional<double> Estimator::depth(FeatureId id) const {

@@ -38,6 +38,9 @@ class Estimator {
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 
+  /// Of the newest state: see covariance() of a window. Nothing before the start.
+  std::optional<Matrix15d> covariance();
+
   /// z-depth of a landmark in its own camera at the newest state [m].
   std::optional<double> depth(FeatureId id) const;
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.

@@ -4,125 +4,16 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <map>
+
+#include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kNoInformation = 1e-9;   // a diagonal entry below this was not measured at all
 constexpr double kRankTolerance = 1e-10;  // of a matrix with unit diagonal
-
-/// A factor's residual r and Jacobian columns J per block, so that r + sum J_i * (x_i - x0_i) is its linear form.
-struct LinearFactor {
-  VectorXd r;
-  std::vector<MatrixXd> J;
-};
-
-LinearFactor linearise(Window& window, const Factor& factor) {
-  const int rows = factor.cost->num_residuals();
-  const std::size_t n = factor.blocks.size();
-  std::vector<const double*> now(n), first(n);
-  std::vector<RowMajorMatrix> J(n);
-  std::vector<double*> J_data(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    now[i] = window.block(factor.blocks[i]);
-    first[i] = window.linearisation_point(factor.blocks[i]);
-    J[i].resize(rows, block_size(factor.blocks[i].kind));
-    J_data[i] = J[i].data();
-  }
-  LinearFactor out;
-  out.r.resize(rows);
-  VectorXd unused(rows);
-  const bool usable = factor.cost->Evaluate(now.data(), out.r.data(), nullptr) &&
-                      factor.cost->Evaluate(first.data(), unused.data(), J_data.data());
-  double weight = usable ? 1.0 : 0.0;
-  if (usable && factor.loss != nullptr) {
-    double rho[3];
-    factor.loss->Evaluate(out.r.squaredNorm(), rho);
-    weight = std::sqrt(rho[1]);
-  }
-  out.r *= weight;
-  for (std::size_t i = 0; i < n; ++i) {
-    const BlockKind kind = factor.blocks[i].kind;
-    out.J.push_back(weight == 0.0 ? MatrixXd::Zero(rows, tangent_size(kind))
-                                  : MatrixXd(weight * J[i].leftCols(tangent_size(kind))));
-    VectorXd moved(tangent_size(kind));
-    tangent_difference(kind, now[i], first[i], moved.data());
-    out.r -= out.J.back() * moved;  // as a function of the distance from the first estimate
-  }
-  if (!usable) out.r.setZero();
-  return out;
-}
-
-/// The normal equations H d = -g of all factors, ordered: leaving inverse depths that do not couple, other leaving
-/// blocks, staying blocks.
-struct NormalEquations {
-  std::map<BlockKey, Eigen::Index> offset;
-  std::vector<BlockKey> staying;
-  Eigen::Index depths = 0, leaving = 0, size = 0;
-  MatrixXd H;
-  VectorXd g;
-};
-
-NormalEquations order_blocks(const std::vector<Factor>& factors, const std::set<BlockKey>& leaving) {
-  NormalEquations eq;
-  std::set<BlockKey> used;
-  for (const Factor& factor : factors) used.insert(factor.blocks.begin(), factor.blocks.end());
-  const auto place = [&](const BlockKey& key) {
-    eq.offset[key] = eq.size;
-    eq.size += tangent_size(key.kind);
-  };
-  const std::set<BlockKey> coupled = coupled_depths(factors);
-  const auto alone = [&](const BlockKey& key) {
-    return key.kind == BlockKind::InverseDepth && !coupled.contains(key);
-  };
-  for (const BlockKey& key : used) {
-    if (leaving.contains(key) && alone(key)) place(key);
-  }
-  eq.depths = eq.size;
-  for (const BlockKey& key : used) {
-    if (leaving.contains(key) && !alone(key)) place(key);
-  }
-  eq.leaving = eq.size;
-  for (const BlockKey& key : used) {
-    if (!leaving.contains(key)) place(key), eq.staying.push_back(key);
-  }
-  eq.H = MatrixXd::Zero(eq.size, eq.size);
-  eq.g = VectorXd::Zero(eq.size);
-  return eq;
-}
-
-void accumulate(NormalEquations& eq, const Factor& factor, const LinearFactor& linear) {
-  for (std::size_t i = 0; i < factor.blocks.size(); ++i) {
-    const Eigen::Index row = eq.offset.at(factor.blocks[i]);
-    eq.g.segment(row, linear.J[i].cols()).noalias() += linear.J[i].transpose() * linear.r;
-    for (std::size_t j = 0; j < factor.blocks.size(); ++j) {
-      eq.H.block(row, eq.offset.at(factor.blocks[j]), linear.J[i].cols(), linear.J[j].cols()).noalias() +=
-          linear.J[i].transpose() * linear.J[j];
-    }
-  }
-}
-
-/// These do not couple with one another: each is one rank-one update.
-void eliminate_depths(NormalEquations& eq) {
-  const Eigen::Index n = eq.size - eq.depths;
-  for (Eigen::Index i = 0; i < eq.depths; ++i) {
-    const double h = eq.H(i, i);
-    if (h < kNoInformation) continue;
-    const VectorXd column = eq.H.block(eq.depths, i, n, 1);
-    eq.H.bottomRightCorner(n, n).noalias() -= column * (column.transpose() / h);
-    eq.g.tail(n) -= column * (eq.g[i] / h);
-  }
-}
-
-/// S with ones on the diagonal of S H S: positions, angles and biases differ in information by ten orders of magnitude.
-VectorXd unit_diagonal_scale(const MatrixXd& H) {
-  return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
-}
 
 /// Schur complement of the other leaving blocks, with the directions nothing has measured left out.
 void eliminate_states(NormalEquations& eq) {
@@ -143,9 +34,7 @@ void eliminate_states(NormalEquations& eq) {
 }  // namespace
 
 LinearPrior marginalize(Window& window, const std::vector<Factor>& factors, const std::set<BlockKey>& leaving) {
-  NormalEquations eq = order_blocks(factors, leaving);
-  for (const Factor& factor : factors) accumulate(eq, factor, linearise(window, factor));
-  eliminate_depths(eq);
+  NormalEquations eq = normal_equations(window, factors, leaving);
   eliminate_states(eq);
 
   LinearPrior prior;

@@ -130,4 +130,29 @@ class TestWorld {
   std::optional<ImuSample> last_imu_;
 };
 
+/// Four states, their IMU factors, a gauge and hand-set priors: a problem that is nearly linear close to its solution.
+inline Window inertial_window(TestWorld& world) {
+  Window window(world.rig(), 1.0);
+  for (int i = 0; i < 4; ++i) {
+    const double t = 0.1 * i;
+    std::vector<ImuSample> samples;
+    for (int k = 0; k <= 20 && i > 0; ++k) samples.push_back(world.imu(t - 0.1 + 0.005 * k));
+    WindowState state;
+    state.t = timestamp_from_seconds(t);
+    state.pose = to_block(world.T_W_B(t));
+    Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
+    if (i > 0) state.imu = Preintegration(samples, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), world.noise());
+    state.keyframe = true;
+    window.add_state(std::move(state));
+  }
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-3, 1e-3));
+  for (const auto& [id, state] : window.states) {
+    MotionBlock mean = state.motion;
+    mean[0] += 0.01;
+    window.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, mean, {0.1, 0.02, 0.1}));
+  }
+  return window;
+}
+
 }  // namespace edged

@@ -26,6 +26,9 @@ const RigCamera& need(const Rig& rig, Modality modality) {
   return *camera;
 }
 
+/// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
+constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
+
 /// Without a frame for so long, events no longer count on them.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
@@ -80,6 +83,7 @@ struct Odometry::Impl {
   EstimatorResult estimate(const Packet& packet, bool keyframe);
   void start_frame(const SE3& T_new_old);
   NavState in_world(const NavState& state) const;
+  void update_covariance(Timestamp t);
   void restart(Timestamp t);
   TrackingStatus judge(const EstimatorResult& result, Timestamp t);
   int tracks(Modality modality) const;
@@ -102,6 +106,8 @@ struct Odometry::Impl {
   SceneDepth depth;
   double scene_depth = 0.0;  ///< of the present packet, for the warp and the tracks [m]
   std::optional<Timestamp> last_keyframe, last_frame, last_supported;
+  std::optional<PoseCovariance> covariance;
+  Timestamp covariance_at;
   cv::Mat event_frame;
 };
 
@@ -142,6 +148,8 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   OdometryOutput output;
   output.status = judge(result, packet.t);
   output.state = in_world(body.now());
+  update_covariance(packet.t);
+  output.covariance = covariance;
   output.keyframe = keyframe;
   output.event_tracks = tracks(Modality::Events);
   output.frame_tracks = tracks(Modality::Frames);
@@ -330,6 +338,17 @@ NavState Odometry::Impl::in_world(const NavState& state) const {
   out.T_W_B = T_W_S * state.T_W_B;
   out.v_W = T_W_S.rotation() * state.v_W;
   return out;
+}
+
+void Odometry::Impl::update_covariance(Timestamp t) {
+  if (covariance && t - covariance_at < kCovarianceEvery && estimator.initialized()) return;
+  const auto timer = timings.measure("covariance");
+  covariance.reset();
+  covariance_at = t;
+  if (const std::optional<Matrix15d> P = estimator.covariance()) {
+    const Eigen::Matrix3d R_W_S = T_W_S.R();
+    covariance = {R_W_S * P->topLeftCorner<3, 3>() * R_W_S.transpose(), P->block<3, 3>(3, 3)};
+  }
 }
 
 void Odometry::Impl::restart(Timestamp t) {

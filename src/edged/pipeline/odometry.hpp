@@ -19,10 +19,18 @@ namespace edged {
 enum class TrackingStatus { Initializing, Good, Degraded, Lost };
 std::string to_string(TrackingStatus status);
 
+/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position and
+/// yaw are exact.
+struct PoseCovariance {
+  Eigen::Matrix3d position;  ///< [m^2], in W
+  Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
+};
+
 /// What one packet brought.
 struct OdometryOutput {
   TrackingStatus status = TrackingStatus::Initializing;
   NavState state;                          ///< at the packet's time; meaningful unless status is Initializing
+  std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
   bool keyframe = false;                   ///< this packet became a keyframe
   int event_tracks = 0;                    ///< live corners on the event frame
   int frame_tracks = 0;                    ///< live corners on the standard frame
