@@ -80,8 +80,8 @@ int run_simulate(const SimulateOptions& options) {
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }
 
-int list_options(const std::string& preset) {
-  SimulatorConfig config = simulator_preset(preset);
+int list_options(const SimulateOptions& options) {
+  SimulatorConfig config = load_config(options);
   fmt::print("{}", ConfigFields::of(config).to_yaml());
   return kExitOk;
 }
@@ -99,14 +99,16 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->add_option("--duration", options->duration_s, "[s] [that of the preset]");
   simulate->add_option("--set", options->assignments, "One option as key=value; may be repeated")
       ->allow_extra_args(false);
-  simulate->add_flag("--list", *list, "Print every option of the preset, with unit and effect, instead");
+  simulate->add_flag("--list", *list, "Print every option as chosen, with unit and effect, instead");
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
   simulate->add_flag("--quiet", options->quiet, "No status line");
   simulate->add_flag("--json", options->json, "Print the summary as json");
   simulate->footer(
-      "Example:\n  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight");
+      "Examples:\n"
+      "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
+      "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
   simulate->callback([options, list, &chosen] {
-    chosen = [options, list] { return *list ? list_options(options->preset) : run_simulate(*options); };
+    chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };
   });
 }
 

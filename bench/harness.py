@@ -45,12 +45,15 @@ def check_program(edged):
         sys.exit(f"{edged}: no such program; build it, or give --edged")
 
 
-def simulated(edged, cache, preset, seed, duration=None, fresh=False):
-    """The folder of the recording in the cache, made if it is not there or was made with other options."""
+def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(), name=None):
+    """The folder of the recording in the cache, made if it is not there or was made with other options. name: in place of
+    the preset's."""
     chosen = ["--preset", preset, "--seed", str(seed)]
     if duration is not None:
         chosen += ["--duration", f"{duration:g}"]
-    folder = cache / (f"{preset}_{seed}" if duration is None else f"{preset}_{seed}_{duration:g}s")
+    for setting in settings:
+        chosen += ["--set", setting]
+    folder = cache / (f"{name or preset}_{seed}" + ("" if duration is None else f"_{duration:g}s"))
     resolved = call([edged, "simulate", *chosen, "--list"])
     made_with = folder / "simulation.yaml"
     if not fresh and made_with.is_file() and made_with.read_text() == resolved:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The benchmarks of bench/ on recordings of a few seconds: that they run, go on where they stopped, and write their tables.
+"""The benchmarks of bench/ and tests/stress on recordings of a few seconds: that they run, go on where they stopped, and write their tables.
 Usage: EDGED=path/to/edged bench_test.py"""
 import pathlib
 import shutil
@@ -24,8 +24,19 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "flights", "sim_suite"):
+        for name in ("ablation", "flights", "sim_suite", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
+
+    def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
+        args = ["../tests/stress", "--cache", self.folder, "--disturbances", "imu-gap", "--modes", "fused", "--seeds", 1]
+        first = bench(*args)
+        self.assertIn("| imu-gap ", first.stdout, first.stderr)
+        self.assertEqual(first.returncode, 1 if "Not as expected" in first.stdout else 0)
+        self.assertEqual((self.folder / "table.md").read_text(), first.stdout)
+        runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
+        self.assertEqual(len(runs), 1)
+        self.assertEqual(bench(*args).stdout, first.stdout)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
 
     def test_a_missing_program_is_one_line(self):
         result = bench("flights", "--edged", self.folder / "none")

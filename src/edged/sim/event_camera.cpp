@@ -40,7 +40,7 @@ void EventCameraConfig::visit(ConfigFields& fields) {
 }
 
 EventCamera::EventCamera(const EventCameraConfig& config, int width, int height, std::uint64_t seed)
-    : config_(config), width_(width), random_(seed, 3), hot_random_(seed, 6) {
+    : config_(config), width_(width), random_(seed, 3), hot_random_(seed, 6), storm_random_(seed, 9) {
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   on_.resize(n), off_.resize(n), level_.resize(n), before_.resize(n), reference_.resize(n), target_.resize(n);
   last_ns_.assign(n, std::numeric_limits<std::int64_t>::min() / 2);
@@ -54,7 +54,7 @@ EventCamera::EventCamera(const EventCameraConfig& config, int width, int height,
   }
 }
 
-std::vector<Event> EventCamera::update(Timestamp t, std::span<const float> radiance) {
+std::vector<Event> EventCamera::update(Timestamp t, std::span<const float> radiance, double storm_hz) {
   EDGED_CHECK(radiance.size() == level_.size(), "{} pixels instead of {}", radiance.size(), level_.size());
   const std::size_t n = level_.size();
   const float dark = static_cast<float>(config_.dark_radiance);
@@ -82,6 +82,7 @@ std::vector<Event> EventCamera::update(Timestamp t, std::span<const float> radia
   }
   add_shot_noise(interval, events);
   add_hot_pixels(interval, events);
+  if (storm_hz > 0.0) add_storm(interval, storm_hz, events);
   std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
   t_ = t;
   return events;
@@ -146,6 +147,22 @@ void EventCamera::add_hot_pixels(const Interval& interval, std::vector<Event>& e
           interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
       events.push_back(make_event(hot.pixel, t_ns, true));
     }
+  }
+}
+
+void EventCamera::add_storm(const Interval& interval, double hz, std::vector<Event>& events) {
+  // As many more are drawn as fall into a refractory time. One after the other in time, so that each meets the last.
+  const double drawn_hz = hz / std::max(0.1, 1.0 - hz * config_.refractory_us * 1e-6);
+  const double length_ns = static_cast<double>(interval.length_ns);
+  const int count = storm_random_.arrivals(drawn_hz * length_ns * 1e-9 * static_cast<double>(level_.size()));
+  for (int k = 0; k < count; ++k) {
+    const std::size_t pixel = static_cast<std::size_t>(storm_random_.index(static_cast<int>(level_.size())));
+    const std::int64_t t_ns =
+        interval.begin_ns + static_cast<std::int64_t>((k + storm_random_.uniform()) / count * length_ns);
+    const bool positive = storm_random_.uniform() < 0.5;
+    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
+    last_ns_[pixel] = t_ns;
+    events.push_back(make_event(pixel, t_ns, positive));
   }
 }
 

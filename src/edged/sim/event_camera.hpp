@@ -38,7 +38,8 @@ class EventCamera {
   /// The events between the last picture and this one, in time order, stamps in whole microseconds within the interval.
   /// The brightness is taken to be linear in time in between. The first picture gives no events. radiance: width x
   /// height, linear; t must increase.
-  std::vector<Event> update(Timestamp t, std::span<const float> radiance);
+  /// storm_hz: of each pixel, events of either sign on top of these that have nothing to do with its light.
+  std::vector<Event> update(Timestamp t, std::span<const float> radiance, double storm_hz = 0.0);
 
  private:
   struct Interval {
@@ -46,6 +47,7 @@ class EventCamera {
   };
   void step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events);
   void add_shot_noise(const Interval& interval, std::vector<Event>& events);
+  void add_storm(const Interval& interval, double hz, std::vector<Event>& events);
   void add_hot_pixels(const Interval& interval, std::vector<Event>& events);
   /// level_: from before_ towards target_ for dt seconds.
   void follow(std::span<const float> radiance, double dt);
@@ -54,7 +56,7 @@ class EventCamera {
   EventCameraConfig config_;
   int width_;
   Random random_;
-  Random hot_random_;
+  Random hot_random_, storm_random_;
   struct HotPixel {
     std::size_t pixel;
     double hz;

@@ -96,7 +96,8 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   const SE3 T_C_W = T_W_C.inverse();
   const Eigen::Matrix3d R_C_W = T_C_W.R();
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
-    const Face& face = scene_.faces[i];
+    Face face = scene_.faces[i];
+    face.centre_W += t_s * face.velocity_W;
     const double distance = face.normal_W.dot(T_W_C.translation() - face.centre_W);
     if (distance <= 1e-6) continue;
     const PixelBox box = bounds(face, T_C_W);
@@ -107,6 +108,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     views_[i] = {a.cast<float>(),
                  (u_C - u_C.dot(c_C) * a).cast<float>(),
                  (v_C - v_C.dot(c_C) * a).cast<float>(),
+                 (R_C_W * face.velocity_W).cast<float>(),
                  static_cast<float>(face.half_u),
                  static_cast<float>(face.half_v),
                  static_cast<float>(distance)};
@@ -187,7 +189,8 @@ double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector
     for (int x = 0; x < width_; x += kMotionStride) {
       const std::size_t i = static_cast<std::size_t>(y * width_ + x);
       const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
-      const Eigen::Vector3f moved = -v * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
+      const Eigen::Vector3f own = seen_[i] < 0 ? -v : (views_[static_cast<std::size_t>(seen_[i])].velocity - v).eval();
+      const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
       const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
       fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
     }

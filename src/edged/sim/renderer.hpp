@@ -39,6 +39,7 @@ class Renderer {
   /// coordinates times w. No division is needed to decide what is seen.
   struct View {
     Eigen::Vector3f inverse_depth, u, v;
+    Eigen::Vector3f velocity;  // [m/s]
     float half_u, half_v;
     float distance;  // of the camera from the plane [m]
   };

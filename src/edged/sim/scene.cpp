@@ -58,7 +58,45 @@ bool keeps_clear(const Cuboid& cuboid, double clearance, std::span<const SE3> pa
   });
 }
 
-void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random) {
+/// The half of the room at -x, without a trace on it: its walls right before the room's own, all alike, so that not
+/// even their edges are seen.
+void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
+  Cuboid half = room;
+  half.half -= Eigen::Vector3d::Constant(1e-3);
+  half.half.x() *= 0.5;
+  half.T_W_O.translation().x() -= half.half.x();
+  const std::size_t first = scene.faces.size();
+  add_cuboid(scene, half, light, random);
+  // Open to the rest of the room.
+  const auto begin = scene.faces.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto open = [](const Face& face) { return face.normal_W.x() < -0.5; };
+  scene.faces.erase(std::remove_if(begin, scene.faces.end(), open), scene.faces.end());
+  for (std::size_t i = first; i < scene.faces.size(); ++i) {
+    scene.faces[i].texture = scene.textures.size();
+    scene.faces[i].brightness = static_cast<float>(0.8 * light);
+  }
+  scene.textures.emplace_back(cv::Mat(1, 1, CV_8UC1, cv::Scalar(180)));
+}
+
+/// Upright and 1 m ahead when the camera is at T_W_C, walking to its left, 0.65 m/s.
+void add_person(Scene& scene, const SE3& T_W_C, double at_s, double light, Random random) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d left = up.cross(T_W_C.rotation() * Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d R_W_P;
+  R_W_P << left, up.cross(left), up;
+  const Eigen::Vector3d velocity_W = 0.65 * left;
+  const Eigen::Vector3d met_W = T_W_C.translation() + left.cross(up) - 0.35 * up;
+  const std::size_t first = scene.faces.size();
+  add_cuboid(scene, {SE3(Eigen::Quaterniond(R_W_P), met_W - at_s * velocity_W), {0.3, 0.15, 0.85}}, light, random);
+  for (std::size_t i = first; i < scene.faces.size(); ++i) {
+    Face& face = scene.faces[i];
+    face.velocity_W = velocity_W;
+    face.texture %= scene.textures.size();
+    face.glows = true;  // where it comes from there may be no light
+  }
+}
+
+void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random, bool half_blank) {
   Eigen::Vector3d low = path_W_C.front().translation(), high = low;
   for (const SE3& T_W_C : path_W_C) {
     low = low.cwiseMin(T_W_C.translation());
@@ -81,10 +119,12 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
     const Eigen::Quaterniond tumbled = random_rotation(random);
     const Eigen::Quaterniond upright(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
     box.T_W_O = SE3(standing ? upright : tumbled, p);
+    if (half_blank && p.x() - box.half.norm() < room.T_W_O.translation().x()) continue;
     if (!keeps_clear(box, config.clearance_m, path_W_C)) continue;
     add_cuboid(scene, box, config.light, random);
     ++placed;
   }
+  if (half_blank) paint_half(scene, room, config.light, random);
 }
 
 /// A square on a wall that glows.
@@ -185,13 +225,14 @@ void SceneConfig::visit(ConfigFields& fields) {
                            "off, or the sun through a window"});
 }
 
-Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed) {
+Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed,
+                 const Disturbance& disturbance, const SE3& T_W_C_meeting) {
   Random random(seed, 2);
   Scene scene;
   switch (config.kind) {
     case SceneKind::Boxes:
       for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_rich_texture(kTextureSize, random));
-      add_room(scene, config, path_W_C, random);
+      add_room(scene, config, path_W_C, random, disturbance.kind == DisturbanceKind::BlankWall);
       break;
     case SceneKind::Hall:
       for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_plain_texture(kTextureSize, random));
@@ -206,6 +247,8 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
       add_wall(scene, config, path_W_C);
       break;
   }
+  if (disturbance.kind == DisturbanceKind::Person)
+    add_person(scene, T_W_C_meeting, disturbance.middle_s(), config.light, Random(seed, 10));
   return scene;
 }
 

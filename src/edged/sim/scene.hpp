@@ -11,6 +11,7 @@
 
 #include "edged/core/config.hpp"
 #include "edged/core/lie.hpp"
+#include "edged/sim/disturbance.hpp"
 #include "edged/sim/light.hpp"
 #include "edged/sim/texture.hpp"
 
@@ -18,9 +19,10 @@ namespace edged {
 
 /// A rectangle seen from the side its normal points to.
 struct Face {
-  Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal, u x v = -normal
-  double half_u = 0.0, half_v = 0.0;             ///< [m]
-  std::size_t texture = 0;                       ///< index into the scene
+  Eigen::Vector3d centre_W, u_W, v_W, normal_W;          ///< the last three orthonormal, u x v = -normal
+  double half_u = 0.0, half_v = 0.0;                     ///< [m]
+  Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();  ///< [m/s]; centre_W is where it is at t = 0
+  std::size_t texture = 0;                               ///< index into the scene
   float texels_per_m = 256.0F;
   float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
   float brightness = 1.0F;                 ///< radiance of a white spot in light 1
@@ -51,6 +53,9 @@ struct SceneConfig {
 /// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, a wall in
 /// front of all of it, square to the mean optical axis, or a hall that does not depend on the path but for where its
 /// furniture stands.
-Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed);
+/// A blank wall (of a room only; the half of it at -x) and a person, who passes before the camera at T_W_C_meeting, are
+/// made where the disturbance (filled in) wants them.
+Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed,
+                 const Disturbance& disturbance = {}, const SE3& T_W_C_meeting = {});
 
 }  // namespace edged

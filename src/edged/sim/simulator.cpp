@@ -16,7 +16,15 @@ constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 // Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are seen in time.
 constexpr double kLongestStep_s = 3e-3;
 
-SimulatorConfig checked(const SimulatorConfig& config) {
+SimulatorConfig checked(SimulatorConfig config) {
+  Disturbance& disturbance = config.disturbance;
+  disturbance = disturbance.filled_in();
+  if (disturbance.kind != DisturbanceKind::None && disturbance.end_s() > config.duration_s)
+    throw InputError::format(
+        "option 'disturbance.length_s': the disturbance ends at {} s, but the recording at {} s; raise duration_s",
+        disturbance.end_s(), config.duration_s);
+  if (disturbance.kind == DisturbanceKind::BlankWall && config.scene.kind != SceneKind::Boxes)
+    throw InputError("option 'disturbance.kind': blank-wall needs a room; set scene.kind to boxes");
   const FrameCameraConfig& frames = config.frames;
   const auto check = [&frames](const char* key, double exposure_ms) {
     if (exposure_ms * 1e-3 >= 1.0 / frames.rate_hz)
@@ -28,14 +36,21 @@ SimulatorConfig checked(const SimulatorConfig& config) {
   return config;
 }
 
-std::vector<SE3> camera_path(const ContinuousTrajectory& trajectory, const SimulatorConfig& config) {
+std::vector<SE3> camera_path(const DisturbedTrajectory& trajectory, const SimulatorConfig& config) {
   std::vector<SE3> path;
   for (double t = 0.0; t <= config.duration_s; t += 0.02) path.push_back(trajectory.at(t).T_W_B * config.T_B_C);
   return path;
 }
 
-Scene scene_of(const ContinuousTrajectory& trajectory, const SimulatorConfig& config) {
-  return make_scene(config.scene, camera_path(trajectory, config), static_cast<std::uint64_t>(config.seed));
+Scene scene_of(const DisturbedTrajectory& trajectory, const SimulatorConfig& config) {
+  return make_scene(config.scene, camera_path(trajectory, config), static_cast<std::uint64_t>(config.seed),
+                    config.disturbance, trajectory.at(config.disturbance.middle_s()).T_W_B * config.T_B_C);
+}
+
+/// Turns are about the camera's axis that points down.
+DisturbedTrajectory trajectory_of(const SimulatorConfig& config) {
+  return {make_motion(config.motion, config.duration_s, config.T_B_C, static_cast<std::uint64_t>(config.seed)),
+          config.disturbance, config.imu.gyro_range, config.T_B_C.R().col(1)};
 }
 
 Timestamp whole_microseconds(double s) {
@@ -75,6 +90,7 @@ void SimulatorConfig::visit(ConfigFields& fields) {
   fields.group("events", events);
   fields.group("frames", frames);
   fields.group("imu", imu);
+  fields.group("disturbance", disturbance);
 }
 
 SE3 SimulatorConfig::davis240c_extrinsics() {
@@ -86,8 +102,8 @@ SE3 SimulatorConfig::davis240c_extrinsics() {
 
 Simulator::Simulator(const SimulatorConfig& config)
     : config_(checked(config)),
-      trajectory_(make_motion(config.motion, config.duration_s, config.T_B_C, static_cast<std::uint64_t>(config.seed))),
-      renderer_(config.camera.model(), scene_of(trajectory_, config)),
+      trajectory_(trajectory_of(config_)),
+      renderer_(config.camera.model(), scene_of(trajectory_, config_)),
       event_camera_(config.events, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
       frame_camera_(config.frames, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
       imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),
@@ -154,12 +170,14 @@ EventBatch Simulator::take_events(Timestamp before) {
 }
 
 void Simulator::prepare_imu() {
-  if (imu_) return;
-  // Sample k is taken at k / rate on the camera's clock; one beyond the end lets users interpolate there.
-  const double t_cam_s = static_cast<double>(imu_count_) / config_.imu.rate_hz;
-  if (t_cam_s >= to_seconds(end_) + 1.0 / config_.imu.rate_hz) return;
-  imu_ = imu_model_.measure(timestamp_from_seconds(t_cam_s) + time_offset_, trajectory_.at(t_cam_s));
-  ++imu_count_;
+  while (!imu_) {
+    // Sample k is taken at k / rate on the camera's clock; one beyond the end lets users interpolate there.
+    const double t_cam_s = static_cast<double>(imu_count_) / config_.imu.rate_hz;
+    if (t_cam_s >= to_seconds(end_) + 1.0 / config_.imu.rate_hz) return;
+    imu_ = imu_model_.measure(timestamp_from_seconds(t_cam_s) + time_offset_, trajectory_.at(t_cam_s));
+    if (config_.disturbance.is(DisturbanceKind::ImuGap, t_cam_s)) imu_.reset();
+    ++imu_count_;
+  }
 }
 
 Timestamp Simulator::exposure_begin() const {
@@ -188,21 +206,30 @@ Timestamp Simulator::next_render_time() const {
 
 void Simulator::advance() {
   const Timestamp t = t_ ? next_render_time() : Timestamp();
-  const Rendering& picture = renderer_.render(truth(t).T_W_B * config_.T_B_C, to_seconds(t));
+  previous_.swap(radiance_);
+  radiance_ = renderer_.render(truth(t).T_W_B * config_.T_B_C, to_seconds(t)).radiance;
   ++renderings_;
-  const std::vector<Event> events = event_camera_.update(t, picture.radiance);
-  events_.insert(events_.end(), events.begin(), events.end());
+  const float light = static_cast<float>(config_.disturbance.light(to_seconds(t)));
+  if (light != 1.0F)
+    for (float& radiance : radiance_) radiance *= light;
+  for (const Event& event : event_camera_.update(t, radiance_, storm_hz()))
+    if (!disturbed(DisturbanceKind::EventsMissing, event.t)) events_.push_back(event);
   if (t_) collect_light(*t_, t);
-  previous_ = picture.radiance;
   t_ = t;
+}
+
+double Simulator::storm_hz() const {
+  if (!t_ || !disturbed(DisturbanceKind::EventStorm, *t_)) return 0.0;
+  return 1e6 * config_.disturbance.strength / static_cast<double>(renderer_.width() * renderer_.height());
 }
 
 void Simulator::collect_light(Timestamp from, Timestamp to) {
   if (from < exposure_begin()) return;
   // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
-  frame_camera_.expose(previous_, renderer_.last().radiance, to_seconds(to - from));
+  frame_camera_.expose(previous_, radiance_, to_seconds(to - from));
   if (to < exposure_begin() + exposure_) return;
-  frames_.push_back({exposure_middle(), "frames", frame_camera_.read_out()});
+  Frame frame{exposure_middle(), "frames", frame_camera_.read_out()};
+  if (!disturbed(DisturbanceKind::FramesMissing, frame.t)) frames_.push_back(std::move(frame));
   ++frame_count_;
   exposure_ = exposure_of(frame_camera_.exposure_ms());
 }

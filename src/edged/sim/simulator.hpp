@@ -10,6 +10,7 @@
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calibration.hpp"
+#include "edged/sim/disturbance.hpp"
 #include "edged/sim/event_camera.hpp"
 #include "edged/sim/frame_camera.hpp"
 #include "edged/sim/imu_model.hpp"
@@ -41,6 +42,7 @@ struct SimulatorConfig {
   EventCameraConfig events;
   FrameCameraConfig frames;
   ImuModelConfig imu;
+  Disturbance disturbance;
 
   /// Pose of the camera in the body; not an option.
   SE3 T_B_C = davis240c_extrinsics();
@@ -73,7 +75,7 @@ class Simulator : public Dataset {
   Calibration calibration() const;
 
   /// The exact motion; t: seconds on the camera's clock.
-  const ContinuousTrajectory& trajectory() const { return trajectory_; }
+  const DisturbedTrajectory& trajectory() const { return trajectory_; }
   /// What has been rendered so far: how many pictures, and the last one's time on the camera's clock.
   std::size_t renderings() const { return renderings_; }
   Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
@@ -84,16 +86,19 @@ class Simulator : public Dataset {
   Timestamp next_render_time() const;
   void prepare_imu();
   void collect_light(Timestamp from, Timestamp to);
+  /// Per pixel, from now until the next picture.
+  double storm_hz() const;
   /// Of the frame that is exposed next.
   Timestamp exposure_begin() const;
   Timestamp exposure_middle() const { return exposure_begin() + exposure_ / 2; }
   EventBatch take_events(Timestamp before);
   double image_speed(Timestamp t) const;
+  bool disturbed(DisturbanceKind by, Timestamp t) const { return config_.disturbance.is(by, to_seconds(t)); }
   Kinematics truth(Timestamp t) const { return trajectory_.at(to_seconds(t)); }
 
   SimulatorConfig config_;
   DatasetInfo info_;
-  ContinuousTrajectory trajectory_;
+  DisturbedTrajectory trajectory_;
   Renderer renderer_;
   EventCamera event_camera_;
   FrameCamera frame_camera_;
@@ -103,8 +108,8 @@ class Simulator : public Dataset {
   std::optional<Timestamp> t_;       // rendered up to here
   int frame_count_ = 0;              // read out so far
   std::int64_t imu_count_ = 0;
-  std::vector<float> previous_;  // the picture before the last one
-  std::deque<Event> events_;     // rendered but not handed out, as frames_
+  std::vector<float> radiance_, previous_;  // what the sensors see of the last picture and of the one before
+  std::deque<Event> events_;                // rendered but not handed out, as frames_
   std::deque<Frame> frames_;
   std::optional<ImuSample> imu_;  // the next one
   std::size_t renderings_ = 0;

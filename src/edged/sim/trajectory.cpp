@@ -164,12 +164,16 @@ Kinematics PoseSpline::at(double s) const {
   return k;
 }
 
+Ramp ramp(double t, double length_s) {
+  const double x = length_s > 0.0 ? std::clamp(t / length_s, 0.0, 1.0) : (t < 0.0 ? 0.0 : 1.0);
+  return {x * x * x * (10.0 + x * (-15.0 + 6.0 * x)),
+          length_s > 0.0 ? 30.0 * x * x * (1.0 - x) * (1.0 - x) / length_s : 0.0,
+          x * x * x * x * (2.5 + x * (-3.0 + x)) * length_s + std::max(0.0, t - length_s)};
+}
+
 Kinematics ContinuousTrajectory::at(double t) const {
-  const double x = blend_s_ > 0.0 ? std::clamp((t - rest_s_) / blend_s_, 0.0, 1.0) : (t < rest_s_ ? 0.0 : 1.0);
-  // Speed of the clock: 10 x^3 - 15 x^4 + 6 x^5, whose integral over the blend is half of it.
-  double rate = x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
-  double rate_change = blend_s_ > 0.0 ? 30.0 * x * x * (1.0 - x) * (1.0 - x) / blend_s_ : 0.0;
-  double s = x * x * x * x * (2.5 + x * (-3.0 + x)) * blend_s_ + std::max(0.0, t - rest_s_ - blend_s_);
+  // The clock of the spline: its speed and place.
+  auto [rate, rate_change, s] = ramp(t - rest_s_, blend_s_);
   if (s >= spline_.duration()) s = spline_.duration(), rate = 0.0, rate_change = 0.0;
   Kinematics k = spline_.at(s);
   k.a_W = k.a_W * rate * rate + k.v_W * rate_change;

@@ -44,6 +44,12 @@ class PoseSpline {
   std::vector<Vector7d> control_;
 };
 
+/// From 0 to 1 while t goes from 0 to its length, with two derivatives zero at both ends: 10 x^3 - 15 x^4 + 6 x^5.
+struct Ramp {
+  double value, slope, integral_s;  ///< slope [1/s]; the integral is that from 0 to t
+};
+Ramp ramp(double t, double length_s);
+
 /// A spline that is at rest at first, then takes up its motion smoothly: the path stays the same, its clock s(t) runs
 /// from standing still to full speed during the blend.
 class ContinuousTrajectory {

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/sim/disturbance.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace edged {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kCovering_s = 0.06, kSwitching_s = 0.02;
+constexpr double kStopping_s = 0.5, kTurningRound_s = 1.5;
+constexpr double kShake_hz = 4.0;
+
+struct Usual {
+  double length_s, strength;
+};
+
+Usual usual(DisturbanceKind kind) {
+  switch (kind) {
+    case DisturbanceKind::None:
+      return {0.0, 0.0};
+    case DisturbanceKind::LensCovered:
+      return {2.0, 0.0};
+    case DisturbanceKind::LightsOff:
+      return {2.0, 0.03};  // share of the light that is left
+    case DisturbanceKind::FramesMissing:
+      return {5.0, 0.0};
+    case DisturbanceKind::EventsMissing:
+      return {1.0, 0.0};
+    case DisturbanceKind::ImuGap:
+      return {0.3, 0.0};
+    case DisturbanceKind::GyroSaturation:
+      return {1.0, 1.5};  // peak rate over the gyro's range
+    case DisturbanceKind::Shake:
+      return {1.0, 400.0};  // peak rate [deg/s]
+    case DisturbanceKind::Person:
+      return {2.5, 0.0};
+    case DisturbanceKind::BlankWall:
+      return {4.0, 0.0};
+    case DisturbanceKind::PureRotation:
+      return {5.0, 0.0};
+    case DisturbanceKind::Standstill:
+      return {60.0, 0.0};
+    case DisturbanceKind::EventStorm:
+      return {0.3, 20.0};  // million events a second
+  }
+  return {0.0, 0.0};
+}
+
+/// From 0 up to 1 after begin_s, and down again after end_s.
+Ramp plateau(double t, double begin_s, double end_s, double ramp_s) {
+  const Ramp up = ramp(t - begin_s, ramp_s), down = ramp(t - end_s, ramp_s);
+  return {up.value - down.value, up.slope - down.slope, up.integral_s - down.integral_s};
+}
+
+}  // namespace
+
+void Disturbance::visit(ConfigFields& fields) {
+  fields.choice("kind", kind,
+                {{"none", DisturbanceKind::None},
+                 {"lens-covered", DisturbanceKind::LensCovered},
+                 {"lights-off", DisturbanceKind::LightsOff},
+                 {"frames-missing", DisturbanceKind::FramesMissing},
+                 {"events-missing", DisturbanceKind::EventsMissing},
+                 {"imu-gap", DisturbanceKind::ImuGap},
+                 {"gyro-saturation", DisturbanceKind::GyroSaturation},
+                 {"shake", DisturbanceKind::Shake},
+                 {"person", DisturbanceKind::Person},
+                 {"blank-wall", DisturbanceKind::BlankWall},
+                 {"pure-rotation", DisturbanceKind::PureRotation},
+                 {"standstill", DisturbanceKind::Standstill},
+                 {"event-storm", DisturbanceKind::EventStorm}},
+                {.effect = "one thing that goes wrong"});
+  fields.add("at_s", at_s, {"s", 0, 3600, "when it begins, on the camera's clock"});
+  fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: as usual for its kind"});
+  fields.add("strength", strength,
+             {"", 0, 1e4,
+              "0: as usual. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's range; "
+              "shake: peak rate in deg/s; event-storm: million events a second"});
+}
+
+Disturbance Disturbance::filled_in() const {
+  Disturbance filled = *this;
+  if (length_s == 0.0) filled.length_s = usual(kind).length_s;
+  if (strength == 0.0) filled.strength = usual(kind).strength;
+  return filled;
+}
+
+double Disturbance::light(double t_s) const {
+  if (kind == DisturbanceKind::LensCovered) return 1.0 - plateau(t_s, at_s, end_s(), kCovering_s).value;
+  if (kind == DisturbanceKind::LightsOff)
+    return 1.0 - (1.0 - strength) * plateau(t_s, at_s, end_s(), kSwitching_s).value;
+  return 1.0;
+}
+
+Kinematics DisturbedTrajectory::at(double t) const {
+  Kinematics k = on_stopped_clock(t);
+  const Turn extra = turn(t);
+  if (extra.angle == 0.0 && extra.rate == 0.0) return k;
+  const Eigen::Quaterniond R = so3::exp(extra.angle * axis_B_);
+  k.T_W_B = SE3(k.T_W_B.rotation() * R, k.T_W_B.translation());
+  k.omega_B = R.conjugate() * k.omega_B + extra.rate * axis_B_;
+  return k;
+}
+
+Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
+  const Kinematics moving = trajectory_.at(t);
+  const bool rotates = disturbance_.kind == DisturbanceKind::PureRotation;
+  if (!rotates && disturbance_.kind != DisturbanceKind::Standstill) return moving;
+  // The clock of the path is t less the time it stood still.
+  const Ramp still = plateau(t, disturbance_.at_s - kStopping_s, disturbance_.end_s(), kStopping_s);
+  const double rate = 1.0 - still.value;
+  Kinematics k = trajectory_.at(t - still.integral_s);
+  k.a_W = k.a_W * rate * rate - k.v_W * still.slope;
+  k.v_W *= rate;
+  k.omega_B *= rate;
+  if (rotates) {
+    k.T_W_B = SE3(moving.T_W_B.rotation(), k.T_W_B.translation());
+    k.omega_B = moving.omega_B;
+  }
+  return k;
+}
+
+DisturbedTrajectory::Turn DisturbedTrajectory::turn(double t) const {
+  const Disturbance& d = disturbance_;
+  if (d.kind == DisturbanceKind::BlankWall) {
+    const Ramp turned = plateau(t, d.at_s - kTurningRound_s, d.end_s(), kTurningRound_s);
+    return {kPi * turned.value, kPi * turned.slope};
+  }
+  const double x = (t - d.at_s) / d.length_s;
+  if (x <= 0.0 || x >= 1.0) return {};
+  // sin^2 is 0 at both ends, and so is its slope.
+  const double swell = std::pow(std::sin(kPi * x), 2), swell_rate = kPi / d.length_s * std::sin(2.0 * kPi * x);
+  if (d.kind == DisturbanceKind::GyroSaturation) {
+    const double angle = d.strength * gyro_range_ * d.length_s / kPi;
+    return {angle * swell, angle * swell_rate};
+  }
+  if (d.kind == DisturbanceKind::Shake) {
+    const double omega = 2.0 * kPi * kShake_hz, angle = d.strength * kPi / 180.0 / omega;
+    const double s = std::sin(omega * (t - d.at_s)), c = std::cos(omega * (t - d.at_s));
+    return {angle * swell * s, angle * (swell_rate * s + swell * omega * c)};
+  }
+  return {};
+}
+
+}  // namespace edged
