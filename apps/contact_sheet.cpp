@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "drawing.hpp"
+
 namespace edged {
 namespace {
 
-const cv::Scalar kPaper(255, 255, 255), kInk(60, 50, 40);
-constexpr int kMargin = 14, kCellWidth = 400, kCaption = 22, kTitleLine = 24;
-
-void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
-}
+constexpr int kGap = 14, kCellWidth = 400, kCaption = 22, kTitleLine = 24;
 
 int scaled_height(const cv::Mat& image) {
   return image.empty() ? 0 : cvRound(1.0 * kCellWidth * image.rows / image.cols);
@@ -22,7 +19,7 @@ int scaled_height(const cv::Mat& image) {
 int row_height(const SheetRow& row) {
   int height = 0;
   for (const SheetCell& cell : row) height = std::max(height, scaled_height(cell.image));
-  return kCaption + height + kMargin;
+  return kCaption + height + kGap;
 }
 
 void draw_cell(cv::Mat& canvas, const SheetCell& cell, cv::Point at) {
@@ -39,15 +36,15 @@ void draw_cell(cv::Mat& canvas, const SheetCell& cell, cv::Point at) {
 
 cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows) {
   std::size_t columns = 1;
-  int height = kMargin + kTitleLine * static_cast<int>(title.size());
+  int height = kGap + kTitleLine * static_cast<int>(title.size());
   for (const SheetRow& row : rows) columns = std::max(columns, row.size()), height += row_height(row);
-  const int width = kMargin + static_cast<int>(columns) * (kCellWidth + kMargin);
+  const int width = kGap + static_cast<int>(columns) * (kCellWidth + kGap);
   cv::Mat canvas(height, width, CV_8UC3, kPaper);
-  int y = kMargin;
-  for (const std::string& line : title) put_text(canvas, line, {kMargin, y + 14}, 0.5), y += kTitleLine;
+  int y = kGap;
+  for (const std::string& line : title) put_text(canvas, line, {kGap, y + 14}, 0.5), y += kTitleLine;
   for (const SheetRow& row : rows) {
-    int x = kMargin;
-    for (const SheetCell& cell : row) draw_cell(canvas, cell, {x, y}), x += kCellWidth + kMargin;
+    int x = kGap;
+    for (const SheetCell& cell : row) draw_cell(canvas, cell, {x, y}), x += kCellWidth + kGap;
     y += row_height(row);
   }
   return canvas;

@@ -10,16 +10,13 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "drawing.hpp"
+
 namespace edged {
 namespace {
 
-const cv::Scalar kPaper(255, 255, 255), kInk(60, 50, 40), kGrid(228, 228, 228), kTruth(150, 150, 150),
-    kEstimate(200, 90, 20);
+const cv::Scalar kGrid(228, 228, 228), kTruth(150, 150, 150), kEstimate(200, 90, 20);
 constexpr int kMargin = 16, kImageWidth = 400, kPlotSize = 620, kTitleHeight = 44;
-
-void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size = 0.45) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
-}
 
 /// 1, 2 or 5 times a power of ten, so that five to eight steps fill the extent.
 double nice_step(double extent) {

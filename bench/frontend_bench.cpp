@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCorners = 100;
 
-CameraModel camera_of(const benchmark::State& state) {
+CameraModel frame_camera_of(const benchmark::State& state) {
   return state.range(0) == 240 ? davis_like_pinhole() : CameraModel(752, 480, 458.0, 457.0, 375.5, 239.5);
 }
 
@@ -24,7 +24,7 @@ TrackerConfig config_of_bench() {
 const SE3 kMotion(so3::exp({0.01, -0.02, 0.02}), {0.05, 0.02, 0.03});  // about 5 px at 240 px width
 
 void detect(benchmark::State& state, CornerKind kind) {
-  const cv::Mat image = PlaneScene(camera_of(state), 2.0).image(SE3());
+  const cv::Mat image = PlaneScene(frame_camera_of(state), 2.0).image(SE3());
   DetectorConfig config;
   config.corners = kind;
   std::size_t found = 0;
@@ -37,7 +37,7 @@ void BM_DetectShiTomasi(benchmark::State& state) { detect(state, CornerKind::Shi
 
 /// One image with everything in it: pyramid, forward and backward flow, gates. Back and forth between two views.
 void BM_Track(benchmark::State& state) {
-  const PlaneScene scene(camera_of(state), 2.0);
+  const PlaneScene scene(frame_camera_of(state), 2.0);
   const cv::Mat images[2] = {scene.image(SE3()), scene.image(kMotion)};
   const TrackPrediction there{kMotion.inverse(), 2.0, {}}, back{kMotion, 2.0, {}};
   FeatureTracker tracker("bench", scene.camera(), config_of_bench());
@@ -55,7 +55,7 @@ void BM_Track(benchmark::State& state) {
 }
 
 void BM_PyramidBuild(benchmark::State& state) {
-  const cv::Mat image = PlaneScene(camera_of(state), 2.0).image(SE3());
+  const cv::Mat image = PlaneScene(frame_camera_of(state), 2.0).image(SE3());
   ImagePyramid pyramid;
   for (auto _ : state) pyramid.build(image, KltConfig{});
 }

@@ -3,7 +3,6 @@
 #include "edged/estimator/estimator.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "edged/estimator/covariance.hpp"
 #include "edged/estimator/sliding.hpp"
@@ -12,7 +11,6 @@
 namespace edged {
 namespace {
 
-constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
 constexpr double kRestStretch = 10.0;         // times the longest IMU interval
 constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is moving is not at rest

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
-constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr int kStartIterations = 25;
 constexpr std::ptrdiff_t kMinStartLandmarks = 15;
 constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleration at rest
@@ -43,7 +42,7 @@ double visual_rms(const Window& window) {
       ++n;
     }
   }
-  return n == 0 ? kFree : std::sqrt(sum / (2.0 * n));
+  return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / (2.0 * n));
 }
 
 }  // namespace

@@ -13,15 +13,15 @@
 namespace edged {
 namespace {
 
-constexpr double kStep_s = 0.2;
+constexpr double kPeriod_s = 0.2;
 
 /// States at the true poses, velocities and biases, with their IMU and what the cameras see; the gauge is held.
 Window window_at_truth(TestWorld& world, const TestWorldOptions& options, int states = 6) {
   Window window(world.rig(), 1.0);
-  world.packet(1.0 - kStep_s, kStep_s, true);
+  world.packet(1.0 - kPeriod_s, kPeriod_s, true);
   for (int i = 0; i < states; ++i) {
-    const double t = 1.0 + kStep_s * i;
-    const EstimatorInput input = world.packet(t, kStep_s, true);
+    const double t = 1.0 + kPeriod_s * i;
+    const EstimatorInput input = world.packet(t, kPeriod_s, true);
     WindowState state;
     state.t = input.t;
     state.pose = to_block(world.T_W_B(t));

@@ -10,8 +10,6 @@
 namespace edged {
 namespace {
 
-const SE3 kTilted(so3::exp({0.4, -0.7, 1.9}), Eigen::Vector3d(3, -5, 2));
-
 std::vector<PosePair> pairs_of(const Trajectory& truth, const Trajectory& estimate) {
   return associate(truth, estimate).pairs;
 }

@@ -13,7 +13,6 @@
 namespace edged {
 namespace {
 
-const SE3 kTilted(so3::exp({0.4, -0.7, 1.9}), Eigen::Vector3d(3, -5, 2));
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 TEST(Statistics, OfAFewNumbers) {

@@ -9,6 +9,9 @@
 
 namespace edged {
 
+/// Some frame that is turned and moved against the world.
+inline const SE3 kTilted(so3::exp({0.4, -0.7, 1.9}), Eigen::Vector3d(3, -5, 2));
+
 /// A winding motion sampled at rate_hz over duration_s, starting at stamp 100 s: curved in all three axes, turning.
 inline Trajectory winding_motion(double duration_s = 20.0, double rate_hz = 50.0) {
   Trajectory trajectory;

@@ -12,6 +12,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/events/sharpness.hpp"
+#include "edged/events/test_support.hpp"
 
 namespace edged {
 namespace {
@@ -21,10 +22,6 @@ const CameraModel kDistorted(120, 90, 100.0, 100.0, 61.0, 46.0, DistortionModel:
                              {-0.3, 0.1, 0.001, -0.0005, 0});
 
 Timestamp at_us(std::int64_t us) { return Timestamp(std::chrono::microseconds(us)); }
-
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
 
 /// Pure translation so that the events at time 0 move by the given pixels at a depth of 1 m.
 CameraMotion shift_by(double dx_px, double dy_px) {
@@ -157,12 +154,6 @@ double variance(const GeneratedPacket& packet, const CameraModel& camera, WarpIn
   config.interpolation = interpolation;
   EventFrameRenderer renderer(UndistortTable(camera, ideal_pinhole(camera)), config);
   return image_variance(renderer.accumulate(packet.events, packet.motion, depth));
-}
-
-Vector6d twist(double vx, double vy, double vz, double wx, double wy, double wz) {
-  Vector6d xi;
-  xi << vx, vy, vz, wx, wy, wz;
-  return xi;
 }
 
 TEST(EventFrame, OfGeneratedEventsIsSharperWithTheTrueMotion) {

@@ -11,18 +11,15 @@
 #include <random>
 
 #include "edged/core/check.hpp"
+#include "edged/events/test_support.hpp"
 
 namespace edged {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 const CameraModel kPinhole(240, 180, 200.0, 198.0, 121.0, 88.5);
-const CameraModel kDistorted(240, 180, 199.4, 199.7, 133.8, 114.0, DistortionModel::RadTan,
+const CameraModel kDavis(240, 180, 199.4, 199.7, 133.8, 114.0, DistortionModel::RadTan,
                              {-0.3829, 0.18934, -0.001, -0.00056, 0.0});
-
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
 
 Timestamp at_ms(double ms) { return timestamp_from_seconds(1e-3 * ms); }
 
@@ -71,12 +68,6 @@ double largest_error(const std::vector<Event>& events, const UndistortTable& tab
   return error;
 }
 
-Vector6d twist(double vx, double vy, double vz, double wx, double wy, double wz) {
-  Vector6d xi;
-  xi << vx, vy, vz, wx, wy, wz;
-  return xi;
-}
-
 /// A shaken camera: 200 Hz knots over 60 ms, up to 15 rad/s and 300 rad/s^2, 3 m/s.
 CameraMotion shaken(Timestamp reference) {
   const auto pose = [](double s) {
@@ -91,9 +82,9 @@ CameraMotion shaken(Timestamp reference) {
 }
 
 TEST(EventWarp, IsWithinTwoHundredthsOfAPixelOfTheExactWarp) {
-  const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
+  const UndistortTable table(kDavis, ideal_pinhole(kDavis));
   const CameraMotion motion = shaken(at_ms(60));
-  const std::vector<Event> events = random_events(20000, at_ms(0), at_ms(60), kDistorted);
+  const std::vector<Event> events = random_events(20000, at_ms(0), at_ms(60), kDavis);
   double largest = 0.0;
   for (const auto interpolation : {WarpInterpolation::Piecewise, WarpInterpolation::SingleTwist}) {
     for (const double depth : {0.7, 2.0, 20.0}) {
@@ -189,8 +180,8 @@ TEST(EventWarp, PassesExactlyThroughItsKnots) {
 
 TEST(EventWarp, MovesEveryEventAtItsOwnDepth) {
   const Timestamp first = at_ms(100), last = at_ms(130);
-  const std::vector<Event> events = random_events(2000, first, last, kDistorted);
-  const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
+  const std::vector<Event> events = random_events(2000, first, last, kDavis);
+  const UndistortTable table(kDavis, ideal_pinhole(kDavis));
   const CameraMotion motion = constant_twist(twist(0.8, -0.5, 0.6, 1.0, -2.0, 1.5), first, last, 31);
   const std::vector<DepthSample> samples = {{{30, 40}, 0.8}, {{200, 60}, 3.0}, {{120, 150}, 1.5}};
   const DepthGrid depths(240, 180, {8, 1000.0}, samples, 2.0);
@@ -209,7 +200,7 @@ TEST(EventWarp, MovesEveryEventAtItsOwnDepth) {
 }
 
 TEST(EventWarp, LeavesAnEventAtTheReferenceTimeWhereItIs) {
-  const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
+  const UndistortTable table(kDavis, ideal_pinhole(kDavis));
   const std::vector<Event> event{{at_ms(60), 33, 44, false}};
   const auto warped = warp_all(event, table, shaken(at_ms(60)), {});
   ASSERT_EQ(warped.size(), 1U);
@@ -217,8 +208,8 @@ TEST(EventWarp, LeavesAnEventAtTheReferenceTimeWhereItIs) {
 }
 
 TEST(EventWarp, OnlyUndistortsWithoutMotion) {
-  const UndistortTable table(kDistorted, ideal_pinhole(kDistorted));
-  const std::vector<Event> events = random_events(500, at_ms(0), at_ms(30), kDistorted);
+  const UndistortTable table(kDavis, ideal_pinhole(kDavis));
+  const std::vector<Event> events = random_events(500, at_ms(0), at_ms(30), kDavis);
   for (const CameraMotion& motion : {CameraMotion(), shaken(at_ms(60))}) {
     const auto warped = warp_all(events, table, motion, {WarpInterpolation::None, 1.0});
     ASSERT_EQ(warped.size(), events.size());

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// `t ax ay az gx gy gz`: acceleration first.
-std::optional<ImuSample> parse_imu(std::string_view line) {
+std::optional<ImuSample> parse_ecd_imu(std::string_view line) {
   FieldReader fields(line);
   const auto t = parse_seconds(fields.next());
   std::array<double, 6> v;
@@ -25,7 +25,7 @@ std::optional<ImuSample> parse_imu(std::string_view line) {
   return ImuSample{*t, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
 }
 
-StampedLines<FrameEntry>::Spec image_list(const fs::path& folder) {
+StampedLines<FrameEntry>::Spec ecd_images(const fs::path& folder) {
   return {folder / "images.txt", "frames", "t path", LastLine::MayLackEnd,
           [folder](std::string_view line) -> std::optional<FrameEntry> {
             FieldReader fields(line);
@@ -71,7 +71,7 @@ bool is_ecd_folder(const fs::path& folder) {
 std::optional<cv::Size> ecd_image_size(const fs::path& folder) {
   constexpr int kTries = 20;
   if (!fs::exists(folder / "images.txt")) return std::nullopt;
-  const auto spec = image_list(folder);
+  const auto spec = ecd_images(folder);
   LineReader lines(spec.file);
   for (int i = 0; i < kTries; ++i) {
     const auto line = lines.next();
@@ -99,9 +99,9 @@ Recording open_ecd(const fs::path& folder, const Rig* rig) {
     const cv::Size size = sensor_size(folder, rig, recording.calibration);
     layout.events = EventFile{folder / "events.txt", "events", size.width, size.height};
   }
-  if (fs::exists(folder / "images.txt")) layout.frames = FrameFile{"frames", image_list(folder)};
+  if (fs::exists(folder / "images.txt")) layout.frames = FrameFile{"frames", ecd_images(folder)};
   if (fs::exists(folder / "imu.txt"))
-    layout.imu = {folder / "imu.txt", "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_imu};
+    layout.imu = {folder / "imu.txt", "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
   if (const fs::path truth = folder / "groundtruth.txt"; fs::exists(truth))
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
       return read_ground_truth(truth, camera, repairs);

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kTruthFolder = "state_groundtruth_estimate0";
 
 /// `ns, wx, wy, wz, ax, ay, az`: angular velocity first.
-std::optional<ImuSample> parse_imu(std::string_view line) {
+std::optional<ImuSample> parse_euroc_imu(std::string_view line) {
   FieldReader fields(line);
   const auto t = parse_nanoseconds(fields.next());
   std::array<double, 6> v;
@@ -23,7 +23,7 @@ std::optional<ImuSample> parse_imu(std::string_view line) {
   return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
-StampedLines<FrameEntry>::Spec image_list(const fs::path& cam0) {
+StampedLines<FrameEntry>::Spec euroc_images(const fs::path& cam0) {
   return {cam0 / "data.csv", "frames", "ns, file name", LastLine::MayLackEnd,
           [cam0](std::string_view line) -> std::optional<FrameEntry> {
             FieldReader fields(line);
@@ -60,9 +60,9 @@ Recording open_euroc(const fs::path& mav0) {
   layout.info.format = "euroc";
   layout.info.pose_frame = "body";
   layout.parse_stamp = parse_nanoseconds;
-  if (fs::exists(mav0 / "cam0" / "data.csv")) layout.frames = FrameFile{"cam0", image_list(mav0 / "cam0")};
+  if (fs::exists(mav0 / "cam0" / "data.csv")) layout.frames = FrameFile{"cam0", euroc_images(mav0 / "cam0")};
   if (fs::exists(mav0 / "imu0" / "data.csv"))
-    layout.imu = {mav0 / "imu0" / "data.csv", "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_imu};
+    layout.imu = {mav0 / "imu0" / "data.csv", "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_euroc_imu};
   if (const fs::path truth = mav0 / kTruthFolder / "data.csv"; fs::exists(truth))
     layout.ground_truth = [truth](Repairs& repairs) { return read_ground_truth(truth, repairs); };
 

@@ -16,7 +16,7 @@ namespace edged {
 namespace {
 
 constexpr double kQuaternionTolerance = 0.05;  // of the norm; printed with few digits it is off by less
-constexpr double kRotationTolerance = 1e-2;
+constexpr double kPrintedRotationTolerance = 1e-2;
 
 /// What a line says, or what is wrong with it.
 struct ParsedLine {
@@ -56,7 +56,7 @@ ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> T(v.data());
   const Eigen::Matrix3d R = T.leftCols<3>();
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (deviation > kRotationTolerance || R.determinant() < 0)
+  if (deviation > kPrintedRotationTolerance || R.determinant() < 0)
     return {std::nullopt, fmt::format("no rotation matrix (deviation {:.2g})", deviation)};
   return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
 }

@@ -10,7 +10,7 @@
 namespace edged {
 namespace {
 
-constexpr int kSide = 4;
+constexpr int kPixels = 4;
 
 EventCameraConfig quiet() {
   EventCameraConfig config;
@@ -21,10 +21,10 @@ EventCameraConfig quiet() {
 
 /// The events of all pixels while the log brightness goes from 0 to log_end within a second, in 100 pictures.
 std::vector<Event> ramp(const EventCameraConfig& config, double log_end, std::uint64_t seed = 1) {
-  EventCamera camera(config, kSide, kSide, seed);
+  EventCamera camera(config, kPixels, kPixels, seed);
   std::vector<Event> all;
   for (int i = 0; i <= 100; ++i) {
-    const std::vector<float> radiance(kSide * kSide, static_cast<float>(std::exp(log_end * i / 100.0)));
+    const std::vector<float> radiance(kPixels * kPixels, static_cast<float>(std::exp(log_end * i / 100.0)));
     const std::vector<Event> events = camera.update(timestamp_from_seconds(0.01 * i), radiance);
     all.insert(all.end(), events.begin(), events.end());
   }
@@ -39,7 +39,7 @@ TEST(EventCamera, CountsAndTimesTheEventsOfARamp) {
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Event> events = ramp(quiet(), sign * 3.0);
     // 3 / 0.3 events a pixel; where in its cycle it started decides about one more or less.
-    EXPECT_NEAR(static_cast<double>(events.size()), 10.0 * kSide * kSide, kSide * kSide);
+    EXPECT_NEAR(static_cast<double>(events.size()), 10.0 * kPixels * kPixels, kPixels * kPixels);
     Timestamp last;
     for (const Event& e : events) {
       EXPECT_EQ(e.positive, sign > 0.0);
@@ -60,7 +60,7 @@ TEST(EventCamera, LeaksPositiveEventsAtItsRate) {
   EventCameraConfig config = quiet();
   config.leak_hz = 5.0;
   const std::vector<Event> events = ramp(config, 0.0);
-  EXPECT_NEAR(static_cast<double>(events.size()), 5.0 * kSide * kSide, kSide * kSide);
+  EXPECT_NEAR(static_cast<double>(events.size()), 5.0 * kPixels * kPixels, kPixels * kPixels);
   EXPECT_TRUE(std::all_of(events.begin(), events.end(), [](const Event& e) { return e.positive; }));
 }
 
@@ -68,24 +68,24 @@ TEST(EventCamera, MakesShotNoiseOfBothSigns) {
   EventCameraConfig config = quiet();
   config.shot_hz = 20.0;
   const std::vector<Event> events = ramp(config, 0.0);
-  EXPECT_NEAR(static_cast<double>(events.size()), 20.0 * kSide * kSide, 40.0);
+  EXPECT_NEAR(static_cast<double>(events.size()), 20.0 * kPixels * kPixels, 40.0);
   const auto positive = std::count_if(events.begin(), events.end(), [](const Event& e) { return e.positive; });
-  EXPECT_NEAR(static_cast<double>(positive), 10.0 * kSide * kSide, 40.0);
+  EXPECT_NEAR(static_cast<double>(positive), 10.0 * kPixels * kPixels, 40.0);
 }
 
 TEST(EventCamera, KeepsTheRefractoryTime) {
   EventCameraConfig config = quiet();
   config.refractory_us = 150e3;
   const std::vector<Event> events = ramp(config, 3.0);
-  EXPECT_NEAR(static_cast<double>(events.size()), 5.0 * kSide * kSide, kSide * kSide);
+  EXPECT_NEAR(static_cast<double>(events.size()), 5.0 * kPixels * kPixels, kPixels * kPixels);
 }
 
 TEST(EventCamera, SpreadsItsThresholds) {
   EventCameraConfig config = quiet();
   config.threshold_sigma = 0.03;
   const std::vector<Event> events = ramp(config, 30.0);
-  std::vector<int> counts(kSide * kSide, 0);
-  for (const Event& e : events) ++counts[e.y * kSide + e.x];
+  std::vector<int> counts(kPixels * kPixels, 0);
+  for (const Event& e : events) ++counts[e.y * kPixels + e.x];
   const auto [low, high] = std::minmax_element(counts.begin(), counts.end());
   EXPECT_GT(*high - *low, 10);
   EXPECT_GT(*low, 65);
@@ -102,16 +102,16 @@ TEST(EventCamera, FollowsFasterInMoreLight) {
   EventCameraConfig config = quiet();
   config.bandwidth_per_radiance_hz = 2.0;
   const auto events_after_step = [&](float from) {
-    EventCamera camera(config, kSide, kSide, 1);
+    EventCamera camera(config, kPixels, kPixels, 1);
     std::size_t count = 0;
     for (int i = 0; i <= 20; ++i) {
-      const std::vector<float> radiance(kSide * kSide, i == 0 ? from : 4.0F * from);
+      const std::vector<float> radiance(kPixels * kPixels, i == 0 ? from : 4.0F * from);
       count += camera.update(timestamp_from_seconds(0.005 * i), radiance).size();
     }
     return count;
   };
-  EXPECT_GT(events_after_step(1.0F), 3 * kSide * kSide);
-  EXPECT_LT(events_after_step(0.01F), kSide * kSide);
+  EXPECT_GT(events_after_step(1.0F), 3 * kPixels * kPixels);
+  EXPECT_LT(events_after_step(0.01F), kPixels * kPixels);
 }
 
 TEST(EventCamera, HasHotPixelsThatFireAtTheirRate) {

@@ -18,7 +18,6 @@ namespace {
 constexpr double kGround_m = 0.25, kHeight_m = 1.3;
 constexpr double kTakeOff_s = 2.5, kHover_s = 0.5, kLanding_s = 3.0, kStill_s = 1.0;
 constexpr double kDrag = 0.25;  // deceleration by air of a level quadrotor per speed [1/s]
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// From 0 to 1 with three derivatives zero at both ends; its steepest slope is 2.19.
 double step(double x) {

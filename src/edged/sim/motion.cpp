@@ -62,7 +62,6 @@ class Sway3 {
 
 Trajectory random_camera_poses(const MotionConfig& config, double duration_s, std::uint64_t seed) {
   constexpr double kRate = 100.0;
-  constexpr double kDegree = std::numbers::pi / 180.0;
   Random random(seed, 1);
   const Sway3 position(config.extent_m * Eigen::Vector3d(1.0, 1.0, 0.5), config.max_speed, duration_s, random);
   const Sway3 angles(config.max_angle_deg * kDegree * Eigen::Vector3d(0.3, 0.5, 1.0), config.max_rate_deg_s * kDegree,

@@ -21,6 +21,9 @@ using MotionBlock = std::array<double, 9>;
 
 enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale };
 
+/// Of the anchor depth: nearer than this counts as behind the camera.
+inline constexpr double kMinDepthShare = 1e-3;
+
 /// Names one parameter block: a state's pose or motion, a feature's inverse depth, or ln s of the depth source (Eq. 5).
 struct BlockKey {
   BlockKind kind;

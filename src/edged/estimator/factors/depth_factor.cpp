@@ -13,8 +13,6 @@ namespace {
 using Eigen::RowVector3d;
 using Eigen::Vector3d;
 
-constexpr double kMinDepthShare = 1e-3;  // of the anchor depth: nearer than this counts as behind the camera
-
 /// ln 1/z of one landmark in the observing camera, and its derivatives (docs/math.md, D1).
 struct LogInverseDepth {
   double value = 0.0;

@@ -7,6 +7,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "edged/estimator/factors/blocks.hpp"
@@ -25,6 +26,9 @@ struct LinearPrior {
 
 /// Position and yaw (rotation about the world's z) of one pose held at its present value.
 LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma);
+
+/// The sigma of what a prior leaves open.
+inline constexpr double kFree = std::numeric_limits<double>::infinity();
 
 /// A motion block near `mean`; sigmas for velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]. An infinite sigma
 /// leaves that part free.

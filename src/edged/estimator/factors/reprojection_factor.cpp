@@ -5,9 +5,6 @@
 #include "edged/estimator/factors/blocks.hpp"
 
 namespace edged {
-namespace {
-constexpr double kMinDepthShare = 1e-3;  // of the anchor depth: nearer than this counts as behind the camera
-}
 
 bool ReprojectionFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   using Eigen::Matrix3d;
