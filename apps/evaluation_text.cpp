@@ -15,6 +15,12 @@ nlohmann::ordered_json to_json(const Statistics& s) {
           {"min", s.min},   {"max", s.max},   {"sse", s.sse},       {"count", s.count}};
 }
 
+nlohmann::ordered_json to_json(const NormalizedErrors& e) {
+  return {{"mean_nees", e.mean_nees},
+          {"within_3_sigma", e.within},
+          {"axes_within_3_sigma", {e.axes_within.x(), e.axes_within.y(), e.axes_within.z()}}};
+}
+
 std::string row(const char* name, const Statistics& s, const char* unit) {
   return fmt::format("  {:<22} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f}  {}\n", name, s.rmse, s.mean,
                      s.median, s.std, s.min, s.max, unit);
@@ -52,6 +58,18 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
                            {"translation_m", to_json(relative.translation_m)},
                            {"rotation_deg", to_json(relative.rotation_deg)}});
   }
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Consistency& c) {
+  nlohmann::ordered_json json = {{"poses", c.poses},
+                                 {"starts", c.starts},
+                                 {"position", to_json(c.position)},
+                                 {"rotation", to_json(c.rotation)},
+                                 {"silently_diverged_s", c.silent_s()},
+                                 {"silently_diverged", nlohmann::ordered_json::array()}};
+  for (const TimeSpan& span : c.silent)
+    json["silently_diverged"].push_back({to_seconds(span.begin), to_seconds(span.end)});
   return json;
 }
 

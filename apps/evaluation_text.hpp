@@ -6,11 +6,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 
 namespace edged {
 
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
+nlohmann::ordered_json to_json(const Consistency& consistency);
 std::string to_table(const Evaluation& evaluation);
 
 }  // namespace edged

@@ -22,6 +22,9 @@ class OutputFrame {
   StampedPose operator()(const StampedPose& body) const { return {body.t - time_offset_, body.T * T_B_X_}; }
   Trajectory operator()(const Trajectory& body) const;
 
+  /// The other way round.
+  StampedPose to_body(const StampedPose& X) const { return {X.t + time_offset_, X.T * T_B_X_.inverse()}; }
+
   /// For the comment line of a file: which frame, which clock.
   std::string describe() const;
 

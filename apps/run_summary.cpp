@@ -25,6 +25,12 @@ std::string line(const char* name, const std::string& value, const std::string& 
                       : fmt::format("  {:<20} {:<12} {}\n", name, value, note);
 }
 
+std::string consistency_line(const Consistency& c) {
+  return line("within 3 sigma", fmt::format("{:.1f} %", 100.0 * c.position.within),
+              fmt::format("of the positions, {:.1f} % of the rotations; {:.1f} s diverged silently",
+                          100.0 * c.rotation.within, c.silent_s()));
+}
+
 nlohmann::ordered_json accuracy_json(const std::optional<Evaluation>& e) {
   const auto field = [&e](auto get) { return e ? number_or_null(get(*e)) : nlohmann::ordered_json(nullptr); };
   return {{"alignment", to_string(e ? e->protocol.alignment : AlignmentKind::SE3)},
@@ -40,8 +46,12 @@ nlohmann::ordered_json accuracy_json(const std::optional<Evaluation>& e) {
 
 void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth) {
   try {
-    const Association association = associate(truth.trajectory, OutputFrame(rig, truth.frame)(body));
+    const OutputFrame frame(rig, truth.frame);
+    const Association association = associate(truth.trajectory, frame(body));
     summary.evaluation = evaluate(association, protocol("P3"));
+    Trajectory true_body;
+    for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
+    summary.consistency = check_consistency(true_body, summary.statistics.claims());
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
         summary.mpe_percent[name] = evaluate(association, protocol(name), {}).mpe_percent;
@@ -82,6 +92,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.latency) json["latency"] = {{"median_s", s.latency->median_s}, {"worst_s", s.latency->worst_s}};
   json["mpe_percent_by_protocol"] = s.mpe_percent;
+  json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
   json["repairs"] = s.repairs;
   json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
   return json;
@@ -99,6 +110,7 @@ std::string to_table(const RunSummary& s) {
                               e.path_length_m));
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect");
+    if (s.consistency && s.consistency->poses > 0) table += consistency_line(*s.consistency);
   } else {
     table += line("ATE RMSE", "-", "no ground truth to compare with");
   }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "edged/core/dataset.hpp"
+#include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "output_frame.hpp"
 #include "run_statistics.hpp"
@@ -30,10 +31,12 @@ struct RunSummary {
   std::optional<Latency> latency;              ///< of a live run
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
+  std::optional<Consistency> consistency;      ///< nothing without ground truth
   std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
 };
 
-/// Compares the body's poses with the ground truth, in the ground truth's frame. Leaves the summary without evaluation,
+/// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their covariances,
+/// in the body's. Leaves the summary without evaluation,
 /// and logs why, where that is not possible.
 void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
 

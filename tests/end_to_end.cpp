@@ -89,18 +89,13 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   Trajectory estimate;
   double velocity_sum = 0.0;
   int velocities = 0;
-  // The true body, whatever frame the truth is of: T_W_B = T_W_X * T_X_B, on the IMU's clock.
-  const StampedPose X_in_B = frame({Timestamp(), SE3()});
-  const auto true_body = [&](const StampedPose& X) {
-    return StampedPose{X.t - X_in_B.t + Timestamp(), X.T * X_in_B.T.inverse()};
-  };
   for (const OdometryOutput& output : run.outputs) {
     if (!has_pose(output)) continue;
     estimate.push_back(frame({output.state.t, output.state.T_W_B}));
     const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
                                         [](const StampedPose& pose, Timestamp t) { return pose.t < t; });
     if (after - truth.begin() < 2 || truth.end() - after < 2) continue;
-    const StampedPose before = true_body(*(after - 2)), later = true_body(*(after + 1));
+    const StampedPose before = frame.to_body(*(after - 2)), later = frame.to_body(*(after + 1));
     const SE3& T_W_B = output.state.T_W_B;
     const double share = to_seconds(output.state.t - before.t) / to_seconds(later.t - before.t);
     const SE3 true_T_W_B = interpolate(before.T, later.T, share);
@@ -110,6 +105,9 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
     ++velocities;
   }
   result.rms_velocity_error = velocities == 0 ? 0.0 : std::sqrt(velocity_sum / velocities);
+  Trajectory true_body;
+  for (const StampedPose& pose : truth) true_body.push_back(frame.to_body(pose));
+  result.consistency = check_consistency(true_body, run.statistics.claims());
   result.evaluation = evaluate(associate(truth, estimate), protocol("P3"));
   return result;
 }

@@ -40,6 +40,7 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
 struct FlightScore {
   Evaluation evaluation;            ///< protocol P3, of the poses that edged run would write
   double max_tilt_deg = 0.0;        ///< between the estimated and the true direction of gravity in the body
+  Consistency consistency;          ///< of the errors with the covariances
   double rms_velocity_error = 0.0;  ///< [m/s], in the body frame: free of yaw
 };
 

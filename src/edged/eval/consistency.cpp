@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/consistency.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <optional>
+
+#include "edged/eval/association.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kChiSquare = 14.156;  // of three degrees of freedom, 99.73 %
+constexpr double kLeastSigma = 1e-4;   // [m], [rad]
+constexpr Duration kSilentAfter = std::chrono::milliseconds(500);
+
+/// Position and yaw that lay the estimate onto the truth.
+SE3 gauge(const SE3& truth, const SE3& estimate) {
+  const Eigen::Matrix3d R = (truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix();
+  const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+  const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
+  return {q, truth.translation() - q * estimate.translation()};
+}
+
+/// Adds up the errors of one kind.
+class Sum {
+ public:
+  /// Whether the error is one that its covariance makes believable.
+  bool add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+    const Eigen::Matrix3d P = covariance + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
+    const double nees = error.dot(P.ldlt().solve(error));
+    const Eigen::Array3d sigmas = error.array().abs() / P.diagonal().array().sqrt();
+    const bool believable = nees <= kChiSquare;
+    ++count_;
+    nees_ += nees;
+    within_ += believable ? 1.0 : 0.0;
+    axes_within_ += (sigmas <= 3.0).cast<double>().matrix();
+    return believable;
+  }
+
+  NormalizedErrors mean() const {
+    if (count_ == 0) return {};
+    const double n = static_cast<double>(count_);
+    return {nees_ / n, within_ / n, axes_within_ / n};
+  }
+
+ private:
+  std::size_t count_ = 0;
+  double nees_ = 0.0, within_ = 0.0;
+  Eigen::Vector3d axes_within_ = Eigen::Vector3d::Zero();
+};
+
+/// Collects spans of time in which something holds without a break for longer than kSilentAfter.
+class Spans {
+ public:
+  void add(Timestamp t, bool holds) {
+    if (!holds) return end();
+    if (!open_) open_ = {t, t};
+    open_->end = t;
+  }
+  void end() {
+    if (open_ && open_->end - open_->begin > kSilentAfter) spans_.push_back(*open_);
+    open_.reset();
+  }
+  std::vector<TimeSpan> take() {
+    end();
+    return std::move(spans_);
+  }
+
+ private:
+  std::optional<TimeSpan> open_;
+  std::vector<TimeSpan> spans_;
+};
+
+}  // namespace
+
+double Consistency::silent_s() const {
+  double sum = 0.0;
+  for (const TimeSpan& span : silent) sum += to_seconds(span.end - span.begin);
+  return sum;
+}
+
+Consistency check_consistency(const Trajectory& truth, const std::vector<ClaimedPose>& claims) {
+  Trajectory estimate;
+  for (const ClaimedPose& claim : claims) estimate.push_back({claim.t, claim.T_W_B});
+  Consistency result;
+  Sum position, rotation;
+  Spans silent;
+  std::optional<SE3> T_Wtrue_W;
+  int start = 0;
+  auto claim = claims.begin();
+  for (const PosePair& pair : associate(truth, estimate).pairs) {
+    while (claim->t != pair.t) ++claim;
+    if (T_Wtrue_W && claim->start != start) T_Wtrue_W.reset(), silent.end();
+    if (!T_Wtrue_W) {
+      if (!claim->good) continue;
+      T_Wtrue_W = gauge(pair.truth, pair.estimate);
+      start = claim->start;
+      ++result.starts;
+    }
+    const SE3 T_W_B = *T_Wtrue_W * pair.estimate;
+    const Eigen::Matrix3d R = T_Wtrue_W->R();
+    const bool position_believable =
+        position.add(pair.truth.translation() - T_W_B.translation(), R * claim->position * R.transpose());
+    const bool rotation_believable =
+        rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()), claim->rotation);
+    silent.add(pair.t, claim->good && !(position_believable && rotation_believable));
+    ++result.poses;
+  }
+  result.position = position.mean();
+  result.rotation = rotation.mean();
+  result.silent = silent.take();
+  return result;
+}
+
+}  // namespace edged

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/consistency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+
+#include "edged/eval/test_trajectories.hpp"
+
+namespace edged {
+namespace {
+
+const SE3 kGauge(so3::exp({0.0, 0.0, 0.8}), Eigen::Vector3d(3.0, -2.0, 1.0));
+
+Eigen::Matrix3d covariance(const Eigen::Vector3d& sigmas, const Eigen::Vector3d& turn) {
+  const Eigen::Matrix3d R = so3::exp(turn).toRotationMatrix();
+  return R * sigmas.cwiseAbs2().asDiagonal() * R.transpose();
+}
+const Eigen::Matrix3d kPosition = covariance({0.01, 0.02, 0.05}, {0.3, -0.2, 0.5});
+const Eigen::Matrix3d kRotation = covariance({0.002, 0.004, 0.01}, {-0.1, 0.4, 0.2});
+
+/// Poses that are off by normal errors of these covariances times `factor`, in another world; the first is exact.
+std::vector<ClaimedPose> claims_of(const Trajectory& truth, double factor = 1.0, const SE3& T_W_Wtrue = kGauge) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](const Eigen::Matrix3d& P) {
+    const Eigen::Vector3d white(normal(engine), normal(engine), normal(engine));
+    return Eigen::Vector3d(P.llt().matrixL() * (factor * white));
+  };
+  const Eigen::Matrix3d R = T_W_Wtrue.R();
+  std::vector<ClaimedPose> claims;
+  for (const StampedPose& pose : truth) {
+    const Eigen::Vector3d p = pose.T.translation() - draw(kPosition);
+    const Eigen::Quaterniond q = pose.T.rotation() * so3::exp(-draw(kRotation));
+    const SE3 T = claims.empty() ? pose.T : SE3(q, p);
+    claims.push_back({pose.t, T_W_Wtrue * T, R * kPosition * R.transpose(), kRotation});
+  }
+  return claims;
+}
+
+TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) {
+  const Trajectory truth = winding_motion(200.0);
+  const Consistency found = check_consistency(truth, claims_of(truth));
+  EXPECT_EQ(found.poses, truth.size());
+  EXPECT_EQ(found.starts, 1U);
+  for (const NormalizedErrors& errors : {found.position, found.rotation}) {
+    EXPECT_NEAR(errors.mean_nees, 3.0, 0.1);  // sqrt(6 / 10000) = 0.025 by chance
+    EXPECT_NEAR(errors.within, 0.9973, 0.002);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(errors.axes_within[i], 0.9973, 0.002);
+  }
+  EXPECT_TRUE(found.silent.empty());
+}
+
+TEST(Consistency, ErrorsTwiceAsLargeAsClaimedAreFourTimesTheMean) {
+  const Trajectory truth = winding_motion(200.0);
+  const Consistency found = check_consistency(truth, claims_of(truth, 2.0));
+  EXPECT_NEAR(found.position.mean_nees, 12.0, 0.4);
+  EXPECT_NEAR(found.rotation.mean_nees, 12.0, 0.4);
+  EXPECT_LT(found.position.within, 0.75);
+  EXPECT_LT(found.position.axes_within.maxCoeff(), 0.9);
+}
+
+/// Poses from from_s to to_s after the first, moved by d in the world.
+std::vector<ClaimedPose> shifted(std::vector<ClaimedPose> claims, double from_s, double to_s,
+                                 const Eigen::Vector3d& d) {
+  const Timestamp first = claims.front().t;
+  for (ClaimedPose& claim : claims)
+    if (const double s = to_seconds(claim.t - first); s >= from_s && s < to_s) claim.T_W_B.translation() += d;
+  return claims;
+}
+
+TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) {
+  const Trajectory truth = winding_motion(20.0);
+  const std::vector<ClaimedPose> claims = claims_of(truth);
+  const Eigen::Vector3d far(0.5, 0.5, 0.5);
+  EXPECT_TRUE(check_consistency(truth, shifted(claims, 5.0, 5.45, far)).silent.empty());
+  const Consistency found = check_consistency(truth, shifted(claims, 5.0, 8.0, far));
+  ASSERT_EQ(found.silent.size(), 1U);
+  EXPECT_NEAR(to_seconds(found.silent[0].begin), 105.0, 0.021);
+  EXPECT_NEAR(found.silent_s(), 3.0, 0.041);
+}
+
+TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
+  const Trajectory truth = winding_motion(20.0);
+  std::vector<ClaimedPose> claims = shifted(claims_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});
+  for (ClaimedPose& claim : claims) claim.good = claim.t < timestamp_from_seconds(105.0);
+  const Consistency found = check_consistency(truth, claims);
+  EXPECT_TRUE(found.silent.empty());
+  EXPECT_NEAR(found.position.within, 1.0 - 3.0 / 20.0, 0.01);
+}
+
+TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
+  const Trajectory truth = winding_motion(20.0);
+  std::vector<ClaimedPose> claims = claims_of(truth);
+  const SE3 jump(so3::exp({0.0, 0.0, -0.5}), Eigen::Vector3d(1.0, 0.0, 0.0));
+  const std::size_t half = claims.size() / 2;
+  for (std::size_t i = half; i < claims.size(); ++i) {
+    claims[i].T_W_B = jump * (i == half ? kGauge * truth[i].T : claims[i].T_W_B);
+    claims[i].position = jump.R() * claims[i].position * jump.R().transpose();
+  }
+  EXPECT_GT(check_consistency(truth, claims).silent_s(), 9.0);
+  for (std::size_t i = half; i < claims.size(); ++i) claims[i].start = 1;
+  const Consistency found = check_consistency(truth, claims);
+  EXPECT_EQ(found.starts, 2U);
+  EXPECT_TRUE(found.silent.empty());
+  EXPECT_NEAR(found.position.mean_nees, 3.0, 0.3);
+}
+
+TEST(Consistency, WhatIsNotYetGoodAtAStartIsLeftOut) {
+  const Trajectory truth = winding_motion(20.0);
+  std::vector<ClaimedPose> claims = claims_of(truth);
+  for (std::size_t i = 0; i < 100; ++i) claims[i].good = false;
+  claims[100].T_W_B = kGauge * truth[100].T;
+  EXPECT_EQ(check_consistency(truth, claims).poses, claims.size() - 100);
+  for (ClaimedPose& claim : claims) claim.good = false;
+  EXPECT_EQ(check_consistency(truth, claims).poses, 0U);
+}
+
+}  // namespace
+}  // namespace edged
