@@ -13,10 +13,10 @@
 
 #include "config_source.hpp"
 #include "edged/core/check.hpp"
+#include "edged/live/live_source.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
-#include "live_clock.hpp"
 #include "log.hpp"
 #include "overview.hpp"
 #include "run_folder.hpp"
@@ -52,7 +52,7 @@ class Run {
   void process_ready_packets();
   void show_status(Timestamp now, const OdometryOutput& output);
   RunSummary summarize();
-  void write_overview(const RunSummary& summary, const std::optional<GroundTruth>& truth) const;
+  void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
   const RunOptions& options_;
   Source source_;
@@ -62,12 +62,13 @@ class Run {
   StageTimings program_timings_;
   Packetizer packetizer_;
   Odometry odometry_;
+  QueueConfig queue_config_;
   std::optional<RunWriter> writer_;
   RunStatistics statistics_;
   LiveliestMoment moment_;
   StatusLine status_line_;
   ResourceMeter meter_;
-  std::optional<LiveClock> live_;
+  std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
   bool broken_off_ = false;  ///< an error ended the run
 };
 
@@ -118,14 +119,14 @@ Run::Run(const RunOptions& options, Source source, const OdometryConfig& config)
       packetizer_(source_.calibration.rig, mode_, config.packets),
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config,
                 options.live ? Inference::OwnThread : Inference::Synchronous),
+      queue_config_(config.live),
       status_line_(options.quiet) {
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
-  if (options.live) live_.emplace();
   make_run_folder(folder_);
-  write_text_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
-  write_text_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
+  write_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
+  write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
   attach_log_file(folder_ / "run.log");
   spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
   spdlog::info("{}", describe(source_.calibration));
@@ -187,7 +188,8 @@ void Run::show_status(Timestamp now, const OdometryOutput& output) {
 }
 
 std::optional<Measurement> Run::read() {
-  const auto timer = program_timings_.measure(source_.seed ? "simulate" : "read");
+  const auto timer = program_timings_.measure(live_ ? "wait" : source_.seed ? "simulate" : "read");
+  if (live_) return live_->next();
   // The price of making up a recording is no part of what it costs to estimate one.
   if (source_.seed) return meter_.without([this] { return source_.dataset->next(); });
   return source_.dataset->next();
@@ -201,7 +203,6 @@ void Run::process_recording() {
       process_ready_packets();
       break;
     }
-    if (live_) live_->wait_for(last_stamp(*measurement));
     take(std::move(*measurement));
     process_ready_packets();
   }
@@ -210,6 +211,7 @@ void Run::process_recording() {
 RunSummary Run::go() {
   catch_interrupts();
   meter_ = ResourceMeter();
+  if (options_.live) live_.emplace(*source_.dataset, queue_config_, [] { return interrupt_signal() != 0; });
   try {
     process_recording();
   } catch (const std::exception& e) {
@@ -255,7 +257,7 @@ std::string run_status(const RunStatistics& statistics) {
 }
 
 RunSummary Run::summarize() {
-  writer_->flush();
+  if (live_) live_->stop();
   status_line_.clear();
   const DatasetInfo& info = source_.dataset->info();
   RunSummary summary;
@@ -270,36 +272,41 @@ RunSummary Run::summarize() {
   summary.status = broken_off_ ? "broken off" : run_status(statistics_);
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
-  if (live_) summary.latency = Latency{live_->median_latency_s(), live_->worst_latency_s()};
+  if (live_)
+    summary.live = LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
-  if (truth && writer_->poses() > 0) evaluate_run(summary, writer_->body(), source_.calibration.rig, *truth);
+  const Trajectory body = read_body(folder_);
+  if (truth && !body.empty()) evaluate_run(summary, body, source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
-  write_text_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
-  write_text_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
-  write_overview(summary, truth);
+  write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
+  write_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
+  write_overview(summary, body, truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   return summary;
 }
 
-void Run::write_overview(const RunSummary& summary, const std::optional<GroundTruth>& truth) const {
+void Run::write_overview(const RunSummary& summary, const Trajectory& body,
+                         const std::optional<GroundTruth>& truth) const {
   OverviewContent content;
   content.title = fmt::format("{}, {}", summary.recording, summary.mode);
   content.moment = moment_;
-  content.estimate = writer_->body();
+  content.estimate = body;
   if (summary.evaluation) {
     const Evaluation& e = *summary.evaluation;
     content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
-    content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(writer_->body());
+    content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(body);
     for (const StampedPose& pose : truth->trajectory) {
       if (pose.t >= content.estimate.front().t && pose.t <= content.estimate.back().t) {
         content.truth.push_back({pose.t, e.alignment.T.inverse() * pose.T});
       }
     }
   }
-  cv::imwrite((folder_ / "overview.png").string(), draw_overview(content));
+  std::vector<unsigned char> png;
+  cv::imencode(".png", draw_overview(content), png);
+  write_file(folder_ / "overview.png", std::string(png.begin(), png.end()));
 }
 
 int run(const RunOptions& options) {
@@ -333,7 +340,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   run_app->add_option("--out", options->out, "Run folder; an earlier run there is replaced [runs/NAME-MODE]");
   run_app->add_flag(
       "--live", options->live,
-      "At the recording's own speed, the depth network in a thread of its own; not repeatable to the bit");
+      "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest events (live.*); the "
+      "depth network in a thread of its own; not repeatable to the bit");
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as json");
   run_app->footer(

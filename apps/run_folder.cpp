@@ -8,11 +8,10 @@
 #include <system_error>
 
 #include "edged/core/check.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
-
-constexpr std::size_t kPacketsPerFlush = 30;
 
 // The first is written before anything else and marks a folder as a run's.
 constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "trajectory.tum",
@@ -24,6 +23,9 @@ constexpr const char* kStatesHeader =
     "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
     "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
+
+/// Where a file is until it is complete.
+std::filesystem::path part_of(std::filesystem::path file) { return file += ".part"; }
 
 std::ofstream open_for_writing(const std::filesystem::path& file) {
   std::ofstream out(file);
@@ -79,13 +81,18 @@ void make_run_folder(const std::filesystem::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
-  for (const char* file : kRunFiles) fs::remove(folder / file);
+  for (const char* file : kRunFiles) {
+    fs::remove(folder / file);
+    fs::remove(part_of(folder / file));
+  }
 }
 
-void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out = open_for_writing(file);
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path part = part_of(file);
+  std::ofstream out = open_for_writing(part);
   out << text;
   if (!out.flush()) throw InputError::format("{}: cannot be written; is the disk full?", file.string());
+  std::filesystem::rename(part, file);
 }
 
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program) {
@@ -118,19 +125,30 @@ RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& fra
 void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
   states_ << state_line(packet, output);
   if (output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded) {
-    body_.push_back({packet, output.state.T_W_B});
-    const StampedPose pose = frame_(body_.back());
+    ++poses_;
+    const StampedPose pose = frame_({packet, output.state.T_W_B});
     tum_.add(pose);
     euroc_.add(pose);
   }
-  if (++unflushed_ >= kPacketsPerFlush) flush();
-}
-
-void RunWriter::flush() {
+  // Each line goes out by itself: a buffer that is left to fill up ends within one, and there a kill would leave it.
   tum_.flush();
   euroc_.flush();
   states_.flush();
-  unflushed_ = 0;
+}
+
+Trajectory read_body(const std::filesystem::path& folder) {
+  Trajectory body;
+  std::ifstream states(folder / "states.csv");
+  for (std::string line; std::getline(states, line);) {
+    FieldReader fields(line);
+    const auto t = parse_nanoseconds(fields.next());
+    const std::string_view status = fields.next();
+    const bool is_pose = status == to_string(TrackingStatus::Good) || status == to_string(TrackingStatus::Degraded);
+    std::array<double, 7> v;
+    if (!t || !is_pose || !read_numbers(fields, v)) continue;
+    body.push_back({*t, SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]))});
+  }
+  return body;
 }
 
 }  // namespace edged

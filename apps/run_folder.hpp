@@ -19,13 +19,14 @@ namespace edged {
 /// something else: a file, or a folder that holds things but no run.
 void make_run_folder(const std::filesystem::path& folder);
 
-/// Replaces the file. Throws InputError when it cannot be written.
-void write_text_file(const std::filesystem::path& file, const std::string& text);
+/// Replaces the file, at once: whoever reads it or ends the program meanwhile finds the old one or the new one. Throws
+/// InputError when it cannot be written.
+void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// Count, mean, p50, p95, p99 and total of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
 
-/// trajectory.tum, trajectory_euroc.csv and states.csv, flushed about once a second of packets.
+/// trajectory.tum, trajectory_euroc.csv and states.csv: complete lines up to the last packet, whenever the program ends.
 class RunWriter {
  public:
   /// comments head the trajectory files.
@@ -34,19 +35,18 @@ class RunWriter {
   /// Every packet becomes a line of states.csv, with pose and motion unless Initializing; Good and Degraded ones become
   /// poses.
   void add(Timestamp packet, const OdometryOutput& output);
-  void flush();
 
-  std::size_t poses() const { return body_.size(); }
-  /// T_W_B on the IMU clock of the poses written.
-  const Trajectory& body() const { return body_; }
+  std::size_t poses() const { return poses_; }
 
  private:
   OutputFrame frame_;
   TrajectoryWriter tum_;
   TrajectoryWriter euroc_;
   std::ofstream states_;
-  Trajectory body_;
-  std::size_t unflushed_ = 0;
+  std::size_t poses_ = 0;
 };
+
+/// T_W_B on the IMU clock of the poses that were written into the folder: a run need not hold them.
+Trajectory read_body(const std::filesystem::path& folder);
 
 }  // namespace edged

@@ -82,6 +82,29 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
   for (std::size_t i = 2; i < states.size(); ++i) EXPECT_EQ(columns(states[i]), columns(states[1])) << states[i];
 }
 
+TEST_F(RunFolder, GivesTheBodysPosesBack) {
+  make_run_folder(folder);
+  Trajectory written;
+  {
+    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    OdometryOutput output;
+    for (int i = 0; i < 20; ++i) {
+      output.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      output.state.T_W_B = SE3(so3::exp({0.1 * i, 0.3, -0.2 * i}), Eigen::Vector3d(i / 3.0, 1e-7 * i, -7.0));
+      writer.add(timestamp_from_seconds(1e9 + i / 7.0), output);
+      if (output.status == TrackingStatus::Good)
+        written.push_back({timestamp_from_seconds(1e9 + i / 7.0), output.state.T_W_B});
+    }
+  }
+  const Trajectory read = read_body(folder);
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].t, written[i].t);
+    EXPECT_EQ(read[i].T.translation(), written[i].T.translation());
+    EXPECT_LT(so3::log(read[i].T.rotation().conjugate() * written[i].T.rotation()).norm(), 1e-15);
+  }
+}
+
 TEST(TimingJson, ListsEveryStage) {
   StageTimings pipeline, program;
   { const auto scope = pipeline.measure("warp"); }

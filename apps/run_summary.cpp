@@ -42,6 +42,32 @@ nlohmann::ordered_json accuracy_json(const std::optional<Evaluation>& e) {
           {"scale", field([](const Evaluation& v) { return v.scale; })}};
 }
 
+nlohmann::ordered_json live_json(const LiveSummary& live) {
+  const QueuePeaks& peaks = live.peaks;
+  return {{"latency_s",
+           {{"p50", live.latency.quantile_s(0.50)},
+            {"p95", live.latency.quantile_s(0.95)},
+            {"p99", live.latency.quantile_s(0.99)},
+            {"max", live.latency.max_s()}}},
+          {"shed", {{"events", live.shed.events}, {"frames", live.shed.frames}, {"packets", live.shed_packets}}},
+          {"queue_peak",
+           {{"events", peaks.events},
+            {"frames", peaks.frames},
+            {"imu_samples", peaks.imu},
+            {"bytes", peaks.bytes},
+            {"age_s", peaks.age_s}}}};
+}
+
+std::string live_table(const LiveSummary& live) {
+  const StageTiming& latency = live.latency;
+  const bool shed = live.shed != ShedCounters{} || live.shed_packets > 0;
+  return line("latency", fmt::format("{:.1f} ms", 1e3 * latency.quantile_s(0.50)),
+              fmt::format("median; 95 % {:.1f} ms, 99 % {:.1f} ms, worst {:.1f} ms", 1e3 * latency.quantile_s(0.95),
+                          1e3 * latency.quantile_s(0.99), 1e3 * latency.max_s())) +
+         line("left out", shed ? fmt::format("{} events", live.shed.events) : "nothing",
+              shed ? fmt::format("{} frames, {} packets: too slow", live.shed.frames, live.shed_packets) : "");
+}
+
 }  // namespace
 
 void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth) {
@@ -90,7 +116,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   const auto& ln_s = s.statistics.ln_depth_scale();
   json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
-  if (s.latency) json["latency"] = {{"median_s", s.latency->median_s}, {"worst_s", s.latency->worst_s}};
+  if (s.live) json["live"] = live_json(*s.live);
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
   json["repairs"] = s.repairs;
@@ -124,9 +150,7 @@ std::string to_table(const RunSummary& s) {
     table += line("depth source", fmt::format("x {:.3f}", std::exp(ln_s->value)),
                   fmt::format("its depths over the landmarks', +- {:.0f} %", 100.0 * ln_s->sigma));
   }
-  if (s.latency)
-    table += line("latency", fmt::format("{:.1f} ms", 1e3 * s.latency->median_s),
-                  fmt::format("median, worst {:.1f} ms", 1e3 * s.latency->worst_s));
+  if (s.live) table += live_table(*s.live);
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
   return table;
 }

@@ -9,16 +9,21 @@
 #include <string>
 
 #include "edged/core/dataset.hpp"
+#include "edged/core/timing.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
+#include "edged/live/measurement_queue.hpp"
 #include "output_frame.hpp"
 #include "run_statistics.hpp"
 
 namespace edged {
 
-/// From a measurement's due time to its result [s].
-struct Latency {
-  double median_s = 0, worst_s = 0;
+/// How a live run kept up.
+struct LiveSummary {
+  StageTiming latency;           ///< from when a measurement was due to its result
+  ShedCounters shed;             ///< by the queue before the packetizer
+  std::size_t shed_packets = 0;  ///< by the packetizer, while the IMU stayed away
+  QueuePeaks peaks;
 };
 
 struct RunSummary {
@@ -28,7 +33,7 @@ struct RunSummary {
   RunStatistics statistics;
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
-  std::optional<Latency> latency;              ///< of a live run
+  std::optional<LiveSummary> live;
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
   std::optional<Consistency> consistency;      ///< nothing without ground truth

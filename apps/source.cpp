@@ -64,11 +64,4 @@ Source open_source(const SourceOptions& options) {
   return {std::move(simulator), std::move(calibration), config.seed};
 }
 
-std::optional<Timestamp> last_stamp(const Measurement& measurement) {
-  if (const auto* frame = std::get_if<Frame>(&measurement)) return frame->t;
-  if (const auto* sample = std::get_if<ImuSample>(&measurement)) return sample->t;
-  const std::vector<Event>& events = std::get<EventBatch>(measurement).events;
-  return events.empty() ? std::nullopt : std::optional(events.back().t);
-}
-
 }  // namespace edged

@@ -28,7 +28,4 @@ struct Source {
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
 Source open_source(const SourceOptions& options);
 
-/// The stamp of the measurement, of a batch its newest event's; nothing for an empty batch.
-std::optional<Timestamp> last_stamp(const Measurement& measurement);
-
 }  // namespace edged

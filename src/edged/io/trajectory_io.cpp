@@ -108,8 +108,10 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   std::size_t columns = 1;
   while (!fields.next().empty()) ++columns;
   if (columns == 12) return read_kitti(file);
-  const bool whole = parse_nanoseconds(first).has_value() && to_ns(*parse_nanoseconds(first)) > 1'000'000'000'000;
-  if (columns >= 8 && whole) return read_euroc_csv(file);
+  // Whole numbers are nanoseconds where commas say csv, or where no clock counts so many seconds.
+  const auto whole = parse_nanoseconds(first);
+  const bool commas = line->text.find(',') != std::string_view::npos;
+  if (columns >= 8 && whole && (commas || to_ns(*whole) > 1'000'000'000'000)) return read_euroc_csv(file);
   if (columns == 8) return read_tum(file);
   throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12",
                            file.string(), line->number, columns);

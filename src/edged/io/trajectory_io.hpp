@@ -28,7 +28,7 @@ Trajectory read_euroc_csv(const std::filesystem::path& file, const DamageHandler
 /// KITTI: 12 numbers of [R | t], row by row; the index of the pose counts as seconds. Damage as read_tum.
 Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
-/// Any of the three, told apart by the number of columns and by the stamps (whole numbers: EuRoC).
+/// Any of the three, told apart by the number of columns, by the stamps and by commas (whole numbers: EuRoC).
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 enum class TrajectoryFormat { Tum, EurocCsv };

@@ -61,6 +61,13 @@ TEST(TrajectoryIo, KittiLinesAreRowsOfTheMatrix) {
   EXPECT_TRUE((poses[1].T * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(7, 9, 9)));
 }
 
+TEST(TrajectoryIo, AStampBelowAnHourInNanosecondsIsKnownByTheCommas) {
+  TempFolder folder;
+  const std::string csv = "424833000,1,2,3,0.8,0,0,0.6\n466500000,1,2,3,0.8,0,0,0.6\n";
+  expect_same(read_trajectory(folder.write("a.csv", csv)), read_euroc_csv(folder.path() / "a.csv"));
+  expect_same(read_trajectory(folder.write("a.tum", "424833000 1 2 3 0 0 0.6 0.8\n")), read_tum(folder.path() / "a.tum"));
+}
+
 TEST(TrajectoryIo, DamageIsNamedByFileAndLine) {
   TempFolder folder;
   const auto complaint = [&](const std::string& text) {

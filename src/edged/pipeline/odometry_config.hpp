@@ -10,6 +10,7 @@
 #include "edged/events/enhance.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/tracker.hpp"
+#include "edged/live/measurement_queue.hpp"
 #include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/packetizer.hpp"
 
@@ -30,6 +31,7 @@ struct OdometryConfig {
   KeyframeConfig keyframes;
   DepthConfig depth;
   EstimatorConfig estimator;
+  QueueConfig live;                  ///< what may wait in a live run
   double quiet_rate_per_pixel = 1.2; ///< event rate [1/s/px] below which nothing moves in view
   double max_travel_px = 5.0;        ///< image motion by translation over the events of one event frame
   double min_events_per_pixel = 0.1; ///< a packet with fewer events draws no event frame

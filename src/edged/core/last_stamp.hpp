@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// When a measurement was made.
+#pragma once
+
+#include <optional>
+
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// The stamp of the measurement, of a batch its newest event's; nothing for an empty batch.
+inline std::optional<Timestamp> last_stamp(const Measurement& measurement) {
+  if (const auto* frame = std::get_if<Frame>(&measurement)) return frame->t;
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) return sample->t;
+  const std::vector<Event>& events = std::get<EventBatch>(measurement).events;
+  return events.empty() ? std::nullopt : std::optional(events.back().t);
+}
+
+}  // namespace edged

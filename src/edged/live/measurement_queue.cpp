@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/live/measurement_queue.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "edged/core/last_stamp.hpp"
+
+namespace edged {
+namespace {
+
+std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.image.elemSize(); }
+
+template <typename Line>
+std::uint64_t place_of_first(const Line& line) {
+  return line.empty() ? std::numeric_limits<std::uint64_t>::max() : line.front().first;
+}
+
+template <typename Line>
+Measurement take_first(Line& line) {
+  Measurement first = std::move(line.front().second);
+  line.pop_front();
+  return first;
+}
+
+}  // namespace
+
+void QueueConfig::visit(ConfigFields& fields) {
+  fields.add("max_age_s", max_age_s,
+             {"s", 0.001, 3600, "--live: events that have waited longer are left out, oldest first; frames at twice that"});
+  fields.add("max_megabytes", max_megabytes,
+             {"MB", 1, 65536, "--live: events and frames that may wait; beyond, the oldest events are left out"});
+  fields.add("max_imu_samples", max_imu_samples,
+             {"", 1000, 1e9, "--live: IMU samples that may wait; none is left out, with more the reading waits"});
+}
+
+bool MeasurementQueue::push(Measurement measurement) {
+  const bool is_imu = std::holds_alternative<ImuSample>(measurement);
+  const std::optional<Timestamp> stamp = last_stamp(measurement);
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] {
+      return closed_ || !is_imu || imu_.size() < static_cast<std::size_t>(config_.max_imu_samples);
+    });
+    if (closed_) return false;
+    if (!stamp) return true;  // an empty batch
+    newest_ = std::max(newest_, *stamp);
+    add(std::move(measurement));
+    shed_events();
+    shed_frames();
+    note_peaks();
+  }
+  changed_.notify_all();
+  return true;
+}
+
+void MeasurementQueue::add(Measurement measurement) {
+  const std::uint64_t place = next_place_++;
+  if (auto* batch = std::get_if<EventBatch>(&measurement)) {
+    events_ += batch->events.size();
+    batches_.emplace_back(place, std::move(*batch));
+  } else if (auto* frame = std::get_if<Frame>(&measurement)) {
+    frame_bytes_ += bytes_of(*frame);
+    frames_.emplace_back(place, std::move(*frame));
+  } else {
+    imu_.emplace_back(place, std::get<ImuSample>(measurement));
+  }
+}
+
+/// The oldest events that are too old, or too many beside the frames.
+void MeasurementQueue::shed_events() {
+  const std::size_t room = static_cast<std::size_t>(config_.max_megabytes) << 20U;
+  const std::size_t allowed = (room - std::min(room, frame_bytes_)) / sizeof(Event);
+  const Timestamp oldest_allowed = newest_ - duration_from_seconds(config_.max_age_s);
+  while (!batches_.empty()) {
+    std::vector<Event>& events = batches_.front().second.events;
+    const auto young = std::lower_bound(events.begin(), events.end(), oldest_allowed,
+                                        [](const Event& event, Timestamp t) { return event.t < t; });
+    const auto too_many = static_cast<std::ptrdiff_t>(std::min(events_ - std::min(events_, allowed), events.size()));
+    const std::ptrdiff_t n = std::max(young - events.begin(), too_many);
+    if (n == 0) return;
+    events_ -= static_cast<std::size_t>(n);
+    shed_.events += static_cast<std::size_t>(n);
+    events.erase(events.begin(), events.begin() + n);
+    if (!events.empty()) return;
+    batches_.pop_front();
+  }
+}
+
+void MeasurementQueue::shed_frames() {
+  const std::size_t room = static_cast<std::size_t>(config_.max_megabytes) << 20U;
+  const Timestamp oldest_allowed = newest_ - 2 * duration_from_seconds(config_.max_age_s);
+  while (!frames_.empty() && (frames_.front().second.t < oldest_allowed || frame_bytes_ > room)) {
+    frame_bytes_ -= bytes_of(frames_.front().second);
+    ++shed_.frames;
+    frames_.pop_front();
+  }
+}
+
+void MeasurementQueue::note_peaks() {
+  peaks_.events = std::max(peaks_.events, events_);
+  peaks_.frames = std::max(peaks_.frames, frames_.size());
+  peaks_.imu = std::max(peaks_.imu, imu_.size());
+  peaks_.bytes = std::max(peaks_.bytes, events_ * sizeof(Event) + frame_bytes_);
+  if (const auto t = oldest()) peaks_.age_s = std::max(peaks_.age_s, to_seconds(newest_ - *t));
+}
+
+std::optional<Timestamp> MeasurementQueue::oldest() const {
+  if (batches_.empty() && frames_.empty()) return std::nullopt;
+  const Timestamp event = batches_.empty() ? Timestamp::max() : batches_.front().second.events.front().t;
+  return frames_.empty() ? event : std::min(event, frames_.front().second.t);
+}
+
+std::optional<Measurement> MeasurementQueue::pop() {
+  std::optional<Measurement> first;
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || !batches_.empty() || !frames_.empty() || !imu_.empty(); });
+    first = take();
+  }
+  changed_.notify_all();
+  return first;
+}
+
+std::optional<Measurement> MeasurementQueue::take() {
+  const std::uint64_t batch = place_of_first(batches_), frame = place_of_first(frames_), sample = place_of_first(imu_);
+  if (batch < std::min(frame, sample)) {
+    events_ -= batches_.front().second.events.size();
+    return take_first(batches_);
+  }
+  if (frame < sample) {
+    frame_bytes_ -= bytes_of(frames_.front().second);
+    return take_first(frames_);
+  }
+  if (imu_.empty()) return std::nullopt;
+  return take_first(imu_);
+}
+
+void MeasurementQueue::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+void MeasurementQueue::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    batches_.clear();
+    frames_.clear();
+    imu_.clear();
+    events_ = frame_bytes_ = 0;
+  }
+  changed_.notify_all();
+}
+
+ShedCounters MeasurementQueue::shed() const {
+  const std::lock_guard lock(mutex_);
+  return shed_;
+}
+
+QueuePeaks MeasurementQueue::peaks() const {
+  const std::lock_guard lock(mutex_);
+  return peaks_;
+}
+
+}  // namespace edged

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A bounded queue of measurements between the thread that reads the sensors and the one that works on them.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "edged/core/config.hpp"
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// How much may wait.
+struct QueueConfig {
+  double max_age_s = 0.25;       ///< of an event, against the newest measurement; of a frame twice that
+  int max_megabytes = 64;        ///< of events and frames together
+  int max_imu_samples = 200000;  ///< then the sensors wait, as no IMU sample may be lost
+
+  void visit(ConfigFields& fields);
+};
+
+/// Measurements left out because the queue was full.
+struct ShedCounters {
+  std::size_t events = 0, frames = 0;
+  bool operator==(const ShedCounters&) const = default;
+};
+
+/// The most that has waited at any time, each by itself.
+struct QueuePeaks {
+  std::size_t events = 0, frames = 0, imu = 0, bytes = 0;
+  double age_s = 0.0;  ///< of the oldest event or frame
+};
+
+/// First in, first out; when too much waits it sheds, never the IMU. The oldest events go first: they come in excess, and a
+/// late result is worth less than one from fewer events. A frame stands for more than the events of its time and costs
+/// less, so frames go after all events or at twice their age, the oldest first. IMU samples are small and cannot be
+/// replaced: with too many of them push waits.
+///
+/// One thread may push while another pops.
+class MeasurementQueue {
+ public:
+  explicit MeasurementQueue(const QueueConfig& config) : config_(config) {}
+
+  /// False, and nothing taken, after close or interrupt.
+  bool push(Measurement measurement);
+  /// The oldest measurement; waits for one. Nothing when no more will come.
+  std::optional<Measurement> pop();
+
+  /// No more will be pushed; what waits can still be popped.
+  void close();
+  /// Nobody wants any more: what waits is forgotten, and both sides return at once.
+  void interrupt();
+
+  ShedCounters shed() const;
+  QueuePeaks peaks() const;
+
+ private:
+  /// Measurements of one kind with their places in the order of all.
+  template <typename T>
+  using Line = std::deque<std::pair<std::uint64_t, T>>;
+
+  void add(Measurement measurement);
+  void shed_events();
+  void shed_frames();
+  void note_peaks();
+  std::optional<Measurement> take();
+  std::optional<Timestamp> oldest() const;
+
+  const QueueConfig config_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  Line<EventBatch> batches_;  // none empty
+  Line<Frame> frames_;
+  Line<ImuSample> imu_;
+  std::uint64_t next_place_ = 0;
+  std::size_t events_ = 0, frame_bytes_ = 0;
+  Timestamp newest_ = Timestamp::min();
+  ShedCounters shed_;
+  QueuePeaks peaks_;
+  bool closed_ = false;
+};
+
+}  // namespace edged
