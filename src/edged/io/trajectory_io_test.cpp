@@ -64,8 +64,10 @@ TEST(TrajectoryIo, KittiLinesAreRowsOfTheMatrix) {
 TEST(TrajectoryIo, AStampBelowAnHourInNanosecondsIsKnownByTheCommas) {
   TempFolder folder;
   const std::string csv = "424833000,1,2,3,0.8,0,0,0.6\n466500000,1,2,3,0.8,0,0,0.6\n";
-  expect_same(read_trajectory(folder.write("a.csv", csv)), read_euroc_csv(folder.path() / "a.csv"));
-  expect_same(read_trajectory(folder.write("a.tum", "424833000 1 2 3 0 0 0.6 0.8\n")), read_tum(folder.path() / "a.tum"));
+  const auto nanoseconds = folder.write("a.csv", csv);
+  const auto seconds = folder.write("a.tum", "424833000 1 2 3 0 0 0.6 0.8\n");
+  expect_same(read_trajectory(nanoseconds), read_euroc_csv(nanoseconds));
+  expect_same(read_trajectory(seconds), read_tum(seconds));
 }
 
 TEST(TrajectoryIo, DamageIsNamedByFileAndLine) {
