@@ -17,6 +17,7 @@ nlohmann::ordered_json to_json(const Statistics& s) {
 
 nlohmann::ordered_json to_json(const NormalizedErrors& e) {
   return {{"mean_nees", e.mean_nees},
+          {"max_nees", e.max_nees},
           {"within_3_sigma", e.within},
           {"axes_within_3_sigma", {e.axes_within.x(), e.axes_within.y(), e.axes_within.z()}}};
 }

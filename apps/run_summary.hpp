@@ -40,9 +40,8 @@ struct RunSummary {
   std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
 };
 
-/// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their covariances,
-/// in the body's. Leaves the summary without evaluation,
-/// and logs why, where that is not possible.
+/// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
+/// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
 void evaluate_run(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
 
 nlohmann::ordered_json to_json(const RunSummary& summary);

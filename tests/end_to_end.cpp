@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/sim/simulator.hpp"
 #include "output_frame.hpp"
 
 namespace edged {
@@ -54,6 +53,10 @@ Flight simulate_flight(const std::string& preset, int seed, double duration_s) {
   SimulatorConfig config = simulator_preset(preset);
   config.seed = seed;
   config.duration_s = duration_s;
+  return simulate_flight(config);
+}
+
+Flight simulate_flight(const SimulatorConfig& config) {
   Simulator simulator(config);
   return read_flight(simulator, simulator.calibration());
 }

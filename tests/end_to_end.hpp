@@ -12,6 +12,7 @@
 #include "edged/eval/metrics.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/pipeline/odometry.hpp"
+#include "edged/sim/simulator.hpp"
 #include "run_statistics.hpp"
 
 namespace edged {
@@ -24,6 +25,7 @@ struct Flight {
 };
 
 Flight read_flight(Dataset& dataset, const Calibration& calibration);
+Flight simulate_flight(const SimulatorConfig& config);
 Flight simulate_flight(const std::string& preset, int seed, double duration_s);
 
 /// What one run gave.

@@ -3,6 +3,7 @@
 #include "edged/eval/consistency.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -34,6 +35,7 @@ class Sum {
     const bool believable = nees <= kChiSquare;
     ++count_;
     nees_ += nees;
+    max_nees_ = std::max(max_nees_, nees);
     within_ += believable ? 1.0 : 0.0;
     axes_within_ += (sigmas <= 3.0).cast<double>().matrix();
     return believable;
@@ -42,12 +44,12 @@ class Sum {
   NormalizedErrors mean() const {
     if (count_ == 0) return {};
     const double n = static_cast<double>(count_);
-    return {nees_ / n, within_ / n, axes_within_ / n};
+    return {nees_ / n, max_nees_, within_ / n, axes_within_ / n};
   }
 
  private:
   std::size_t count_ = 0;
-  double nees_ = 0.0, within_ = 0.0;
+  double nees_ = 0.0, max_nees_ = 0.0, within_ = 0.0;
   Eigen::Vector3d axes_within_ = Eigen::Vector3d::Zero();
 };
 

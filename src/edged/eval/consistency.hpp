@@ -22,7 +22,8 @@ struct ClaimedPose {
 
 /// A normal error of three dimensions has a mean of 3 and shares of 99.73 %. No share where there are no poses.
 struct NormalizedErrors {
-  double mean_nees = 0.0;                                 ///< e' P^-1 e
+  double mean_nees = 0.0;  ///< e' P^-1 e
+  double max_nees = 0.0;
   double within = 1.0;                                    ///< share of the poses whose NEES is that of 99.73 % or less
   Eigen::Vector3d axes_within = Eigen::Vector3d::Ones();  ///< share within three sigmas on each axis
 };

@@ -47,6 +47,8 @@ TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) 
   EXPECT_EQ(found.starts, 1U);
   for (const NormalizedErrors& errors : {found.position, found.rotation}) {
     EXPECT_NEAR(errors.mean_nees, 3.0, 0.1);  // sqrt(6 / 10000) = 0.025 by chance
+    EXPECT_GT(errors.max_nees, 16.0);
+    EXPECT_LT(errors.max_nees, 30.0);
     EXPECT_NEAR(errors.within, 0.9973, 0.002);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(errors.axes_within[i], 0.9973, 0.002);
   }

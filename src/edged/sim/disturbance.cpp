@@ -5,11 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "edged/sim/light.hpp"
+
 namespace edged {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kCovering_s = 0.06, kSwitching_s = 0.02;
+constexpr double kCovering_s = 0.06;
 constexpr double kStopping_s = 0.5, kTurningRound_s = 1.5;
 constexpr double kShake_hz = 4.0;
 

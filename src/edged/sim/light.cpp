@@ -9,7 +9,6 @@
 namespace edged {
 namespace {
 
-constexpr double kSwitching_s = 0.02;
 constexpr double kPanel_m = 0.3;
 constexpr double kSunWidth_rad = 0.0093;
 

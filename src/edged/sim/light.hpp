@@ -41,7 +41,10 @@ enum class LightingKind { Even, Lamps, Switched, Sun };
 std::optional<Lighting> make_lighting(LightingKind kind, const Eigen::Vector3d& size, double brightness,
                                       double duration_s, Random& random);
 
-/// Share of its power with which the lamp shines; it takes 20 ms from one state to the other. t_s: since the start.
+constexpr double kSwitching_s = 0.02;
+
+/// Share of its power with which the lamp shines; it takes kSwitching_s from one state to the other. t_s: since the
+/// start.
 double lamp_level(const Lamp& lamp, double t_s);
 
 /// Radiance of a white matt surface at p_W with unit normal n_W in the light of the lamp at full power: the cosines to
