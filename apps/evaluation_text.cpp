@@ -46,6 +46,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
       {"duration_s", e.duration_s},
       {"path_length_m", e.path_length_m},
       {"scale", e.scale},
+      {"start_scale", e.start_scale},
       {"ate_rmse_m", e.ate_m.rmse},
       {"mpe_percent", e.mpe_percent},
       {"rotation_deg_per_m", e.rotation_deg_per_m},

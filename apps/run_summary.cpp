@@ -135,7 +135,8 @@ std::string to_table(const RunSummary& s) {
                   fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
                               e.path_length_m));
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
-    table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect");
+    const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);
+    table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);
     if (s.consistency && s.consistency->poses > 0) table += consistency_line(*s.consistency);
   } else {
     table += line("ATE RMSE", "-", "no ground truth to compare with");

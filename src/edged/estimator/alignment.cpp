@@ -20,7 +20,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kMinPairCorners = 10;
 constexpr double kBiasPrior = 0.15;      // [rad/s]
 constexpr double kRayNoise = 5e-3;       // [rad]
-constexpr double kGravity = 9.81;        // [m/s^2]
 
 /// A corner seen in two frames, as rays in the body frame's orientation at each.
 struct RayPair {
@@ -138,93 +137,144 @@ std::map<FeatureId, std::vector<Sight>> gather_tracks(const std::vector<InitFram
   return tracks;
 }
 
-/// Poses relative to the first body frame but for velocity and gravity: p_j = v t_j + g t_j^2 / 2 + alpha_j.
+/// What is unknown once rotations are: first velocity, gravity, both in the first body frame, and accelerometer bias.
+using Start = Eigen::Matrix<double, 9, 1>;
+using StartMatrix = Eigen::Matrix<double, 9, 9>;
+/// Of a track: its point P, then the start.
+using PointAndStart = Eigen::Matrix<double, 12, 1>;
+using PointAndStartMatrix = Eigen::Matrix<double, 12, 12>;
+
+/// Poses relative to the first body frame: p_j = alpha_j + B_j x, x being the start.
 struct RelativeMotion {
   double t = 0.0;
   Matrix3d R = Matrix3d::Identity();
-  Vector3d alpha = Vector3d::Zero(), beta = Vector3d::Zero();  ///< position and velocity from the accelerometer
+  Vector3d alpha = Vector3d::Zero(), beta = Vector3d::Zero();          ///< position and velocity from the accelerometer
+  Matrix3d d_alpha = Matrix3d::Zero(), d_beta = Matrix3d::Zero();      ///< their derivatives by its bias
+
+  Eigen::Matrix<double, 3, 9> d_position() const {
+    Eigen::Matrix<double, 3, 9> B;
+    B << t * Matrix3d::Identity(), 0.5 * t * t * Matrix3d::Identity(), d_alpha;
+    return B;
+  }
+  Vector3d position(const Start& x) const { return alpha + d_position() * x; }
+  Vector3d velocity(const Start& x) const { return beta + x.head<3>() + t * x.segment<3>(3) + d_beta * x.tail<3>(); }
 };
 
-/// Adds one track's equations Pi_j (P - v t_j - g t_j^2/2) = Pi_j (alpha_j + R_j p_B_C) to the normal equations of
-/// (v, g), with P eliminated.
-void add_track(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig, Matrix6d& H,
-               Vector6d& b) {
-  Eigen::Matrix<double, 9, 9> N = Eigen::Matrix<double, 9, 9>::Zero();
-  Eigen::Matrix<double, 9, 1> c = Eigen::Matrix<double, 9, 1>::Zero();
+/// Normal equations H x = b of the start.
+struct StartEquations {
+  StartMatrix H = StartMatrix::Zero();
+  Start b = Start::Zero();
+
+  /// Adds those of a track, its point eliminated.
+  void add(const PointAndStartMatrix& N, const PointAndStart& c) {
+    const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
+    H += N.bottomRightCorner<9, 9>() - N.bottomLeftCorner<9, 3>() * P_P.solve(N.topRightCorner<3, 9>());
+    b += c.tail<9>() - N.bottomLeftCorner<9, 3>() * P_P.solve(c.head<3>());
+  }
+};
+
+/// Adds one track's equations Pi_j (P - p_j) = Pi_j R_j p_B_C.
+void add_track(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig,
+               StartEquations& equations) {
+  PointAndStartMatrix N = PointAndStartMatrix::Zero();
+  PointAndStart c = PointAndStart::Zero();
   for (const Sight& sight : track) {
     const RelativeMotion& m = motion[sight.frame];
     const SE3& T_B_C = rig.cameras[sight.camera].T_B_C;
     Eigen::Matrix<double, 2, 3> pi;
     pi << 1, 0, -sight.point.x(), 0, 1, -sight.point.y();
     pi *= T_B_C.R().transpose() * m.R.transpose();
-    Eigen::Matrix<double, 2, 9> A;
-    A << pi, -m.t * pi, -0.5 * m.t * m.t * pi;
+    Eigen::Matrix<double, 2, 12> A;
+    A << pi, -pi * m.d_position();
     N += A.transpose() * A;
     c += A.transpose() * (pi * (m.alpha + m.R * T_B_C.translation()));
   }
-  const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
-  H += N.bottomRightCorner<6, 6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(N.topRightCorner<3, 6>());
-  b += c.tail<6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(c.head<3>());
+  equations.add(N, c);
 }
 
 /// The pose of a sight's camera in the frame of the first body.
-SE3 camera_pose(const Sight& sight, const std::vector<RelativeMotion>& motion, const Rig& rig, const Vector6d& v_g) {
+SE3 camera_pose(const Sight& sight, const std::vector<RelativeMotion>& motion, const Rig& rig, const Start& x) {
   const RelativeMotion& m = motion[sight.frame];
-  return SE3(m.R, m.t * v_g.head<3>() + 0.5 * m.t * m.t * v_g.tail<3>() + m.alpha) * rig.cameras[sight.camera].T_B_C;
+  return SE3(m.R, m.position(x)) * rig.cameras[sight.camera].T_B_C;
 }
 
-/// One Gauss-Newton term of the reprojection errors of a track over (v, g), its point at its best place and eliminated.
+/// One Gauss-Newton term of the reprojection errors of a track around x, its point at its best place and eliminated.
 void add_reprojection(const std::vector<Sight>& track, const std::vector<RelativeMotion>& motion, const Rig& rig,
-                      const Vector6d& v_g, Matrix6d& H, Vector6d& b) {
+                      const Start& x, StartEquations& equations) {
   std::vector<View> views;
-  for (const Sight& sight : track) views.push_back({camera_pose(sight, motion, rig, v_g), sight.point});
+  for (const Sight& sight : track) views.push_back({camera_pose(sight, motion, rig, x), sight.point});
   const auto point = triangulate(views, kRayNoise);
   if (!point) return;
-  Eigen::Matrix<double, 9, 9> N = Eigen::Matrix<double, 9, 9>::Zero();
-  Eigen::Matrix<double, 9, 1> c = Eigen::Matrix<double, 9, 1>::Zero();
+  PointAndStartMatrix N = PointAndStartMatrix::Zero();
+  PointAndStart c = PointAndStart::Zero();
   for (std::size_t k = 0; k < track.size(); ++k) {
-    const double t = motion[track[k].frame].t;
     const Vector3d p_C = views[k].T_W_C.inverse() * point->p_W;
     const Eigen::Vector2d seen_now = p_C.hnormalized(), r = (seen_now - track[k].point) / kRayNoise;
     Eigen::Matrix<double, 2, 3> d_r_d_P;
     d_r_d_P << 1, 0, -seen_now.x(), 0, 1, -seen_now.y();
     d_r_d_P *= views[k].T_W_C.R().transpose() / (p_C.z() * kRayNoise);
-    Eigen::Matrix<double, 2, 9> J;
-    J << d_r_d_P, -t * d_r_d_P, -0.5 * t * t * d_r_d_P;
+    Eigen::Matrix<double, 2, 12> J;
+    J << d_r_d_P, -d_r_d_P * motion[track[k].frame].d_position();
     const double weight = r.norm() < 1.5 ? 1.0 : 1.5 / r.norm();  // Huber
     N += weight * J.transpose() * J;
-    c += weight * J.transpose() * r;
+    c -= weight * J.transpose() * r;
   }
-  const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>());
-  H += N.bottomRightCorner<6, 6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(N.topRightCorner<3, 6>());
-  b += c.tail<6>() - N.bottomLeftCorner<6, 3>() * P_P.solve(c.head<3>());
+  equations.add(N, c);
 }
+
+/// The directions in which a start is free: gravity keeps its length.
+Eigen::Matrix<double, 9, 8> free_directions(const Start& x) {
+  const Vector3d up = -x.segment<3>(3).normalized(), tangent = up.unitOrthogonal();
+  Eigen::Matrix<double, 9, 8> free = Eigen::Matrix<double, 9, 8>::Zero();
+  free.topLeftCorner<3, 3>().setIdentity();
+  free.block<3, 1>(3, 3) = tangent;
+  free.block<3, 1>(3, 4) = up.cross(tangent);
+  free.bottomRightCorner<3, 3>().setIdentity();
+  return free;
+}
+
+struct Refined {
+  Start x;
+  StartMatrix covariance;
+};
 
 /// Noise makes the linear solution too small, points too near: what follows minimises the reprojection error itself, |g|
-/// kept.
-Vector6d refine(const std::map<FeatureId, std::vector<Sight>>& tracks, const std::vector<RelativeMotion>& motion,
-                const Rig& rig, Vector6d v_g) {
-  for (int iteration = 0; iteration < 10; ++iteration) {
-    Matrix6d H = Matrix6d::Zero();
-    Vector6d b = Vector6d::Zero();
-    for (const auto& [id, track] : tracks) add_reprojection(track, motion, rig, v_g, H, b);
-    const Vector3d up = -v_g.tail<3>().normalized(), tangent = up.unitOrthogonal();
-    Eigen::Matrix<double, 6, 5> free = Eigen::Matrix<double, 6, 5>::Zero();
-    free.topLeftCorner<3, 3>().setIdentity();
-    free.col(3).tail<3>() = tangent;
-    free.col(4).tail<3>() = up.cross(tangent);
-    const Eigen::Matrix<double, 5, 1> step = (free.transpose() * H * free).ldlt().solve(-free.transpose() * b);
-    if (!step.allFinite()) return v_g;
-    v_g += free * step;
-    v_g.tail<3>() *= kGravity / v_g.tail<3>().norm();
+/// kept, the accelerometer bias held near zero.
+std::optional<Refined> refine(const std::map<FeatureId, std::vector<Sight>>& tracks,
+                              const std::vector<RelativeMotion>& motion, const Rig& rig, Start x, double bias_sigma) {
+  Eigen::Matrix<double, 8, 8> H;
+  Eigen::Matrix<double, 9, 8> free;
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    StartEquations equations;
+    for (const auto& [id, track] : tracks) add_reprojection(track, motion, rig, x, equations);
+    equations.H.bottomRightCorner<3, 3>() += Matrix3d::Identity() / (bias_sigma * bias_sigma);
+    equations.b.tail<3>() -= x.tail<3>() / (bias_sigma * bias_sigma);
+    free = free_directions(x);
+    H = free.transpose() * equations.H * free;
+    const Eigen::Matrix<double, 8, 1> step = H.ldlt().solve(free.transpose() * equations.b);
+    if (!step.allFinite()) return std::nullopt;
+    x += free * step;
+    x.segment<3>(3) *= kGravity / x.segment<3>(3).norm();
     if (step.norm() < 1e-4) break;
   }
-  return v_g;
+  return Refined{x, free * H.inverse() * free.transpose()};
 }
 
-/// min x^T H x - 2 b^T x over x = (v, g) with |g| = kGravity: v is eliminated, g solves (D + lambda I) g = d, the largest
-/// root of |g(lambda)| = kGravity being the global minimum.
-Vector6d solve_with_gravity_length(const Matrix6d& H, const Vector6d& b, double* free_length) {
+/// Standard deviation of the longest baseline over its length.
+double relative_sigma(const Refined& start, const std::vector<RelativeMotion>& motion) {
+  const RelativeMotion& farthest = *std::max_element(motion.begin(), motion.end(), [&](const auto& a, const auto& b) {
+    return a.position(start.x).norm() < b.position(start.x).norm();
+  });
+  const Vector3d way = farthest.position(start.x);
+  const Start d_way = farthest.d_position().transpose() * way;
+  return std::sqrt(d_way.dot(start.covariance * d_way)) / way.squaredNorm();
+}
+
+/// min x^T H x - 2 b^T x over x = (v, g), the bias zero, with |g| = kGravity: v is eliminated, g solves (D + lambda I) g =
+/// d, the largest root of |g(lambda)| = kGravity being the global minimum.
+Start solve_with_gravity_length(const StartEquations& equations, double* free_length) {
+  const Eigen::Matrix<double, 6, 6> H = equations.H.topLeftCorner<6, 6>();
+  const Eigen::Matrix<double, 6, 1> b = equations.b.head<6>();
   const Eigen::LDLT<Matrix3d> H_vv(H.topLeftCorner<3, 3>());
   const Matrix3d D = H.bottomRightCorner<3, 3>() - H.bottomLeftCorner<3, 3>() * H_vv.solve(H.topRightCorner<3, 3>());
   const Vector3d d = b.tail<3>() - H.bottomLeftCorner<3, 3>() * H_vv.solve(b.head<3>());
@@ -239,8 +289,8 @@ Vector6d solve_with_gravity_length(const Matrix6d& H, const Vector6d& b, double*
     (g_of(middle).norm() > kGravity ? low : high) = middle;
   }
   const Vector3d g = eigen.eigenvectors() * g_of(high);
-  Vector6d x;
-  x << H_vv.solve(b.head<3>() - H.topRightCorner<3, 3>() * g), g;
+  Start x;
+  x << H_vv.solve(b.head<3>() - H.topRightCorner<3, 3>() * g), g, Vector3d::Zero();
   return x;
 }
 
@@ -255,6 +305,8 @@ std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames
     next.R = m.R * imu.dR(bg).toRotationMatrix();
     next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, Vector3d::Zero());
     next.beta = m.beta + m.R * imu.dv(bg, Vector3d::Zero());
+    next.d_alpha = m.d_alpha + m.d_beta * imu.dt() + m.R * imu.d_dp_d_ba();
+    next.d_beta = m.d_beta + m.R * imu.d_dv_d_ba();
     motion.push_back(next);
   }
   return motion;
@@ -277,31 +329,33 @@ std::optional<Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, co
   return bg;
 }
 
-std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise) {
+std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
+                               double accel_bias_sigma) {
   const std::optional<Vector3d> bg = align_gyro_bias(frames, rig, noise);
   if (!bg) return std::nullopt;
   const std::vector<RelativeMotion> motion = relative_motion(frames, *bg, noise);
   const auto tracks = gather_tracks(frames, rig);
   if (tracks.size() < kMinPairCorners) return std::nullopt;
 
-  Matrix6d H = Matrix6d::Zero();
-  Vector6d b = Vector6d::Zero();
-  for (const auto& [id, track] : tracks) add_track(track, motion, rig, H, b);
+  StartEquations equations;
+  for (const auto& [id, track] : tracks) add_track(track, motion, rig, equations);
   double free_length = 0.0;
-  const Vector6d linear = solve_with_gravity_length(H, b, &free_length);
+  const Start linear = solve_with_gravity_length(equations, &free_length);
   if (!linear.allFinite()) return std::nullopt;
-  const Vector6d v_g = refine(tracks, motion, rig, linear);
-  const Vector3d v = v_g.head<3>(), g = v_g.tail<3>();
-  const SE3 T_W_B0(Eigen::Quaterniond::FromTwoVectors(-g, Vector3d::UnitZ()), Vector3d::Zero());
+  const std::optional<Refined> start = refine(tracks, motion, rig, linear, accel_bias_sigma);
+  if (!start) return std::nullopt;
+  const Start& x = start->x;
+  const SE3 T_W_B0(Eigen::Quaterniond::FromTwoVectors(-x.segment<3>(3), Vector3d::UnitZ()), Vector3d::Zero());
   Alignment result;
   result.gravity_error = free_length / kGravity - 1.0;
+  result.scale_sigma = relative_sigma(*start, motion);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const RelativeMotion& m = motion[i];
     NavState state;
     state.t = frames[i].t;
-    state.T_W_B = T_W_B0 * SE3(m.R, v * m.t + 0.5 * m.t * m.t * g + m.alpha);
-    state.v_W = T_W_B0.rotation() * (v + g * m.t + m.beta);
+    state.T_W_B = T_W_B0 * SE3(motion[i].R, motion[i].position(x));
+    state.v_W = T_W_B0.rotation() * motion[i].velocity(x);
     state.bias_gyro = *bg;
+    state.bias_accel = x.tail<3>();
     result.states.push_back(state);
   }
   return result;

@@ -8,7 +8,8 @@
 // 2. With rotations known, landmark positions, the first velocity and gravity are linear in the rays (Martinelli,
 //    "Closed-form solution of visual-inertial structure from motion", IJCV 2014); landmarks are eliminated one by one,
 //    and the length of gravity is imposed exactly. The scale is metric from the start.
-// 3. Corner noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow.
+// 3. Corner noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow, over
+//    the accelerometer bias too. Their normal equations tell how well the scale is known.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,8 @@
 
 namespace edged {
 
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
 /// One view of the start-up buffer.
 struct InitFrame {
   Timestamp t;
@@ -33,14 +36,17 @@ struct InitFrame {
 struct Alignment {
   std::vector<NavState> states;  ///< one a frame; W z-up, origin and yaw at the first body pose
   double gravity_error = 0.0;    ///< |g| found without imposing it, relative to 9.81: a measure of trust
+  double scale_sigma = 0.0;      ///< standard deviation of the longest baseline over its length, as the corners tell it
 };
 
 /// Gyro bias [rad/s] that best explains the image rotation; nothing with too few common corners.
 std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, const Rig& rig,
                                                const ImuNoise& noise);
 
-/// States of all frames. Nothing when the linear system is not determined (too few tracks, no translation).
-std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
+/// States of all frames. accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2]. Nothing when the
+/// linear system is not determined (too few tracks, no translation).
+std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
+                               double accel_bias_sigma);
 
 /// Median angle between the rays of the newest view's corners and their rays in the oldest view that shows enough of
 /// them, rotation taken out with the gyro [rad]; zero when no view does.

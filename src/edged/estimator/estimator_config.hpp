@@ -21,9 +21,11 @@ struct EstimatorConfig {
   double accel_bias_sigma = 0.15;
   double zero_velocity_sigma = 0.01;
   double init_spacing_s = 0.08;    ///< between the views of the start-up buffer
-  int init_min_views = 12;         ///< fewer views do not separate scale from accelerometer bias
-  int init_max_views = 20;         ///< the buffer's length: slow motion needs the time
-  double init_parallax_deg = 2.5;
+  int init_min_views = 8;
+  int init_max_views = 20;
+  double init_max_span_s = 7.0;    ///< tracks last, and biases stay, for so long
+  double init_parallax_deg = 1.5;
+  double init_scale_sigma = 0.08;  ///< of ln scale; a wrong start of too large a scale passes more easily
   double noise_gain = 0.05;        ///< adaptation of each camera's noise to its residuals, a packet
   double noise_inflation = 2.5;    ///< sigma over the spread of the residuals: their errors last from image to image
   double min_noise_scale = 0.3;    ///< bounds of the adapted noise over the configured one

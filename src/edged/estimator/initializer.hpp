@@ -33,14 +33,18 @@ class Initializer {
  private:
   bool buffer_view(const EstimatorInput& input);
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
-  std::optional<Window> start_in_motion() const;
+  void make_room();
+  StartResult start_in_motion() const;
   Window aligned_window(const Alignment& alignment) const;
+  std::string doubt_about(Window& window) const;
+  std::string scale_text(double sigma) const;
 
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
   std::vector<InitFrame> buffer_;       ///< views
   std::vector<ImuSample> pending_imu_;  ///< since the last view
+  std::string motion_lacks_ = "corners to follow";  ///< what kept the last view from starting in motion
 };
 
 }  // namespace edged

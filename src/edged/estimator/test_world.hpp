@@ -3,7 +3,9 @@
 // A world of points, an analytic motion and the exact measurements of both: the truth the estimator is tested against.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -16,7 +18,12 @@ struct TestWorldOptions {
   double rest_s = 0.0;          ///< at the beginning
   int cameras = 1;              ///< 2: one more, "events", turned and shifted against "frames"
   double speed = 1.0;           ///< scales the amplitude of the motion; 0: rotation only
+  double turn = 1.0;            ///< scales the amplitude of the rotation
+  double tempo = 1.0;           ///< how fast the motion runs
+  double turn_only_s = 0.0;     ///< no translation before this, at full speed a second later
+  double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
   double pixel_noise = 0.5;     ///< [px]
+  double pixel_walk = 0.0;      ///< [px/sqrt(s)] how fast tracks drift from their points
   double imu_noise = 1.0;       ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
@@ -35,8 +42,9 @@ class TestWorld {
     }
     noise_.gyro_noise = 2e-4;
     noise_.accel_noise = 4e-3;
+    const double side = options_.far_m;
     for (int i = 0; i < 600; ++i) {
-      points_W_.emplace_back(uniform(-4, 4), uniform(-4, 4), uniform(1.5, 4));
+      points_W_.emplace_back(uniform(-side, side), uniform(-side, side), uniform(options_.near_m, options_.far_m));
     }
   }
 
@@ -47,7 +55,7 @@ class TestWorld {
   SE3 T_W_B(double t) const {
     const double s = motion_time(t);
     const Eigen::Vector3d phi(0.2 * std::sin(1.3 * s), 0.25 * std::sin(0.9 * s), 0.3 * std::sin(0.7 * s));
-    return {so3::exp(phi), position(s)};
+    return {so3::exp(options_.turn * phi), smooth_step(t - options_.turn_only_s) * position(s)};
   }
 
   Eigen::Vector3d v_W(double t) const { return (T_W_B(t + 1e-5).translation() - T_W_B(t - 1e-5).translation()) / 2e-5; }
@@ -78,9 +86,11 @@ class TestWorld {
       const Eigen::Vector3d p_C = T_C_W * points_W_[i];
       const auto pixel = camera.model.project(p_C);
       if (!pixel || !camera.model.contains(*pixel)) continue;
-      const Eigen::Vector2d noise(normal(), normal());
-      out.features.push_back(
-          {i + 1 + 1000 * camera_index, p_C.hnormalized() + options_.pixel_noise / 200.0 * noise, 1.0 / 200.0});
+      const FeatureId id = i + 1 + 1000 * camera_index;
+      Eigen::Vector2d noise(normal(), normal());
+      noise *= options_.pixel_noise;
+      if (options_.pixel_walk > 0.0) noise += drifted(id, t);
+      out.features.push_back({id, p_C.hnormalized() + noise / 200.0, 1.0 / 200.0});
     }
     return out;
   }
@@ -101,9 +111,25 @@ class TestWorld {
  private:
   /// Zero during the rest, then smoothly up to the running time.
   double motion_time(double t) const {
-    const double s = t - options_.rest_s;
+    const double s = options_.tempo * (t - options_.rest_s);
     if (options_.rest_s == 0.0) return s;
     return s <= 0 ? 0.0 : s < 1.0 ? s * s * s * (1.0 - 0.5 * s) : s - 0.5;
+  }
+
+  /// From 0 at t = 0 to 1 a second later. Without turn_only_s the motion is at full speed all the time.
+  double smooth_step(double t) const {
+    if (options_.turn_only_s == 0.0) return 1.0;
+    const double x = std::clamp(t, 0.0, 1.0);
+    return x * x * x * (10.0 + x * (6.0 * x - 15.0));
+  }
+
+  /// How far a track has drifted from its point [px].
+  const Eigen::Vector2d& drifted(FeatureId id, double t) {
+    Drift& drift = drift_[id];
+    const double step = options_.pixel_walk * std::sqrt(std::max(t - drift.t, 0.0));
+    drift.t = t;
+    drift.px += step * Eigen::Vector2d(normal(), normal());
+    return drift.px;
   }
 
   Eigen::Vector3d position(double s) const {
@@ -126,7 +152,13 @@ class TestWorld {
   std::mt19937_64 random_;
   Rig rig_;
   ImuNoise noise_;
+  struct Drift {
+    double t = 0.0;
+    Eigen::Vector2d px = Eigen::Vector2d::Zero();
+  };
+
   std::vector<Eigen::Vector3d> points_W_;
+  std::map<FeatureId, Drift> drift_;
   std::optional<ImuSample> last_imu_;
 };
 

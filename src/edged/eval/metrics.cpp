@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may come late
+constexpr double kStart_s = 5.0;
+constexpr double kLeastStartPath_m = 0.1;  // less says nothing of the scale
 
 double path_length(const std::vector<PosePair>& pairs) {
   double length = 0.0;
@@ -44,6 +46,11 @@ double sim3_scale(const std::vector<PosePair>& pairs) {
   } catch (const InputError&) {
     return std::numeric_limits<double>::quiet_NaN();
   }
+}
+
+double start_scale(const std::vector<PosePair>& pairs) {
+  const std::vector<PosePair> start = within(pairs, {0.0, kStart_s});
+  return path_length(start) < kLeastStartPath_m ? std::numeric_limits<double>::quiet_NaN() : sim3_scale(start);
 }
 
 }  // namespace
@@ -110,6 +117,7 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.path_length_m = path_length(association.pairs);
   result.alignment = align(within(association.pairs, protocol.window), protocol.alignment);
   result.scale = sim3_scale(association.pairs);
+  result.start_scale = start_scale(association.pairs);
 
   const std::vector<PosePair> pairs = aligned(association.pairs, result.alignment);
   std::vector<double> position, rotation, yaw;

@@ -48,6 +48,7 @@ struct Evaluation {
   double path_length_m = 0.0;  ///< of the true poses at the pairs
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate
+  double start_scale = 1.0;  ///< the same over the first 5 s of the estimate; NaN when too little moved to tell
   Statistics ate_m;    ///< position error
   Statistics rotation_deg;              ///< angle between true and aligned rotation
   Statistics yaw_deg;                   ///< size of its part about the world's z

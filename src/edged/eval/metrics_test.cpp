@@ -47,6 +47,24 @@ TEST(Evaluation, PrintsTheScaleEvenWhereItIsNotApplied) {
   EXPECT_LT(evaluate(association, protocol("P4")).ate_m.rmse, 1e-12);
 }
 
+TEST(Evaluation, TellsTheScaleOfTheStartApart) {
+  // Too small by a fifth in the first 5 s, right from there on.
+  const Trajectory truth = winding_motion();
+  Trajectory estimate = truth;
+  Eigen::Vector3d p = truth.front().T.translation();
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const bool start = to_seconds(truth[i].t - truth.front().t) <= 5.0;
+    p += (start ? 0.8 : 1.0) * (truth[i].T.translation() - truth[i - 1].T.translation());
+    estimate[i].T.translation() = p;
+  }
+  EXPECT_NEAR(evaluate(associate(truth, estimate), protocol("P3")).start_scale, 1.25, 1e-9);
+  Trajectory resting = truth;
+  for (StampedPose& pose : resting) {
+    if (to_seconds(pose.t - truth.front().t) < 5.5) pose.T = truth.front().T;
+  }
+  EXPECT_TRUE(std::isnan(evaluate(associate(resting, truth), protocol("P3")).start_scale));
+}
+
 TEST(Evaluation, AlignsOnItsWindowOnly) {
   // Right until 110 s, then off by one metre: a window before the step must leave the step whole.
   const Trajectory truth = winding_motion();

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The start in all the ways a recording can begin, against the truth of the analytic world.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edged/estimator/estimator.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kStep_s = 0.05;
+constexpr double kRadToDeg = 180.0 / std::numbers::pi;
+
+struct Started {
+  double after_s = 0.0;      ///< since the beginning
+  double scale_error = 0.0;  ///< spread of the window's positions over the true one, less one
+  double tilt_deg = 0.0;
+  double speed_error = 0.0, speed = 0.0;  ///< [m/s], in the body frame
+};
+
+double spread(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
+  double sum = 0.0;
+  for (const Eigen::Vector3d& p : points) sum += (p - mean).squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// Runs the estimator from begin_s until it starts; nothing when it does not within patience_s.
+std::optional<Started> start(const TestWorldOptions& options, double begin_s, double patience_s,
+                             std::vector<std::string>* waited_for = nullptr) {
+  TestWorld world(options);
+  Estimator estimator(world.rig(), world.noise(), {});
+  for (int i = 1; i * kStep_s <= patience_s; ++i) {
+    const double t = begin_s + i * kStep_s;
+    const EstimatorResult result = estimator.add(world.packet(t, kStep_s, i % 4 == 0));
+    if (!estimator.initialized()) {
+      if (waited_for != nullptr) waited_for->push_back(result.waiting_for);
+      continue;
+    }
+    Started started;
+    started.after_s = i * kStep_s;
+    std::vector<Eigen::Vector3d> estimated, truth;
+    for (const auto& [id, state] : estimator.window().states) {
+      estimated.push_back(state.T_W_B().translation());
+      truth.push_back(world.T_W_B(to_seconds(state.t)).translation());
+    }
+    started.scale_error = spread(truth) > 1e-6 ? spread(estimated) / spread(truth) - 1.0 : 0.0;
+    const NavState state = estimator.newest();
+    const SE3 T_W_B = world.T_W_B(t);
+    started.tilt_deg = kRadToDeg * std::acos(std::min(1.0, state.T_W_B.R().row(2).dot(T_W_B.R().row(2))));
+    started.speed = world.v_W(t).norm();
+    started.speed_error =
+        (state.T_W_B.rotation().conjugate() * state.v_W - T_W_B.rotation().conjugate() * world.v_W(t)).norm();
+    return started;
+  }
+  return std::nullopt;
+}
+
+struct StartCase {
+  std::string name;
+  TestWorldOptions options;
+  double patience_s;
+  bool large_biases = false;  ///< 0.1 rad/s and 0.5 m/s^2 in some direction
+};
+void PrintTo(const StartCase& start, std::ostream* out) { *out << start.name; }
+
+class Start : public testing::TestWithParam<StartCase> {};
+
+TEST_P(Start, IsRightAtEverySeed) {
+  const StartCase& how = GetParam();
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    TestWorldOptions options = how.options;
+    options.seed = seed;
+    const double phase = 0.7 * static_cast<double>(seed);
+    if (how.large_biases) {
+      options.bias_gyro = 0.1 * Eigen::Vector3d(std::cos(phase), std::sin(phase), 0.5).normalized();
+      options.bias_accel = 0.5 * Eigen::Vector3d(0.3, std::cos(2.0 * phase), std::sin(2.0 * phase)).normalized();
+    }
+    std::vector<std::string> waited_for;
+    const auto started = start(options, options.rest_s > 0.0 ? 0.0 : 1.0 + phase, how.patience_s, &waited_for);
+    ASSERT_TRUE(started.has_value()) << waited_for.back();
+    std::printf("%s %d: after %.2f s, scale %+.3f, tilt %.2f deg, speed %.3f of %.3f m/s off\n", how.name.c_str(),
+                static_cast<int>(seed), started->after_s, started->scale_error, started->tilt_deg, started->speed_error,
+                started->speed);
+    EXPECT_LT(std::abs(started->scale_error), 0.25);
+    EXPECT_LT(started->tilt_deg, 3.5);  // an accelerometer bias of 0.5 m/s^2 is 2.9 deg
+    EXPECT_LT(started->speed_error, 0.25 * started->speed + 0.05);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Initializer, Start,
+    testing::Values(StartCase{"rest", {.rest_s = 1.0}, 1.0}, StartCase{"rest_large_biases", {.rest_s = 1.0}, 1.0, true},
+                    StartCase{"smooth", {}, 3.0}, StartCase{"smooth_drifting_tracks", {.pixel_walk = 0.7}, 3.0},
+                    StartCase{"small", {.speed = 0.3}, 6.0}, StartCase{"slow", {.tempo = 0.4}, 25.0},
+                    StartCase{"aggressive", {.tempo = 2.5}, 1.5}, StartCase{"large_biases", {}, 3.0, true},
+                    StartCase{"near", {.speed = 0.1, .tempo = 2.0, .near_m = 0.2, .far_m = 0.5}, 3.0},
+                    StartCase{"far", {.near_m = 12.0, .far_m = 20.0}, 6.0},
+                    StartCase{"far_and_fast", {.speed = 4.0, .near_m = 12.0, .far_m = 20.0}, 3.0},
+                    StartCase{"without_turning", {.turn = 0.0}, 4.0}, StartCase{"two_cameras", {.cameras = 2}, 3.0}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Initializer, RefusesPureRotationWithNumbers) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (const double pixel_walk : {0.0, 0.7}) {
+      std::vector<std::string> waited_for;
+      EXPECT_FALSE(start({.speed = 0.0, .pixel_walk = pixel_walk, .seed = seed}, 1.0, 8.0, &waited_for));
+      EXPECT_THAT(waited_for.back(), testing::HasSubstr("or parallax 0."));
+      EXPECT_THAT(waited_for.back(), testing::HasSubstr("of 1.50 deg"));
+    }
+  }
+}
+
+TEST(Initializer, StartsOnceTranslationComesAfterRotation) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto started = start({.turn_only_s = 4.0, .seed = seed}, 0.0, 8.0);
+    ASSERT_TRUE(started.has_value());
+    EXPECT_GT(started->after_s, 4.0);
+    EXPECT_LT(started->after_s, 6.0);
+    EXPECT_LT(std::abs(started->scale_error), 0.15);
+  }
+}
+
+TEST(Initializer, WaitsForMotionThatTellsTheScale) {
+  // Much parallax, but next to no acceleration: the accelerometer bias would explain any scale.
+  std::vector<std::string> waited_for;
+  EXPECT_FALSE(start({.tempo = 0.15}, 2.0, 4.0, &waited_for));
+  EXPECT_THAT(waited_for.back(), testing::HasSubstr("motion that tells the scale: known to"));
+  EXPECT_THAT(waited_for.back(), testing::HasSubstr("% wanted"));
+}
+
+TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
+  TestWorld world({.rest_s = 2.0, .pixel_noise = 0.1});
+  Estimator estimator(world.rig(), world.noise(), {});
+  EstimatorResult result;
+  for (int i = 1; i <= 20; ++i) {
+    EstimatorInput input = world.packet(i * kStep_s, kStep_s, true);
+    for (ImuSample& sample : input.imu) sample.accel_B /= 9.81;
+    result = estimator.add(input);
+  }
+  EXPECT_FALSE(estimator.initialized());
+  EXPECT_THAT(result.waiting_for, testing::HasSubstr("it reads 1.0"));
+}
+
+}  // namespace
+}  // namespace edged
