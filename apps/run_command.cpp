@@ -69,7 +69,7 @@ class Run {
   StatusLine status_line_;
   ResourceMeter meter_;
   std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
-  bool broken_off_ = false;  ///< an error ended the run
+  bool broken_off_ = false;         ///< an error ended the run
 };
 
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
@@ -273,12 +273,13 @@ RunSummary Run::summarize() {
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
   if (live_)
-    summary.live = LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};
+    summary.live =
+        LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
   const Trajectory body = read_body(folder_);
-  if (truth && !body.empty()) evaluate_run(summary, body, source_.calibration.rig, *truth);
+  if (truth && !body.empty()) evaluate_run(summary, body, read_claims(folder_), source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
@@ -338,10 +339,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
           "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
       ->capture_default_str();
   run_app->add_option("--out", options->out, "Run folder; an earlier run there is replaced [runs/NAME-MODE]");
-  run_app->add_flag(
-      "--live", options->live,
-      "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest events (live.*); the "
-      "depth network in a thread of its own; not repeatable to the bit");
+  run_app->add_flag("--live", options->live,
+                    "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
+                    "events (live.*); the "
+                    "depth network in a thread of its own; not repeatable to the bit");
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as json");
   run_app->footer(

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "claims.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/text.hpp"
 
@@ -66,6 +68,42 @@ std::string state_line(Timestamp packet, const OdometryOutput& output) {
     line += std::string(12, ',');
   }
   return line + '\n';
+}
+
+std::optional<TrackingStatus> parse_status(std::string_view text) {
+  for (const auto status :
+       {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
+    if (text == to_string(status)) return status;
+  }
+  return std::nullopt;
+}
+
+/// The upper triangle, row by row.
+Eigen::Matrix3d symmetric(const double* v) {
+  Eigen::Matrix3d P;
+  P << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+  return P;
+}
+
+/// Status, pose and covariance of each line that holds a pose, in the order of the file.
+void for_each_state(const std::filesystem::path& folder,
+                    const std::function<void(Timestamp, const OdometryOutput&)>& take) {
+  constexpr int kFieldsBetween = 17;  // motion, biases, counts, depth
+  std::ifstream states(folder / "states.csv");
+  for (std::string line; std::getline(states, line);) {
+    FieldReader fields(line);
+    const auto t = parse_nanoseconds(fields.next());
+    const auto status = parse_status(fields.next());
+    std::array<double, 7> v;
+    if (!t || !status || !read_numbers(fields, v)) continue;
+    OdometryOutput output;
+    output.status = *status;
+    output.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
+    for (int i = 0; i < kFieldsBetween; ++i) fields.next();
+    std::array<double, 12> P;
+    if (read_numbers(fields, P)) output.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
+    take(*t, output);
+  }
 }
 
 }  // namespace
@@ -138,17 +176,18 @@ void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
 
 Trajectory read_body(const std::filesystem::path& folder) {
   Trajectory body;
-  std::ifstream states(folder / "states.csv");
-  for (std::string line; std::getline(states, line);) {
-    FieldReader fields(line);
-    const auto t = parse_nanoseconds(fields.next());
-    const std::string_view status = fields.next();
-    const bool is_pose = status == to_string(TrackingStatus::Good) || status == to_string(TrackingStatus::Degraded);
-    std::array<double, 7> v;
-    if (!t || !is_pose || !read_numbers(fields, v)) continue;
-    body.push_back({*t, SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]))});
-  }
+  for_each_state(folder, [&](Timestamp t, const OdometryOutput& output) {
+    if (output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded) {
+      body.push_back({t, output.state.T_W_B});
+    }
+  });
   return body;
+}
+
+std::vector<ClaimedPose> read_claims(const std::filesystem::path& folder) {
+  Claims claims;
+  for_each_state(folder, [&](Timestamp t, const OdometryOutput& output) { claims.add(t, output); });
+  return claims.all();
 }
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edged/core/timing.hpp"
+#include "edged/eval/consistency.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "output_frame.hpp"
@@ -26,7 +27,8 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 /// Count, mean, p50, p95, p99 and total of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
 
-/// trajectory.tum, trajectory_euroc.csv and states.csv: complete lines up to the last packet, whenever the program ends.
+/// trajectory.tum, trajectory_euroc.csv and states.csv: complete lines up to the last packet, whenever the program
+/// ends.
 class RunWriter {
  public:
   /// comments head the trajectory files.
@@ -48,5 +50,8 @@ class RunWriter {
 
 /// T_W_B on the IMU clock of the poses that were written into the folder: a run need not hold them.
 Trajectory read_body(const std::filesystem::path& folder);
+
+/// The same with their covariances, those that were worked out anew.
+std::vector<ClaimedPose> read_claims(const std::filesystem::path& folder);
 
 }  // namespace edged

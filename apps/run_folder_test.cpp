@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "claims.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -102,6 +103,33 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
     EXPECT_EQ(read[i].t, written[i].t);
     EXPECT_EQ(read[i].T.translation(), written[i].T.translation());
     EXPECT_LT(so3::log(read[i].T.rotation().conjugate() * written[i].T.rotation()).norm(), 1e-15);
+  }
+}
+
+TEST_F(RunFolder, GivesTheCovariancesBack) {
+  make_run_folder(folder);
+  Claims claims;
+  {
+    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    OdometryOutput output;
+    for (int i = 0; i < 20; ++i) {
+      output.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      output.covariance.reset();
+      Eigen::Matrix3d P;
+      P << 1.0, 0.1, 0.2, 0.1, 2.0 + i, 0.3, 0.2, 0.3, 3.0 / 7.0;
+      if (i > 4 && i != 9) output.covariance = {P, 0.1 * P};
+      if (i % 3 == 0) output.ln_depth_scale = LogScale{0.1, 0.2};
+      writer.add(timestamp_from_seconds(i / 7.0), output);
+      claims.add(timestamp_from_seconds(i / 7.0), output);
+    }
+  }
+  const std::vector<ClaimedPose> read = read_claims(folder);
+  ASSERT_EQ(read.size(), 14u);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].t, claims.all()[i].t);
+    EXPECT_EQ(read[i].start, claims.all()[i].start);
+    EXPECT_EQ(read[i].position, claims.all()[i].position);
+    EXPECT_EQ(read[i].rotation, claims.all()[i].rotation);
   }
 }
 

@@ -43,19 +43,6 @@ void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
   seconds_[static_cast<std::size_t>(output.status)] += std::max(0.0, to_seconds(packet - last_packet_.value_or(begin)));
   last_packet_ = packet;
   if (output.status == TrackingStatus::Good && !first_good_s_) first_good_s_ = to_seconds(packet - begin);
-  add_claim(packet, output);
-}
-
-void RunStatistics::add_claim(Timestamp packet, const OdometryOutput& output) {
-  const bool good = output.status == TrackingStatus::Good;
-  if (!output.covariance || !(good || output.status == TrackingStatus::Degraded)) return;
-  const auto& [position, rotation] = *output.covariance;
-  const int start = static_cast<int>(times_lost_);
-  const auto old = [&](const ClaimedPose& last) {
-    return last.start == start && last.good && last.position == position;
-  };
-  if (good && !claims_.empty() && old(claims_.back())) return;
-  claims_.push_back({packet, output.state.T_W_B, position, rotation, good, start});
 }
 
 double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(last_visual_ - *first_visual_) : 0.0; }

@@ -7,10 +7,8 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
-#include <vector>
 
 #include "edged/core/types.hpp"
-#include "edged/eval/consistency.hpp"
 #include "edged/pipeline/odometry.hpp"
 
 namespace edged {
@@ -34,14 +32,10 @@ class RunStatistics {
   /// From the first visual measurement to the first Good packet [s].
   std::optional<double> first_good_s() const { return first_good_s_; }
   TrackingStatus last_status() const { return last_status_; }
-  /// The poses whose covariance was worked out anew, and all Degraded ones that have one.
-  const std::vector<ClaimedPose>& claims() const { return claims_; }
   /// ln s of Eq. 5 at the end; nothing without the depth factor.
   const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
 
  private:
-  void add_claim(Timestamp packet, const OdometryOutput& output);
-
   std::optional<Timestamp> first_visual_;
   Timestamp last_visual_;
   std::optional<Timestamp> last_packet_;
@@ -50,7 +44,6 @@ class RunStatistics {
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;
   std::optional<LogScale> ln_depth_scale_;
-  std::vector<ClaimedPose> claims_;
 };
 
 /// Wall and processor time since construction, without the pauses; peak memory since the process began.

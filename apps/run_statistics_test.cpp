@@ -49,27 +49,6 @@ TEST(RunStatistics, CountLossesNotLostPackets) {
   EXPECT_EQ(statistics.times_lost(), 2u);
 }
 
-TEST(RunStatistics, ClaimsAreThePosesWithAFreshCovarianceByStart) {
-  RunStatistics statistics;
-  OdometryOutput output = with(TrackingStatus::Good);
-  statistics.add(at(1), output);
-  output.covariance = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
-  statistics.add(at(2), output);
-  statistics.add(at(3), output);
-  output.covariance->position *= 2.0;
-  statistics.add(at(4), output);
-  statistics.add(at(5), with(TrackingStatus::Lost));
-  statistics.add(at(6), output);
-  output.status = TrackingStatus::Degraded;
-  statistics.add(at(7), output);
-  const std::vector<ClaimedPose>& claims = statistics.claims();
-  ASSERT_EQ(claims.size(), 4u);
-  const std::vector<double> stamps{2, 4, 6, 7};
-  for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, at(stamps[i]));
-  EXPECT_FALSE(claims[3].good);
-  EXPECT_EQ(claims[1].start + 1, claims[2].start);
-}
-
 TEST(ResourceMeter, SeesProcessorTimeAndMemory) {
   const ResourceMeter meter;
   volatile double sum = 0.0;

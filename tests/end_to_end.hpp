@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edged/core/dataset.hpp"
+#include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/pipeline/odometry.hpp"

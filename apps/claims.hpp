@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// From the outputs of a run to what the evaluation of consistency wants.
+#pragma once
+
+#include <vector>
+
+#include "edged/eval/consistency.hpp"
+#include "edged/pipeline/odometry.hpp"
+
+namespace edged {
+
+/// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start.
+class Claims {
+ public:
+  /// Every packet, in time order.
+  void add(Timestamp packet, const OdometryOutput& output);
+  const std::vector<ClaimedPose>& all() const { return claims_; }
+
+ private:
+  std::vector<ClaimedPose> claims_;
+  int start_ = 0;
+};
+
+}  // namespace edged
