@@ -8,23 +8,28 @@
 
 namespace edged {
 
-std::optional<Matrix15d> covariance(Window& window, StateId state) {
+std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks) {
   const std::vector<Factor> factors = window.factors();
   std::set<BlockKey> others;
   for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
-  others.erase({BlockKind::Pose, state});
-  others.erase({BlockKind::Motion, state});
+  for (const BlockKey& block : blocks) {
+    if (others.erase(block) == 0) return std::nullopt;
+  }
   const NormalEquations eq = normal_equations(window, factors, others);
-  const Eigen::Index n = eq.size - eq.depths;
-  if (eq.size - eq.leaving != 15) return std::nullopt;
+  const Eigen::Index n = eq.size - eq.depths, m = eq.size - eq.leaving;
   const Eigen::MatrixXd H = eq.H.bottomRightCorner(n, n);
   const Eigen::VectorXd scale = unit_diagonal_scale(H);
   const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
   if (llt.info() != Eigen::Success) return std::nullopt;
-  // The last block of the factor is that of the Schur complement: the information that the state has of its own.
-  const Matrix15d L = Matrix15d(llt.matrixLLT().bottomRightCorner<15, 15>().triangularView<Eigen::Lower>());
-  const Matrix15d root = L.triangularView<Eigen::Lower>().solve(Matrix15d::Identity()) * scale.tail<15>().asDiagonal();
+  // The last block of the factor is that of the Schur complement: the information that the blocks have of their own.
+  const auto L = llt.matrixLLT().bottomRightCorner(m, m).triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd root = L.solve(Eigen::MatrixXd::Identity(m, m)) * scale.tail(m).asDiagonal();
   return root.transpose() * root;
+}
+
+std::optional<Matrix15d> covariance(Window& window, StateId state) {
+  const auto P = covariance(window, {{BlockKind::Pose, state}, {BlockKind::Motion, state}});
+  return P ? std::optional<Matrix15d>(*P) : std::nullopt;
 }
 
 }  // namespace edged

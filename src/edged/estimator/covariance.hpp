@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the window knows of one of its states, and how well.
+// How well the window knows what it estimates.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,13 @@
 
 namespace edged {
 
-/// Covariance of a state: position [m] in the window's world, rotation [rad] (right perturbation, body axes), velocity
+/// Covariance of some blocks over their tangent spaces, stacked in the order of their keys: the marginal of the whole
+/// window. Nothing when a direction of it is not determined, or a block is in no factor.
+std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks);
+
+/// Of a state: position [m] in the window's world, rotation [rad] (right perturbation, body axes), velocity
 /// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start, where
-/// the gauge is held. The marginal of the whole window; nothing when a direction of it is not determined.
+/// the gauge is held.
 std::optional<Matrix15d> covariance(Window& window, StateId state);
 
 }  // namespace edged

@@ -20,15 +20,15 @@ struct Middle {
   std::size_t in_region = 0;
 };
 
-const RigCamera& camera_of(const Window& window, const RegionDepth& depth) {
-  return window.cameras[window.camera_index(depth.camera)];
+SE3 T_B_E(const Window& window, const RegionDepth& depth) {
+  return window.calibrated(window.camera_index(depth.camera)).T_B_C;
 }
 
 /// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.
 std::optional<Middle> middle_landmarks(const Window& window, StateId state) {
   const WindowState& at = window.states.at(state);
   const RegionDepth& region = *at.depth;
-  const SE3 T_E_W = (at.T_W_B() * camera_of(window, region).T_B_C).inverse();
+  const SE3 T_E_W = (at.T_W_B() * T_B_E(window, region)).inverse();
   std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
   for (const auto& [id, feature] : window.features) {
     if (!feature.anchor || !feature.seen.contains(state) || feature.inverse_depth <= 0.0) continue;
@@ -67,7 +67,7 @@ Factor depth_factor(Window& window, StateId state, const Middle& middle) {
     const Feature& feature = window.features.at(id);
     const BlockKey anchor{BlockKind::Pose, *feature.anchor};
     const auto known = std::find(poses.begin(), poses.end(), anchor);
-    landmarks.push_back({window.cameras[feature.camera].T_B_C, feature.seen.at(*feature.anchor).point,
+    landmarks.push_back({window.calibrated(feature.camera).T_B_C, feature.seen.at(*feature.anchor).point,
                          static_cast<std::size_t>(known - poses.begin())});
     if (known == poses.end()) poses.push_back(anchor);
     depths.push_back({BlockKind::InverseDepth, id});
@@ -76,8 +76,8 @@ Factor depth_factor(Window& window, StateId state, const Middle& middle) {
   // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
   if (window.depth_config.form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(ln_s);
   Factor factor;
-  factor.cost = std::make_unique<DepthFactor>(window.depth_config.form, camera_of(window, depth).T_B_C,
-                                              std::move(landmarks), poses.size(), depth.depth_m, weight);
+  factor.cost = std::make_unique<DepthFactor>(window.depth_config.form, T_B_E(window, depth), std::move(landmarks),
+                                              poses.size(), depth.depth_m, weight);
   factor.loss = window.depth_loss();
   factor.blocks = {{BlockKind::LogScale, scale}};
   factor.blocks.insert(factor.blocks.end(), poses.begin(), poses.end());

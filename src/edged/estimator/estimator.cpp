@@ -24,7 +24,7 @@ bool plausible(const NavState& state) {
 }  // namespace
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
-    : noise_(noise), config_(config), window_(rig, config.cauchy_scale, config.depth_factor),
+    : noise_(noise), config_(config), window_(rig, config.cauchy_scale, config.depth_factor, config.calibration),
       standstill_(config.standstill), initializer_(rig, noise, config), depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
@@ -67,6 +67,14 @@ std::optional<double> Estimator::depth(FeatureId id) const {
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
 
+Rig Estimator::calibrated_rig() const {
+  Rig rig;
+  for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
+    rig.cameras.push_back(window_.calibrated(camera));
+  }
+  return rig;
+}
+
 std::optional<LogScale> Estimator::depth_scale() const {
   return config_.depth_factor.enabled ? std::optional(depth_scale_) : std::nullopt;
 }
@@ -76,10 +84,11 @@ void Estimator::append(const EstimatorInput& input) {
   Preintegration imu(input.imu, before.bias_gyro, before.bias_accel, noise_);
   NavState state = propagate(before, imu);
   state.t = input.t;
-  const StateId id = window_.add_state(window_state(state, std::move(imu), input.keyframe));
+  const StateId id = window_.add_state(window_state(state, input.imu.back().gyro_B, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed) {
+    window_.states.at(id).rested = true;
     window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
                                                {config_.zero_velocity_sigma, kFree, kFree}));
   }

@@ -27,6 +27,7 @@ struct EstimatorResult {
 
 class Estimator {
  public:
+  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already.
   Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config);
 
   /// Inputs in time order.
@@ -45,6 +46,9 @@ class Estimator {
   std::optional<double> depth(FeatureId id) const;
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
   std::optional<LogScale> depth_scale() const;
+
+  /// The cameras as they are by what has been seen: rotation against the body, and the time offset that is left over.
+  Rig calibrated_rig() const;
 
   const Window& window() const { return window_; }
 

@@ -16,6 +16,7 @@ struct RunResult {
   double max_position_error = 0.0, max_tilt_error = 0.0, travelled_ratio = 0.0;
   Eigen::Vector3d bias_gyro, bias_accel;
   std::string waiting_for;
+  Rig rig;  ///< as calibrated
 };
 
 /// Runs the estimator through the world; errors are of the motion since the start, in the frame of the start.
@@ -53,6 +54,7 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     result.bias_gyro = state.bias_gyro;
     result.bias_accel = state.bias_accel;
   }
+  result.rig = estimator.calibrated_rig();
   result.travelled_ratio = travelled > 0 ? estimated / travelled : 0.0;
   return result;
 }
@@ -88,6 +90,31 @@ TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
   const RunResult result = run({.speed = 0.0}, 5.0);
   EXPECT_FALSE(result.initialized);
   EXPECT_THAT(result.waiting_for, testing::HasSubstr("parallax"));
+}
+
+TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
+  constexpr double kDeg = std::numbers::pi / 180.0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (const double sign : {1.0, -1.0}) {
+      TestWorldOptions options{.rest_s = seed == 1 ? 1.0 : 0.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
+      options.rotation_error = sign * 2.0 * kDeg * Eigen::Vector3d(0.5, -0.7, 0.51).normalized();
+      options.time_error = sign * 0.010;
+      const RunResult result = run(options, 15.0);
+      ASSERT_TRUE(result.initialized) << result.waiting_for;
+      const RigCamera given = TestWorld(options).rig().cameras[0], found = result.rig.cameras[0];
+      const Eigen::Vector3d turned = so3::log((given.T_B_C.inverse() * found.T_B_C).rotation());
+      EXPECT_LT((turned - options.rotation_error).norm(), 0.2 * kDeg) << seed << " " << sign;
+      EXPECT_NEAR(to_seconds(found.time_offset), options.time_error, 5e-4) << seed << " " << sign;
+      EXPECT_NEAR(result.travelled_ratio, 1.0, 0.05);
+    }
+  }
+}
+
+TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
+  const TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0};
+  const RigCamera given = TestWorld(options).rig().cameras[0], found = run(options, 15.0).rig.cameras[0];
+  EXPECT_LT(so3::log((given.T_B_C.inverse() * found.T_B_C).rotation()).norm(), 2e-3);
+  EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
 }
 
 TEST(Estimator, GivesTheSameBitsTwice) {

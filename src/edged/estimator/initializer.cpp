@@ -134,8 +134,8 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   state.T_W_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
-  const StateId id = window.add_state(window_state(state, {}, true));
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor, config_.calibration);
+  const StateId id = window.add_state(window_state(state, input.imu.back().gyro_B, {}, true));
   window.add_observations(id, input.observations);
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
   window.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
@@ -215,12 +215,12 @@ std::string Initializer::scale_text(double sigma) const {
 
 /// The buffer's views as keyframes where the alignment puts them.
 Window Initializer::aligned_window(const Alignment& alignment) const {
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor, config_.calibration);
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const NavState& nav = alignment.states[i];
     Preintegration imu =
         i == 0 ? Preintegration{} : Preintegration(buffer_[i].imu, nav.bias_gyro, nav.bias_accel, noise_);
-    const StateId id = window.add_state(window_state(nav, std::move(imu), true));
+    const StateId id = window.add_state(window_state(nav, buffer_[i].imu.back().gyro_B, std::move(imu), true));
     window.add_observations(id, buffer_[i].observations);
     if (depth_due(window)) window.states.at(id).depth = buffer_[i].depth;
   }

@@ -59,6 +59,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
     return;
   }
   next->second.imu = std::move(joined);
+  next->second.rested &= state->second.rested;
   for (auto& [feature_id, feature] : window.features) feature.seen.erase(id);
   window.states.erase(state);
   window.drop_orphaned_priors();

@@ -27,6 +27,8 @@ struct TestWorldOptions {
   double imu_noise = 1.0;       ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
+  Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
+  double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
   std::uint64_t seed = 1;
 };
 
@@ -81,7 +83,8 @@ class TestWorld {
   CameraObservations observe(double t, std::size_t camera_index = 0) {
     const RigCamera& camera = rig_.cameras.at(camera_index);
     CameraObservations out{camera.name, {}};
-    const SE3 T_C_W = (T_W_B(t) * camera.T_B_C).inverse();
+    const SE3 T_B_C = camera.T_B_C * SE3(so3::exp(options_.rotation_error), Eigen::Vector3d::Zero());
+    const SE3 T_C_W = (T_W_B(t + options_.time_error) * T_B_C).inverse();
     for (std::size_t i = 0; i < points_W_.size() && out.features.size() < 120; ++i) {
       const Eigen::Vector3d p_C = T_C_W * points_W_[i];
       const auto pixel = camera.model.project(p_C);

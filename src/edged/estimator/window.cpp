@@ -4,13 +4,33 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numbers>
 
 #include "edged/core/check.hpp"
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
-#include "edged/estimator/factors/reprojection_factor.hpp"
+#include "edged/estimator/factors/standstill_factor.hpp"
 
 namespace edged {
+namespace {
+
+// What is called rest may be this far from it, whatever the time between the two states.
+constexpr double kRestSigma_m = 2e-3, kRestSigma_rad = 1e-3;
+
+/// A calibration near what was given. A part that is held gets a sigma too small to move by.
+LinearPrior calibration_prior(BlockKey camera, const CalibrationBlock& given, const CalibrationConfig& config) {
+  constexpr double kHeld = 1e-9, kDeg = std::numbers::pi / 180.0;
+  const double rotation = std::max(config.rotation_sigma_deg * kDeg, kHeld);
+  const double time = std::max(config.time_offset_sigma_ms * 1e-3, kHeld);
+  LinearPrior prior;
+  prior.blocks = {camera};
+  prior.x0 = {{given.begin(), given.end()}};
+  prior.J = Eigen::Vector4d(1.0 / rotation, 1.0 / rotation, 1.0 / rotation, 1.0 / time).asDiagonal();
+  prior.r = Eigen::VectorXd::Zero(4);
+  return prior;
+}
+
+}  // namespace
 
 NavState WindowState::nav() const {
   NavState nav;
@@ -22,29 +42,47 @@ NavState WindowState::nav() const {
   return nav;
 }
 
+BodyRate WindowState::rate() const {
+  const NavState state = nav();
+  return {gyro_B - state.bias_gyro, state.v_W};
+}
+
+void CalibrationConfig::visit(ConfigFields& fields) {
+  fields.add("rotation_sigma_deg", rotation_sigma_deg,
+             {"deg", 0, 10, "how far each camera's rotation against the IMU may be off; 0 holds it as given"});
+  fields.add("time_offset_sigma_ms", time_offset_sigma_ms,
+             {"ms", 0, 50, "how far each camera's time offset may be off; 0 holds it as given"});
+}
+
 MotionBlock motion_block(const NavState& state) {
   MotionBlock block;
   Eigen::Map<Eigen::Matrix<double, 9, 1>>(block.data()) << state.v_W, state.bias_gyro, state.bias_accel;
   return block;
 }
 
-WindowState window_state(const NavState& nav, Preintegration imu, bool keyframe) {
+WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe) {
   WindowState state;
   state.t = nav.t;
   state.pose = to_block(nav.T_W_B);
   state.motion = motion_block(nav);
+  state.gyro_B = gyro_B;
   state.imu = std::move(imu);
   state.keyframe = keyframe;
   return state;
 }
 
-Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
+Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth, const CalibrationConfig& config)
     : cameras(rig.cameras),
+      calibration(rig.cameras.size(), CalibrationBlock{}),
       noise_scale(rig.cameras.size(), 1.0),
       depth_config(depth),
       last_image_(rig.cameras.size(), 0),
       visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)),
       depth_loss_(std::make_unique<ceres::CauchyLoss>(depth.cauchy_scale)) {
+  for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+    calibration[camera][3] = to_seconds(cameras[camera].time_offset);
+    soft_priors.push_back(calibration_prior({BlockKind::Calibration, camera}, calibration[camera], config));
+  }
   if (!depth.enabled) return;
   ln_scale[0] = 0.0;
   soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
@@ -75,6 +113,19 @@ void Window::add_observations(StateId id, const std::vector<CameraObservations>&
   }
 }
 
+SE3 Window::T_W_C(StateId state, std::size_t camera) const {
+  const WindowState& at = states.at(state);
+  return camera_pose(at.T_W_B(), at.rate(), cameras[camera].T_B_C, calibration[camera].data());
+}
+
+RigCamera Window::calibrated(std::size_t camera) const {
+  RigCamera found = cameras[camera];
+  const CalibrationBlock& off = calibration[camera];
+  found.T_B_C = camera_pose(found.T_B_C, {}, SE3(), off.data());
+  found.time_offset = duration_from_seconds(off[3]);
+  return found;
+}
+
 Eigen::Vector3d Window::position(const Feature& feature) const {
   const Eigen::Vector2d& point = feature.seen.at(*feature.anchor).point;
   return T_W_C(*feature.anchor, feature.camera) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
@@ -89,12 +140,14 @@ double* Window::block(BlockKey key) {
     const auto found = ln_scale.find(key.id);
     return found == ln_scale.end() ? nullptr : &found->second;
   }
+  if (key.kind == BlockKind::Calibration) return calibration.at(key.id).data();
   const auto found = states.find(key.id);
   if (found == states.end()) return nullptr;
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
 const double* Window::linearisation_point(BlockKey key) {
+  if (key.kind == BlockKind::Calibration) return block(key);
   const auto in_prior = std::find(prior.blocks.begin(), prior.blocks.end(), key);
   if (in_prior == prior.blocks.end()) return block(key);
   return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
@@ -112,28 +165,36 @@ std::vector<Factor> Window::factors() {
   for (const LinearPrior& soft : soft_priors) {
     out.push_back({std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
   }
-  for (auto it = states.begin(); it != states.end(); ++it) {
-    if (it == states.begin()) continue;
-    const StateId a = std::prev(it)->first, b = it->first;
-    out.push_back({std::make_unique<ImuFactor>(it->second.imu),
-                   nullptr,
-                   {{BlockKind::Pose, a}, {BlockKind::Motion, a}, {BlockKind::Pose, b}, {BlockKind::Motion, b}}});
-  }
+  add_motion_factors(out);
   add_visual_factors(out);
   add_depth_factors(*this, out);
   return out;
 }
 
+void Window::add_motion_factors(std::vector<Factor>& out) {
+  if (states.empty()) return;
+  for (auto b = std::next(states.begin()); b != states.end(); ++b) {
+    const BlockKey pose_a{BlockKind::Pose, std::prev(b)->first}, pose_b{BlockKind::Pose, b->first};
+    const BlockKey motion_a{BlockKind::Motion, pose_a.id}, motion_b{BlockKind::Motion, pose_b.id};
+    out.push_back({std::make_unique<ImuFactor>(b->second.imu), nullptr, {pose_a, motion_a, pose_b, motion_b}});
+    if (!b->second.rested) continue;
+    out.push_back({std::make_unique<StandstillFactor>(kRestSigma_m, kRestSigma_rad), nullptr, {pose_a, pose_b}});
+  }
+}
+
 void Window::add_visual_factors(std::vector<Factor>& out) {
   for (auto& [id, feature] : features) {
     if (!feature.anchor) continue;
-    const FeatureObservation& anchor = feature.seen.at(*feature.anchor);
-    for (const auto& [state, observation] : feature.seen) {
+    const ReprojectionFactor::View anchor{feature.seen.at(*feature.anchor).point, states.at(*feature.anchor).rate()};
+    for (const auto& [state, seen] : feature.seen) {
       if (state == *feature.anchor) continue;
-      out.push_back({std::make_unique<ReprojectionFactor>(cameras[feature.camera].T_B_C, anchor.point,
-                                                          observation.point, observation.sigma),
+      const ReprojectionFactor::View view{seen.point, states.at(state).rate()};
+      out.push_back({std::make_unique<ReprojectionFactor>(cameras[feature.camera].T_B_C, anchor, view, seen.sigma),
                      visual_loss_.get(),
-                     {{BlockKind::Pose, *feature.anchor}, {BlockKind::Pose, state}, {BlockKind::InverseDepth, id}}});
+                     {{BlockKind::Pose, *feature.anchor},
+                      {BlockKind::Pose, state},
+                      {BlockKind::Calibration, feature.camera},
+                      {BlockKind::InverseDepth, id}}});
     }
   }
 }

@@ -18,6 +18,7 @@
 #include "edged/core/types.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
+#include "edged/estimator/factors/reprojection_factor.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
 
@@ -25,21 +26,31 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
+/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given.
+struct CalibrationConfig {
+  double rotation_sigma_deg = 1.0;
+  double time_offset_sigma_ms = 5.0;
+  void visit(ConfigFields& fields);
+};
+
 /// One instant of the window: a keyframe, or one of the newest states.
 struct WindowState {
   Timestamp t;
   PoseBlock pose{};
   MotionBlock motion{};
   bool keyframe = false;
+  bool rested = false;  ///< the body did not move since the state before this one
   Preintegration imu;  ///< from the state before this one; of the window's first state unused
+  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();  ///< the reading at t [rad/s]
   std::optional<RegionDepth> depth;  ///< of a keyframe: what a depth source says
 
   SE3 T_W_B() const { return pose_of(pose.data()); }
   NavState nav() const;
+  BodyRate rate() const;
 };
 
 MotionBlock motion_block(const NavState& state);
-WindowState window_state(const NavState& nav, Preintegration imu, bool keyframe);
+WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe);
 
 /// A tracked corner and, once triangulated, the landmark behind it.
 struct Feature {
@@ -59,14 +70,17 @@ struct Factor {
 
 class Window {
  public:
-  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
+  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already.
+  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {},
+         const CalibrationConfig& calibration = {});
 
   // --- contents -------------------------------------------------------------------------------------------------------
   std::map<StateId, WindowState> states;      ///< ids grow with time
   std::map<FeatureId, Feature> features;
   LinearPrior prior;
   std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
-  std::vector<RigCamera> cameras;
+  std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
+  std::vector<CalibrationBlock> calibration;  ///< one a camera
   std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
   DepthFactorConfig depth_config;
   std::map<std::uint64_t, double> ln_scale;   ///< the present piece of ln s (Eq. 5), and the next while one is left behind
@@ -82,13 +96,16 @@ class Window {
   bool alive(const Feature& feature) const { return feature.last_seen == last_image_[feature.camera]; }
 
   const WindowState& newest() const { return states.rbegin()->second; }
-  SE3 T_W_C(StateId state, std::size_t camera) const { return states.at(state).T_W_B() * cameras[camera].T_B_C; }
+  SE3 T_W_C(StateId state, std::size_t camera) const;
+  /// The camera with the calibration found so far.
+  RigCamera calibrated(std::size_t camera) const;
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
   /// Storage of a block, null when it is no longer in the window.
   double* block(BlockKey key);
-  /// First-estimate linearisation point of a block: its place in the prior, else its present value.
+  /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are
+  /// linearised anew: they can be observed, and are far off at first.
   const double* linearisation_point(BlockKey key);
 
   /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
@@ -100,6 +117,7 @@ class Window {
 
  private:
   void add_visual_factors(std::vector<Factor>& out);
+  void add_motion_factors(std::vector<Factor>& out);
 
   StateId next_state_ = 0;
   std::vector<StateId> last_image_;  ///< newest state with an image, one a camera

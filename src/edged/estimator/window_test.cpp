@@ -47,14 +47,14 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   const TestWorldOptions options{.cameras = 2};
   TestWorld world(options);
   Window window = window_at_truth(world, options);
-  EXPECT_EQ(window.factors().size(), 1U + 5U);  // gauge, IMU; tracks are no landmarks yet
+  EXPECT_EQ(window.factors().size(), 2U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
   std::size_t sights = 0;
   for (const auto& [id, feature] : window.features) {
     if (feature.anchor) sights += feature.seen.size() - 1;
   }
   EXPECT_GT(sights, 100U);
-  EXPECT_EQ(window.factors().size(), 1U + 5U + sights);
+  EXPECT_EQ(window.factors().size(), 2U + 1U + 5U + sights);
 }
 
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
@@ -87,10 +87,11 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   TestWorld world(options);
   Window window = window_at_truth(world, options);
   window.drop_orphaned_priors();
-  EXPECT_EQ(window.soft_priors.size(), 1U);
+  EXPECT_EQ(window.soft_priors.size(), 2U);  // calibration and gauge
   window.states.erase(window.states.begin());
   window.drop_orphaned_priors();
-  EXPECT_TRUE(window.soft_priors.empty());
+  ASSERT_EQ(window.soft_priors.size(), 1U);
+  EXPECT_EQ(window.soft_priors.front().blocks.front().kind, BlockKind::Calibration);
 }
 
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
@@ -99,7 +100,7 @@ TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
   Window window = window_at_truth(world, options);
   const BlockKey first{BlockKind::Pose, window.states.begin()->first},
       last{BlockKind::Pose, window.states.rbegin()->first};
-  window.prior = window.soft_priors.front();
+  window.prior = window.soft_priors.back();
   const double made_at = window.block(first)[0];
   window.block(first)[0] += 0.5;
   EXPECT_EQ(window.linearisation_point(first)[0], made_at);

@@ -31,6 +31,12 @@ void BodyMotion::predict(const std::vector<ImuSample>& imu, Timestamp t, bool st
     }
   }
   now_.t = t;
+  omega_B_ = imu.back().gyro_B - now_.bias_gyro;
+}
+
+SE3 BodyMotion::moved_on(Duration time) const {
+  const double s = to_seconds(time);
+  return {now_.T_W_B.rotation() * so3::exp(omega_B_ * s), now_.T_W_B.translation() + now_.v_W * s};
 }
 
 SE3 BodyMotion::correct(const NavState& estimate) {

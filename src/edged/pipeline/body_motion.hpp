@@ -25,6 +25,8 @@ class BodyMotion {
   SE3 correct(const NavState& estimate);
 
   const NavState& now() const { return now_; }
+  /// T_W_B a few milliseconds after now, turning and moving on as it does now.
+  SE3 moved_on(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
   const std::vector<StampedPose>& poses() const { return T_W_B_; }
 
@@ -32,6 +34,7 @@ class BodyMotion {
   ImuNoise noise_;
   Duration history_;
   NavState now_;
+  Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_W_B_;
 };
 

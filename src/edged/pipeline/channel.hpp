@@ -63,7 +63,7 @@ class Channel {
   /// Everything remembered moves into another world frame.
   void move(const SE3& T_new_old);
 
-  RigCamera camera;
+  RigCamera camera;  ///< as the estimator has calibrated it
   FeatureTracker tracker;
   SE3 T_W_Blast;      ///< at the last image
   SE3 T_W_Bkeyframe;  ///< at the last keyframe

@@ -46,6 +46,12 @@ Rig rig_of_mode(const Rig& rig, Mode mode) {
   return used;
 }
 
+/// The packetizer takes the time offsets out; what is left over is up to the estimator.
+Rig without_offsets(Rig rig) {
+  for (RigCamera& camera : rig.cameras) camera.time_offset = Duration(0);
+  return rig;
+}
+
 }  // namespace
 
 std::string to_string(TrackingStatus status) {
@@ -80,6 +86,9 @@ struct Odometry::Impl {
   bool is_keyframe(const Packet& packet) const;
   int corners_wanted(const Channel& channel) const;
   void mark_keyframe(Timestamp t);
+  void calibrate();
+  /// The body at the instant of the channel's image: the packet's, but for what the camera's clock is still off by.
+  SE3 T_W_B_of(const Channel& channel) const { return body.moved_on(channel.camera.time_offset); }
   EstimatorResult estimate(const Packet& packet, bool keyframe);
   void start_frame(const SE3& T_new_old);
   NavState in_world(const NavState& state) const;
@@ -91,7 +100,8 @@ struct Odometry::Impl {
   Mode mode;
   OdometryConfig config;
   ImuNoise noise;
-  Rig used_rig;  ///< the cameras of the mode
+  Rig given_rig;  ///< the cameras of the mode
+  Rig used_rig;   ///< the same as calibrated so far; its time offsets are those left over
   Estimator estimator;
   std::vector<Channel> channels;  ///< events first
   std::optional<EventFrameRenderer> renderer;
@@ -116,7 +126,8 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
     : mode(used_mode),
       config(used_config),
       noise(imu_noise),
-      used_rig(rig_of_mode(rig, used_mode)),
+      given_rig(rig_of_mode(rig, used_mode)),
+      used_rig(without_offsets(given_rig)),
       estimator(used_rig, imu_noise, used_config.estimator),
       body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
       depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled, inference) {
@@ -213,7 +224,7 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
 /// The landmarks of both cameras as the first camera (that of the events, where there is one) sees them now.
 std::vector<SeenDepth> Odometry::Impl::landmarks_in_view() const {
   std::vector<SeenDepth> seen;
-  const SE3 T_C_W = channels.front().T_W_C(body.now().T_W_B).inverse();
+  const SE3 T_C_W = channels.front().T_W_C(T_W_B_of(channels.front())).inverse();
   for (const Channel& channel : channels) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
     for (const Track& track : channel.tracker.tracks()) {
@@ -246,14 +257,14 @@ void Odometry::Impl::take_frame(const Packet& packet) {
 void Odometry::Impl::track(Channel& channel, Timestamp t) {
   if (!channel.has_image()) return;
   const auto timer = timings.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
-  channel.track(t, body.now().T_W_B, scene_depth,
+  channel.track(t, T_W_B_of(channel), scene_depth,
                 [this](FeatureId id) { return estimator.initialized() ? estimator.depth(id) : std::nullopt; });
 }
 
 void Odometry::Impl::reject(Channel& channel) {
   if (!channel.has_image()) return;
   const auto timer = timings.measure("reject");
-  channel.reject(body.now().T_W_B, !gyro_saturated);
+  channel.reject(T_W_B_of(channel), !gyro_saturated);
 }
 
 bool Odometry::Impl::is_keyframe(const Packet& packet) const {
@@ -269,7 +280,7 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   since.time = packet.t - *last_keyframe;
   for (const Channel& channel : channels) {
     if (!channel.has_image()) continue;
-    const Eigen::Matrix3d R_Ckf_C = channel.since_keyframe(body.now().T_W_B);
+    const Eigen::Matrix3d R_Ckf_C = channel.since_keyframe(T_W_B_of(channel));
     since.tracks += channel.tracker.since_keyframe(R_Ckf_C);
     since.rotation_rad = std::max(since.rotation_rad, so3::log(Eigen::Quaterniond(R_Ckf_C)).norm());
   }
@@ -291,7 +302,7 @@ int Odometry::Impl::corners_wanted(const Channel& channel) const {
 void Odometry::Impl::mark_keyframe(Timestamp t) {
   const auto timer = timings.measure("detect");
   for (Channel& channel : channels) {
-    if (channel.has_image()) channel.mark_keyframe(body.now().T_W_B, next_feature, corners_wanted(channel));
+    if (channel.has_image()) channel.mark_keyframe(T_W_B_of(channel), next_feature, corners_wanted(channel));
   }
   last_keyframe = t;
   gyro_saturated = false;
@@ -302,7 +313,7 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   EstimatorInput input{packet.t, packet.imu, {}, keyframe, quiet, depth.for_factor(packet.t)};
   for (Channel& channel : channels) {
     if (!channel.has_image()) continue;
-    channel.T_W_Blast = body.now().T_W_B;
+    channel.T_W_Blast = T_W_B_of(channel);
     input.observations.push_back(channel.observations());
   }
   const bool started = estimator.initialized();
@@ -311,10 +322,16 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
   if (!estimator.initialized()) return result;
   const SE3 correction = body.correct(estimator.newest());
   if (!started) start_frame(correction);
+  calibrate();
   for (Channel& channel : channels) {
-    if (channel.has_image()) channel.settle(body.now().T_W_B, keyframe);
+    if (channel.has_image()) channel.settle(T_W_B_of(channel), keyframe);
   }
   return result;
+}
+
+void Odometry::Impl::calibrate() {
+  used_rig = estimator.calibrated_rig();
+  for (Channel& channel : channels) channel.camera = used_rig.camera(channel.camera.name);
 }
 
 /// The estimator has started, in a frame S of its own. The first start makes it the world; later ones are put where the
@@ -378,6 +395,13 @@ Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const O
 Odometry::~Odometry() = default;
 
 OdometryOutput Odometry::process(const Packet& packet) { return impl_->process(packet); }
+Rig Odometry::rig() const {
+  Rig rig = impl_->used_rig;
+  for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
+    rig.cameras[camera].time_offset += impl_->given_rig.cameras[camera].time_offset;
+  }
+  return rig;
+}
 const StageTimings& Odometry::timings() const { return impl_->timings; }
 const cv::Mat& Odometry::event_frame() const { return impl_->event_frame; }
 

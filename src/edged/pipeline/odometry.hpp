@@ -55,6 +55,9 @@ class Odometry {
 
   const StageTimings& timings() const;
 
+  /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
+  Rig rig() const;
+
   /// The motion-compensated event frame of the last packet (CV_8UC1, undistorted), empty when it had none.
   const cv::Mat& event_frame() const;
 

@@ -19,24 +19,36 @@ using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
 using MotionBlock = std::array<double, 9>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale };
+/// What a camera's calibration is off by: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi), and time [s] with
+/// t_imu = t_given + time.
+using CalibrationBlock = std::array<double, 4>;
+
+enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, Calibration };
 
 /// Of the anchor depth: nearer than this counts as behind the camera.
 inline constexpr double kMinDepthShare = 1e-3;
 
-/// Names one parameter block: a state's pose or motion, a feature's inverse depth, or ln s of the depth source (Eq. 5).
+/// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5), or a
+/// camera's calibration.
 struct BlockKey {
   BlockKind kind;
-  std::uint64_t id;  ///< state number, FeatureId, or number of the piece of ln s
+  std::uint64_t id;  ///< state number, FeatureId, number of the piece of ln s, or index of the camera
   auto operator<=>(const BlockKey&) const = default;
 };
 
 constexpr int block_size(BlockKind kind) {
-  return kind == BlockKind::Pose ? 7 : kind == BlockKind::Motion ? 9 : 1;
+  switch (kind) {
+    case BlockKind::Pose:
+      return 7;
+    case BlockKind::Motion:
+      return 9;
+    case BlockKind::Calibration:
+      return 4;
+    default:
+      return 1;
+  }
 }
-constexpr int tangent_size(BlockKind kind) {
-  return kind == BlockKind::Pose ? 6 : kind == BlockKind::Motion ? 9 : 1;
-}
+constexpr int tangent_size(BlockKind kind) { return kind == BlockKind::Pose ? 6 : block_size(kind); }
 
 inline PoseBlock to_block(const SE3& T) {
   const auto& p = T.translation();

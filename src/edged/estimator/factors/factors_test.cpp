@@ -9,6 +9,7 @@
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/factors/reprojection_factor.hpp"
+#include "edged/estimator/factors/standstill_factor.hpp"
 
 namespace edged {
 namespace {
@@ -108,12 +109,22 @@ TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
 }
 
+TEST(StandstillFactor, JacobiansMatchCentralDifferences) {
+  check_jacobians(StandstillFactor(2e-3, 1e-3), {BlockKind::Pose, BlockKind::Pose},
+                  {pose({0.3, -0.8, 0.2}, {1, 2, 3}), pose({0.35, -0.7, 0.25}, {1.1, 1.9, 3.05})});
+}
+
 TEST(ReprojectionFactor, JacobiansMatchCentralDifferences) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
+  const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const ReprojectionFactor factor(T_B_C, {0.2, -0.1}, {0.25, -0.05}, 5e-3);
-    check_jacobians(factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::InverseDepth},
-                    {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), {rho}});
+    const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3);
+    for (const auto& calibration : {std::vector<double>(4, 0.0), std::vector<double>{0.03, -0.02, 0.04, 0.012}}) {
+      check_jacobians(factor,
+                      {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
+                      {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), calibration,
+                       {rho}});
+    }
   }
 }
 
@@ -122,15 +133,28 @@ TEST(ReprojectionFactor, IsZeroForAPointWhereItWasSeen) {
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const Eigen::Vector3d p_W = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
   const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_W;
-  const ReprojectionFactor factor(T_B_C, {0.2, -0.1}, p_C1.hnormalized(), 5e-3);
-  EXPECT_LT(evaluate(factor, {pose_0, pose_1, {0.5}}).norm(), 1e-9);
+  const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, {}}, {p_C1.hnormalized(), {}}, 5e-3);
+  EXPECT_LT(evaluate(factor, {pose_0, pose_1, std::vector<double>(4, 0.0), {0.5}}).norm(), 1e-9);
+}
+
+TEST(ReprojectionFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
+  const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
+  const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
+  const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
+  const std::vector<double> calibration{0.03, -0.02, 0.04, 0.012};
+  const SE3 T_W_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
+  const SE3 T_W_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
+  const Eigen::Vector3d p_C1 = T_W_C1.inverse() * (T_W_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));
+  const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {p_C1.hnormalized(), rate_1}, 5e-3);
+  EXPECT_LT(evaluate(factor, {pose_0, pose_1, calibration, {0.5}}).norm(), 1e-9);
 }
 
 TEST(ReprojectionFactor, RefusesAPointBehindTheCamera) {
-  const ReprojectionFactor factor(SE3(), {0.0, 0.0}, {0.0, 0.0}, 5e-3);
+  const ReprojectionFactor factor(SE3(), {{0.0, 0.0}, {}}, {{0.0, 0.0}, {}}, 5e-3);
   const auto here = pose({0, 0, 0}, {0, 0, 0}), turned = pose({0, 3.1, 0}, {0, 0, 0});
   const double rho = 1.0;
-  const double* blocks[] = {here.data(), turned.data(), &rho};
+  const CalibrationBlock exact{};
+  const double* blocks[] = {here.data(), turned.data(), exact.data(), &rho};
   double r[2];
   EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
 }

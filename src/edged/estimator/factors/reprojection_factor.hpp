@@ -9,20 +9,34 @@
 
 namespace edged {
 
-/// Blocks: pose of the anchor state, pose of the observing state, inverse z-depth in the anchor camera [1/m].
-/// Residual (2): (predicted - seen) / sigma on the unit plane of the camera. Fails (Ceres rejects the step) when the
-/// landmark is not in front of the observing camera.
-class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, 1> {
+/// How the body moves at the instant of a state: what turns a shift of the camera's clock into one of its pose.
+struct BodyRate {
+  Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();      ///< [m/s]
+};
+
+/// T_W_C of a camera whose image was taken `time` after the state: T_W_B moved on by the rate, then T_B_C turned by phi.
+/// calibration: a CalibrationBlock's numbers.
+SE3 camera_pose(const SE3& T_W_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
+
+/// Blocks: pose of the anchor state, pose of the observing state, calibration of the camera, inverse z-depth in the anchor
+/// camera [1/m]. Residual (2): (predicted - seen) / sigma on the unit plane of the camera. Fails (Ceres rejects the step)
+/// when the landmark is not in front of the observing camera. The rates are constants: what they are off by counts only
+/// times the time shift.
+class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, 4, 1> {
  public:
-  ReprojectionFactor(const SE3& T_B_C, const Eigen::Vector2d& anchor_point, const Eigen::Vector2d& seen_point,
-                     double sigma)
-      : T_B_C_(T_B_C), anchor_(anchor_point.x(), anchor_point.y(), 1.0), seen_(seen_point), weight_(1.0 / sigma) {}
+  /// One of the two views.
+  struct View {
+    Eigen::Vector2d point;  ///< on the unit plane
+    BodyRate rate;
+  };
+  ReprojectionFactor(const SE3& T_B_C, const View& anchor, const View& seen, double sigma)
+      : T_B_C_(T_B_C), anchor_(anchor), seen_(seen), weight_(1.0 / sigma) {}
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
   SE3 T_B_C_;
-  Eigen::Vector3d anchor_;
-  Eigen::Vector2d seen_;
+  View anchor_, seen_;
   double weight_;
 };
 
