@@ -12,6 +12,7 @@ namespace edged {
 namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
+constexpr double kDoubtGain = 0.25;           // a packet
 constexpr double kRestStretch = 10.0;         // times the longest IMU interval
 constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is moving is not at rest
 
@@ -41,11 +42,12 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
     return result;
   }
   append(input);
+  result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
   const bool new_depth = take_depth();
   optimize(result, config_.iterations);
   if (new_depth) depth_scale_ = estimate_scale(window_);
-  adapt_noise();
+  adapt_noise(result.imu_strain);
   slide();
   return result;
 }
@@ -106,7 +108,9 @@ bool Estimator::take_depth() {
 void Estimator::optimize(EstimatorResult& result, int iterations) {
   const bool usable = solve(window_, iterations).usable;
   result.plausible = usable && plausible(newest());
-  result.outliers = remove_outliers(window_, config_.landmarks);
+  const std::vector<FeatureId> outliers = remove_outliers(window_, config_.landmarks);
+  result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());
+  result.imu_strain = window_.imu_strain();
   const StateId newest_id = window_.states.rbegin()->first;
   result.landmarks = result.landmarks_seen = 0;
   for (const auto& [id, feature] : window_.features) {
@@ -116,14 +120,17 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   }
 }
 
-void Estimator::adapt_noise() {
+/// Each camera's noise follows its residuals. Where the window strains the IMU, the cameras agree among themselves on
+/// what is not so: something that moves, or errors they have in common.
+void Estimator::adapt_noise(double imu_strain) {
+  const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
     const std::optional<double> median = median_residual(window_, camera);
     if (!median) continue;
     const double wanted = std::max(*median, 1e-3) / kMedianOfNorm * config_.noise_inflation;
     double& scale = window_.noise_scale[camera];
-    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain), config_.min_noise_scale, config_.max_noise_scale);
+    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale, config_.max_noise_scale);
   }
 }
 

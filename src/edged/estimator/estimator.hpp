@@ -21,6 +21,7 @@ struct EstimatorResult {
   std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
   int landmarks = 0;                ///< in the cost
   int landmarks_seen = 0;           ///< of them, seen by the newest state
+  double imu_strain = 0.0;          ///< of the window: see Window::imu_strain [sigma]
   bool standstill = false;
   bool plausible = true;            ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
@@ -56,7 +57,7 @@ class Estimator {
   void append(const EstimatorInput& input);
   bool take_depth();
   void optimize(EstimatorResult& result, int iterations);
-  void adapt_noise();
+  void adapt_noise(double imu_strain);
   void slide();
 
   ImuNoise noise_;

@@ -30,6 +30,7 @@ struct EstimatorConfig {
   double noise_inflation = 2.5;    ///< sigma over the spread of the residuals: their errors last from image to image
   double min_noise_scale = 0.3;    ///< bounds of the adapted noise over the configured one
   double max_noise_scale = 4.0;
+  double max_imu_strain = 0.3;     ///< beyond it (Window::imu_strain) the cameras are believed less
   CalibrationConfig calibration;
   LandmarkConfig landmarks;
   StandstillConfig standstill;

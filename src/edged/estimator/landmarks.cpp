@@ -56,6 +56,8 @@ void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
   fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
   fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
+  fields.add("max_innovation_sigma", max_innovation_sigma,
+             {"sigma", 1, 1000, "corners farther from where the IMU expects their landmark end"});
   fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
 
@@ -78,6 +80,24 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
     if (landmarks[camera] >= config.max_per_camera || total[camera] >= 2 * config.max_per_camera) continue;
     if (triangulate_feature(window, *feature, config)) ++landmarks[camera], ++total[camera];
   }
+}
+
+std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config) {
+  const StateId newest = window.states.rbegin()->first;
+  std::vector<FeatureId> unexpected;
+  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+    std::vector<FeatureId> far;
+    std::size_t seen = 0;
+    for (const auto& [id, feature] : window.features) {
+      if (feature.camera != camera || !feature.anchor || !feature.seen.contains(newest)) continue;
+      ++seen;
+      if (residual_sigmas(window, feature, newest) > config.max_innovation_sigma) far.push_back(id);
+    }
+    if (2 * far.size() > seen) continue;
+    for (const FeatureId id : far) window.features.at(id).seen.erase(newest);
+    unexpected.insert(unexpected.end(), far.begin(), far.end());
+  }
+  return unexpected;
 }
 
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {

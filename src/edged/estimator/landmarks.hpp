@@ -17,12 +17,18 @@ struct LandmarkConfig {
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
   double max_residual_sigma = 4.0; ///< a sight that fits worse is taken out
+  double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
   int max_per_camera = 70;         ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
 
 /// Turns tracks that have enough parallax into landmarks, within the budget of each camera.
 void triangulate_features(Window& window, const LandmarkConfig& config);
+
+/// Takes out what the newest state sees of landmarks far from where its predicted pose expects them: on something that
+/// moves, or wrong. Where that is most of what a camera sees, the prediction is doubted instead. Returns the features:
+/// their tracks should end.
+std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
 
 /// Takes out sights and landmarks that do not fit the solved window. Returns the features whose newest sight was taken
 /// out: their tracks are wrong and should end.

@@ -171,6 +171,36 @@ TEST(RemoveOutliers, DropsALandmarkOutOfBoundsAndReportsItWhileItIsTracked) {
   EXPECT_FALSE(window.features.contains(ended));
 }
 
+/// Moves what the newest state sees of the first `count` landmarks by 20 px.
+int move_newest_sights(Window& window, int count) {
+  const StateId newest = window.states.rbegin()->first;
+  int moved = 0;
+  for (auto& [id, feature] : window.features) {
+    if (moved == count || !feature.anchor || !feature.seen.contains(newest)) continue;
+    feature.seen.at(newest).point.x() += 0.1;
+    ++moved;
+  }
+  return moved;
+}
+
+TEST(RejectUnexpected, EndsTracksFarFromWhereTheImuExpectsThem) {
+  TestWorld world({});
+  Window window = window_at_truth(world);
+  triangulate_features(window, kGenerous);
+  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+  ASSERT_EQ(move_newest_sights(window, 10), 10);
+  EXPECT_EQ(reject_unexpected(window, kGenerous).size(), 10U);
+  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+}
+
+TEST(RejectUnexpected, DoubtsThePredictionWhenItFitsTheLesserPartOnly) {
+  TestWorld world({});
+  Window window = window_at_truth(world);
+  triangulate_features(window, kGenerous);
+  move_newest_sights(window, 1000);
+  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+}
+
 TEST(MoveAnchor, KeepsThePlaceInTheWorld) {
   TestWorld world({.cameras = 2});
   Window window = window_at_truth(world);

@@ -182,6 +182,19 @@ void Window::add_motion_factors(std::vector<Factor>& out) {
   }
 }
 
+double Window::imu_strain() {
+  if (states.size() < 2) return 0.0;
+  double sum = 0.0;
+  for (auto a = states.begin(), b = std::next(a); b != states.end(); ++a, ++b) {
+    const double* blocks[] = {a->second.pose.data(), a->second.motion.data(), b->second.pose.data(),
+                              b->second.motion.data()};
+    Eigen::Matrix<double, 15, 1> r;
+    ImuFactor(b->second.imu).Evaluate(blocks, r.data(), nullptr);
+    sum += r.squaredNorm();
+  }
+  return std::sqrt(sum / (15.0 * static_cast<double>(states.size() - 1)));
+}
+
 void Window::add_visual_factors(std::vector<Factor>& out) {
   for (auto& [id, feature] : features) {
     if (!feature.anchor) continue;

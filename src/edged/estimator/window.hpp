@@ -102,6 +102,10 @@ class Window {
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
+  /// Root mean square of what the IMU's factors are off by [sigma]. Small as long as nothing pulls against the IMU, because
+  /// it is the stiffest of all: to make up motion that it has not felt takes more than any right landmark asks for.
+  double imu_strain();
+
   /// Storage of a block, null when it is no longer in the window.
   double* block(BlockKey key);
   /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are

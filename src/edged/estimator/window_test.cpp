@@ -82,6 +82,24 @@ TEST(Window, RefusesObservationsOfACameraItDoesNotHave) {
   EXPECT_THROW(window.add_observations(id, {{"left", {}}}), CheckError);
 }
 
+TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
+  const TestWorldOptions options{.imu_noise = 0.0};
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  EXPECT_LT(window.imu_strain(), 0.5);
+  window.states.rbegin()->second.pose[0] += 0.05;
+  EXPECT_GT(window.imu_strain(), 2.0);
+}
+
+TEST(Window, HoldsStatesTogetherBetweenWhichTheBodyRested) {
+  const TestWorldOptions options;
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  const std::size_t before = window.factors().size();
+  window.states.rbegin()->second.rested = true;
+  EXPECT_EQ(window.factors().size(), before + 1);
+}
+
 TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   const TestWorldOptions options;
   TestWorld world(options);

@@ -15,7 +15,9 @@ struct ImuNoise {
   double accel_walk = 3e-4;             ///< [m/s^3/sqrt(Hz)]
   double gyro_saturation = 34.9;        ///< a rate at or above this [rad/s] on any axis is not believed
   double accel_saturation = 156.9;      ///< [m/s^2]
-  double saturation_inflation = 100.0;  ///< noise is multiplied by this where saturated
+  /// Noise is multiplied by this where saturated or missing: a clipped rate is off by as much as it is over the range, for
+  /// as long as it lasts, so that the IMU knows next to nothing there.
+  double saturation_inflation = 1e4;
 };
 
 }  // namespace edged

@@ -54,20 +54,6 @@ Rig without_offsets(Rig rig) {
 
 }  // namespace
 
-std::string to_string(TrackingStatus status) {
-  switch (status) {
-    case TrackingStatus::Initializing:
-      return "Initializing";
-    case TrackingStatus::Good:
-      return "Good";
-    case TrackingStatus::Degraded:
-      return "Degraded";
-    case TrackingStatus::Lost:
-      return "Lost";
-  }
-  EDGED_CHECK(false, "status {}", static_cast<int>(status));
-}
-
 struct Odometry::Impl {
   Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, const OdometryConfig& used_config,
        Inference inference);
@@ -94,7 +80,6 @@ struct Odometry::Impl {
   NavState in_world(const NavState& state) const;
   void update_covariance(Timestamp t);
   void restart(Timestamp t);
-  TrackingStatus judge(const EstimatorResult& result, Timestamp t);
   int tracks(Modality modality) const;
 
   Mode mode;
@@ -109,13 +94,14 @@ struct Odometry::Impl {
 
   SE3 T_W_S;  ///< the estimator's own frame in the world: moved when it starts again after a loss
   bool ever_started = false;
+  StatusJudge judge;
   FeatureId next_feature = 1;
   BodyMotion body;              ///< predicted, then optimised
   bool gyro_saturated = false;  ///< since the last keyframe
   bool quiet = false;           ///< the event camera sees nothing move
   SceneDepth depth;
   double scene_depth = 0.0;  ///< of the present packet, for the warp and the tracks [m]
-  std::optional<Timestamp> last_keyframe, last_frame, last_supported;
+  std::optional<Timestamp> last_keyframe, last_frame;
   std::optional<PoseCovariance> covariance;
   Timestamp covariance_at;
   cv::Mat event_frame;
@@ -129,6 +115,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
       given_rig(rig_of_mode(rig, used_mode)),
       used_rig(without_offsets(given_rig)),
       estimator(used_rig, imu_noise, used_config.estimator),
+      judge(used_config.status),
       body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
       depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled, inference) {
   config.validate();
@@ -157,7 +144,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   if (estimator.initialized()) depth.add_landmarks(packet.t, landmarks_in_view());
 
   OdometryOutput output;
-  output.status = judge(result, packet.t);
+  output.status = judge.judge(result, estimator.initialized(), packet.t);
   output.state = in_world(body.now());
   update_covariance(packet.t);
   output.covariance = covariance;
@@ -346,7 +333,6 @@ void Odometry::Impl::start_frame(const SE3& T_new_old) {
     T_W_S = SE3(q, p_W_B - q * body.now().T_W_B.translation());
   }
   ever_started = true;
-  last_supported.reset();
   for (Channel& channel : channels) channel.move(T_new_old);
 }
 
@@ -369,17 +355,8 @@ void Odometry::Impl::update_covariance(Timestamp t) {
 }
 
 void Odometry::Impl::restart(Timestamp t) {
-  spdlog::warn("lost at {:.3f} s: starting again", to_seconds(t));
+  spdlog::warn("lost at {:.3f} s: {}; starting again", to_seconds(t), judge.reason());
   estimator = Estimator(used_rig, noise, config.estimator);
-}
-
-TrackingStatus Odometry::Impl::judge(const EstimatorResult& result, Timestamp t) {
-  if (!estimator.initialized()) return ever_started ? TrackingStatus::Lost : TrackingStatus::Initializing;
-  if (!result.plausible) return TrackingStatus::Lost;
-  if (result.standstill || result.landmarks_seen >= config.min_landmarks || !last_supported) last_supported = t;
-  const double alone_s = to_seconds(t - *last_supported);
-  if (alone_s > config.lost_after_s) return TrackingStatus::Lost;
-  return alone_s > config.degraded_after_s ? TrackingStatus::Degraded : TrackingStatus::Good;
 }
 
 int Odometry::Impl::tracks(Modality modality) const {

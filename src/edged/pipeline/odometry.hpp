@@ -13,11 +13,9 @@
 #include "edged/imu/noise.hpp"
 #include "edged/pipeline/odometry_config.hpp"
 #include "edged/pipeline/packetizer.hpp"
+#include "edged/pipeline/tracking_status.hpp"
 
 namespace edged {
-
-enum class TrackingStatus { Initializing, Good, Degraded, Lost };
-std::string to_string(TrackingStatus status);
 
 /// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position and
 /// yaw are exact.

@@ -27,15 +27,13 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("depth", depth);
   fields.group("depth_factor", estimator.depth_factor);
   fields.group("estimator", estimator);
+  fields.group("status", status);
   fields.group("live", live);
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
              {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
   fields.add("max_travel_px", max_travel_px,
              {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
   fields.add("min_events_per_pixel", min_events_per_pixel, {"", 0, 10, "a packet with fewer events draws no event frame"});
-  fields.add("degraded_after_s", degraded_after_s, {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
-  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
-  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
 }
 
 void OdometryConfig::validate() const {

@@ -13,6 +13,7 @@
 #include "edged/live/measurement_queue.hpp"
 #include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/packetizer.hpp"
+#include "edged/pipeline/tracking_status.hpp"
 
 namespace edged {
 
@@ -35,9 +36,7 @@ struct OdometryConfig {
   double quiet_rate_per_pixel = 1.2; ///< event rate [1/s/px] below which nothing moves in view
   double max_travel_px = 5.0;        ///< image motion by translation over the events of one event frame
   double min_events_per_pixel = 0.1; ///< a packet with fewer events draws no event frame
-  double degraded_after_s = 0.7;     ///< without enough landmarks or rest the status falls
-  double lost_after_s = 2.5;
-  int min_landmarks = 8;             ///< seen by the newest state, for a Good pose
+  StatusConfig status;
 
   void visit(ConfigFields& fields);
 

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/tracking_status.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+
+std::string to_string(TrackingStatus status) {
+  switch (status) {
+    case TrackingStatus::Initializing:
+      return "Initializing";
+    case TrackingStatus::Good:
+      return "Good";
+    case TrackingStatus::Degraded:
+      return "Degraded";
+    case TrackingStatus::Lost:
+      return "Lost";
+  }
+  EDGED_CHECK(false, "status {}", static_cast<int>(status));
+}
+
+void StatusConfig::visit(ConfigFields& fields) {
+  fields.add("degraded_after_s", degraded_after_s, {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
+  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
+  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
+  fields.add("degraded_strain", degraded_strain,
+             {"sigma", 0.01, 1000, "Degraded when the window's IMU residuals are larger: the cameras contradict the IMU"});
+  fields.add("lost_strain", lost_strain, {"sigma", 0.01, 1000, "and Lost when they are larger than this"});
+}
+
+TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, Timestamp t) {
+  if (!started) {
+    last_supported_.reset();
+    return ever_started_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
+  }
+  ever_started_ = true;
+  if (result.standstill || result.landmarks_seen >= config_.min_landmarks || !last_supported_) last_supported_ = t;
+  const double alone_s = to_seconds(t - *last_supported_);
+  reason_.clear();
+  if (!result.plausible) {
+    reason_ = "the solution has broken down";
+  } else if (result.imu_strain > config_.lost_strain) {
+    reason_ = fmt::format("the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
+                          "the IMU's noise set too low)", result.imu_strain, config_.lost_strain);
+  } else if (alone_s > config_.lost_after_s) {
+    reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
+  }
+  if (!reason_.empty()) return TrackingStatus::Lost;
+  const bool doubtful = alone_s > config_.degraded_after_s || result.imu_strain > config_.degraded_strain;
+  return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
+}
+
+}  // namespace edged

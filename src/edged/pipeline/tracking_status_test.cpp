@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/tracking_status.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace edged {
+namespace {
+
+Timestamp at(double s) { return timestamp_from_seconds(s); }
+
+EstimatorResult healthy() {
+  EstimatorResult result;
+  result.landmarks_seen = 50;
+  result.imu_strain = 0.1;
+  return result;
+}
+
+TEST(StatusJudge, IsInitializingUntilTheFirstStartAndLostUntilALaterOne) {
+  StatusJudge judge({});
+  EXPECT_EQ(judge.judge({}, false, at(0)), TrackingStatus::Initializing);
+  EXPECT_EQ(judge.judge(healthy(), true, at(1)), TrackingStatus::Good);
+  EXPECT_EQ(judge.judge({}, false, at(2)), TrackingStatus::Lost);
+}
+
+TEST(StatusJudge, FallsToDegradedAndLostWithTheTimeWithoutLandmarks) {
+  StatusJudge judge({});
+  EstimatorResult blind = healthy();
+  blind.landmarks_seen = 2;
+  EXPECT_EQ(judge.judge(healthy(), true, at(0.0)), TrackingStatus::Good);
+  EXPECT_EQ(judge.judge(blind, true, at(0.6)), TrackingStatus::Good);
+  EXPECT_EQ(judge.judge(blind, true, at(0.8)), TrackingStatus::Degraded);
+  EXPECT_EQ(judge.judge(blind, true, at(2.6)), TrackingStatus::Lost);
+  EXPECT_THAT(judge.reason(), testing::HasSubstr("2.6 s"));
+}
+
+TEST(StatusJudge, IsGoodAtRestWithoutAnyLandmark) {
+  StatusJudge judge({});
+  EstimatorResult rest;
+  rest.standstill = true;
+  for (double t = 0.0; t < 10.0; t += 0.1) EXPECT_EQ(judge.judge(rest, true, at(t)), TrackingStatus::Good);
+}
+
+TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
+  StatusJudge judge({});
+  EstimatorResult strained = healthy();
+  strained.imu_strain = 0.35;
+  EXPECT_EQ(judge.judge(strained, true, at(0.0)), TrackingStatus::Degraded);
+  strained.imu_strain = 0.6;
+  EXPECT_EQ(judge.judge(strained, true, at(0.1)), TrackingStatus::Lost);
+  EXPECT_THAT(judge.reason(), testing::HasSubstr("contradict"));
+}
+
+TEST(StatusJudge, ForgetsThePastWhenItStartsAnew) {
+  StatusJudge judge({});
+  EstimatorResult blind = healthy();
+  blind.landmarks_seen = 0;
+  judge.judge(healthy(), true, at(0.0));
+  judge.judge({}, false, at(1.0));
+  EXPECT_EQ(judge.judge(blind, true, at(5.0)), TrackingStatus::Good);
+}
+
+}  // namespace
+}  // namespace edged
