@@ -272,6 +272,7 @@ RunSummary Run::summarize() {
   summary.status = broken_off_ ? "broken off" : run_status(statistics_);
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
+  summary.calibration = compare_calibrations(source_.calibration.rig, odometry_.rig());
   if (live_)
     summary.live =
         LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "edged/core/check.hpp"
 #include "evaluation_text.hpp"
@@ -68,7 +69,25 @@ std::string live_table(const LiveSummary& live) {
               shed ? fmt::format("{} frames, {} packets: too slow", live.shed.frames, live.shed_packets) : "");
 }
 
+std::string calibration_line(const CalibrationFound& c) {
+  return line("camera calibration", fmt::format("{:.2f} deg", c.rotation_deg),
+              fmt::format("of rotation off, clock {:.2f} ms (given {:.2f}): {}", c.time_offset_ms, c.given_offset_ms,
+                          c.camera));
+}
+
 }  // namespace
+
+std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& found) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  std::vector<CalibrationFound> out;
+  for (const RigCamera& camera : found.cameras) {
+    const RigCamera& before = given.camera(camera.name);
+    const Eigen::Vector3d turned = so3::log((before.T_B_C.inverse() * camera.T_B_C).rotation());
+    out.push_back({camera.name, kDegrees * turned.norm(), 1e3 * to_seconds(camera.time_offset),
+                   1e3 * to_seconds(before.time_offset)});
+  }
+  return out;
+}
 
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
                   const GroundTruth& truth) {
@@ -118,6 +137,13 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
+  json["calibration"] = nlohmann::ordered_json::array();
+  for (const CalibrationFound& c : s.calibration) {
+    json["calibration"].push_back({{"camera", c.camera},
+                                   {"rotation_off_deg", c.rotation_deg},
+                                   {"time_offset_ms", c.time_offset_ms},
+                                   {"given_time_offset_ms", c.given_offset_ms}});
+  }
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
   json["repairs"] = s.repairs;
@@ -142,6 +168,7 @@ std::string to_table(const RunSummary& s) {
   } else {
     table += line("ATE RMSE", "-", "no ground truth to compare with");
   }
+  for (const CalibrationFound& c : s.calibration) table += calibration_line(c);
   table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()));
   table += line(
       "coverage", fmt::format("{:.1f} %", 100.0 * s.statistics.coverage()),

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/core/dataset.hpp"
 #include "edged/core/timing.hpp"
@@ -26,6 +27,15 @@ struct LiveSummary {
   QueuePeaks peaks;
 };
 
+/// What the run found a camera's calibration to be off by.
+struct CalibrationFound {
+  std::string camera;
+  double rotation_deg = 0.0;    ///< between T_B_C as given and as found
+  double time_offset_ms = 0.0;  ///< found, the whole of it
+  double given_offset_ms = 0.0;
+};
+std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& found);
+
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::optional<int> seed;
@@ -34,6 +44,7 @@ struct RunSummary {
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
   std::optional<LiveSummary> live;
+  std::vector<CalibrationFound> calibration;
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
   std::optional<Consistency> consistency;      ///< nothing without ground truth
