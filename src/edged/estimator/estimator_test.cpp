@@ -93,17 +93,17 @@ TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
 }
 
 TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
-  constexpr double kDeg = std::numbers::pi / 180.0;
+  constexpr double kDegree = std::numbers::pi / 180.0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const double sign : {1.0, -1.0}) {
       TestWorldOptions options{.rest_s = seed == 1 ? 1.0 : 0.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
-      options.rotation_error = sign * 2.0 * kDeg * Eigen::Vector3d(0.5, -0.7, 0.51).normalized();
+      options.rotation_error = sign * 2.0 * kDegree * Eigen::Vector3d(0.5, -0.7, 0.51).normalized();
       options.time_error = sign * 0.010;
       const RunResult result = run(options, 15.0);
       ASSERT_TRUE(result.initialized) << result.waiting_for;
       const RigCamera given = TestWorld(options).rig().cameras[0], found = result.rig.cameras[0];
       const Eigen::Vector3d turned = so3::log((given.T_B_C.inverse() * found.T_B_C).rotation());
-      EXPECT_LT((turned - options.rotation_error).norm(), 0.2 * kDeg) << seed << " " << sign;
+      EXPECT_LT((turned - options.rotation_error).norm(), 0.2 * kDegree) << seed << " " << sign;
       EXPECT_NEAR(to_seconds(found.time_offset), options.time_error, 5e-4) << seed << " " << sign;
       EXPECT_NEAR(result.travelled_ratio, 1.0, 0.05);
     }

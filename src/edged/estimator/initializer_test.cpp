@@ -10,7 +10,7 @@
 namespace edged {
 namespace {
 
-constexpr double kStep_s = 0.05;
+constexpr double kEvery_s = 0.05;
 constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 struct Started {
@@ -33,15 +33,15 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
                              std::vector<std::string>* waited_for = nullptr) {
   TestWorld world(options);
   Estimator estimator(world.rig(), world.noise(), {});
-  for (int i = 1; i * kStep_s <= patience_s; ++i) {
-    const double t = begin_s + i * kStep_s;
-    const EstimatorResult result = estimator.add(world.packet(t, kStep_s, i % 4 == 0));
+  for (int i = 1; i * kEvery_s <= patience_s; ++i) {
+    const double t = begin_s + i * kEvery_s;
+    const EstimatorResult result = estimator.add(world.packet(t, kEvery_s, i % 4 == 0));
     if (!estimator.initialized()) {
       if (waited_for != nullptr) waited_for->push_back(result.waiting_for);
       continue;
     }
     Started started;
-    started.after_s = i * kStep_s;
+    started.after_s = i * kEvery_s;
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const auto& [id, state] : estimator.window().states) {
       estimated.push_back(state.T_W_B().translation());
@@ -138,7 +138,7 @@ TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
   Estimator estimator(world.rig(), world.noise(), {});
   EstimatorResult result;
   for (int i = 1; i <= 20; ++i) {
-    EstimatorInput input = world.packet(i * kStep_s, kStep_s, true);
+    EstimatorInput input = world.packet(i * kEvery_s, kEvery_s, true);
     for (ImuSample& sample : input.imu) sample.accel_B /= 9.81;
     result = estimator.add(input);
   }
