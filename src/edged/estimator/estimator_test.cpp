@@ -92,6 +92,12 @@ TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
   EXPECT_THAT(result.waiting_for, testing::HasSubstr("parallax"));
 }
 
+EstimatorConfig self_calibrating() {
+  EstimatorConfig config;
+  config.calibration = {.rotation_sigma_deg = 1.0, .time_offset_sigma_ms = 5.0};
+  return config;
+}
+
 TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -99,7 +105,7 @@ TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
       TestWorldOptions options{.rest_s = seed == 1 ? 1.0 : 0.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
       options.rotation_error = sign * 2.0 * kDegree * Eigen::Vector3d(0.5, -0.7, 0.51).normalized();
       options.time_error = sign * 0.010;
-      const RunResult result = run(options, 15.0);
+      const RunResult result = run(options, 15.0, self_calibrating());
       ASSERT_TRUE(result.initialized) << result.waiting_for;
       const RigCamera given = TestWorld(options).rig().cameras[0], found = result.rig.cameras[0];
       const Eigen::Vector3d turned = so3::log((given.T_B_C.inverse() * found.T_B_C).rotation());
@@ -112,7 +118,8 @@ TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
 
 TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   const TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0};
-  const RigCamera given = TestWorld(options).rig().cameras[0], found = run(options, 15.0).rig.cameras[0];
+  const RigCamera given = TestWorld(options).rig().cameras[0],
+                  found = run(options, 15.0, self_calibrating()).rig.cameras[0];
   EXPECT_LT(so3::log((given.T_B_C.inverse() * found.T_B_C).rotation()).norm(), 2e-3);
   EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
 }

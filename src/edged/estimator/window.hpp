@@ -26,10 +26,11 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
-/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given.
+/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given:
+/// the default, because a start in slow motion can not tell a turned camera from a wrong scale.
 struct CalibrationConfig {
-  double rotation_sigma_deg = 1.0;
-  double time_offset_sigma_ms = 5.0;
+  double rotation_sigma_deg = 0.0;
+  double time_offset_sigma_ms = 0.0;
   void visit(ConfigFields& fields);
 };
 

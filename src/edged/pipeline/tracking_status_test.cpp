@@ -45,7 +45,7 @@ TEST(StatusJudge, IsGoodAtRestWithoutAnyLandmark) {
 TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
   StatusJudge judge({});
   EstimatorResult strained = healthy();
-  strained.imu_strain = 0.35;
+  strained.imu_strain = 0.47;
   EXPECT_EQ(judge.judge(strained, true, at(0.0)), TrackingStatus::Degraded);
   strained.imu_strain = 0.6;
   EXPECT_EQ(judge.judge(strained, true, at(0.1)), TrackingStatus::Lost);
