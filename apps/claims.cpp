@@ -8,7 +8,7 @@ void Claims::add(Timestamp packet, const OdometryOutput& output) {
   const bool good = output.status == TrackingStatus::Good;
   // Packets after the first of a loss only skip a number.
   if (output.status == TrackingStatus::Lost) ++start_;
-  if (!output.covariance || !(good || output.status == TrackingStatus::Degraded)) return;
+  if (!output.covariance || !is_tracking(output.status)) return;
   const auto& [position, rotation] = *output.covariance;
   const auto old = [&](const ClaimedPose& last) {
     return last.start == start_ && last.good && last.position == position;

@@ -279,12 +279,12 @@ RunSummary Run::summarize() {
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, packetizer_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
-  const Trajectory body = read_body(folder_);
-  if (truth && !body.empty()) evaluate_run(summary, body, read_claims(folder_), source_.calibration.rig, *truth);
+  const WrittenStates written = read_states(folder_);
+  if (truth && !written.body.empty()) evaluate_run(summary, written, source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
-  write_overview(summary, body, truth);
+  write_overview(summary, written.body, truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   return summary;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -85,27 +84,6 @@ Eigen::Matrix3d symmetric(const double* v) {
   return P;
 }
 
-/// Status, pose and covariance of each line that holds a pose, in the order of the file.
-void for_each_state(const std::filesystem::path& folder,
-                    const std::function<void(Timestamp, const OdometryOutput&)>& take) {
-  constexpr int kFieldsBetween = 17;  // motion, biases, counts, depth
-  std::ifstream states(folder / "states.csv");
-  for (std::string line; std::getline(states, line);) {
-    FieldReader fields(line);
-    const auto t = parse_nanoseconds(fields.next());
-    const auto status = parse_status(fields.next());
-    std::array<double, 7> v;
-    if (!t || !status || !read_numbers(fields, v)) continue;
-    OdometryOutput output;
-    output.status = *status;
-    output.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
-    for (int i = 0; i < kFieldsBetween; ++i) fields.next();
-    std::array<double, 12> P;
-    if (read_numbers(fields, P)) output.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
-    take(*t, output);
-  }
-}
-
 }  // namespace
 
 void make_run_folder(const std::filesystem::path& folder) {
@@ -162,7 +140,7 @@ RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& fra
 
 void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
   states_ << state_line(packet, output);
-  if (output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded) {
+  if (is_tracking(output.status)) {
     ++poses_;
     const StampedPose pose = frame_({packet, output.state.T_W_B});
     tum_.add(pose);
@@ -174,20 +152,28 @@ void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
   states_.flush();
 }
 
-Trajectory read_body(const std::filesystem::path& folder) {
-  Trajectory body;
-  for_each_state(folder, [&](Timestamp t, const OdometryOutput& output) {
-    if (output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded) {
-      body.push_back({t, output.state.T_W_B});
-    }
-  });
-  return body;
-}
-
-std::vector<ClaimedPose> read_claims(const std::filesystem::path& folder) {
+WrittenStates read_states(const std::filesystem::path& folder) {
+  constexpr int kFieldsBetween = 17;  // motion, biases, counts, depth
+  WrittenStates out;
   Claims claims;
-  for_each_state(folder, [&](Timestamp t, const OdometryOutput& output) { claims.add(t, output); });
-  return claims.all();
+  std::ifstream states(folder / "states.csv");
+  for (std::string line; std::getline(states, line);) {
+    FieldReader fields(line);
+    const auto t = parse_nanoseconds(fields.next());
+    const auto status = parse_status(fields.next());
+    std::array<double, 7> v;
+    if (!t || !status || !read_numbers(fields, v)) continue;
+    OdometryOutput output;
+    output.status = *status;
+    output.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
+    for (int i = 0; i < kFieldsBetween; ++i) fields.next();
+    std::array<double, 12> P;
+    if (read_numbers(fields, P)) output.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
+    if (is_tracking(*status)) out.body.push_back({*t, output.state.T_W_B});
+    claims.add(*t, output);
+  }
+  out.claims = claims.all();
+  return out;
 }
 
 }  // namespace edged

@@ -48,10 +48,11 @@ class RunWriter {
   std::size_t poses_ = 0;
 };
 
-/// T_W_B on the IMU clock of the poses that were written into the folder: a run need not hold them.
-Trajectory read_body(const std::filesystem::path& folder);
-
-/// The same with their covariances, those that were worked out anew.
-std::vector<ClaimedPose> read_claims(const std::filesystem::path& folder);
+/// What was written into the folder: a run need not hold it.
+struct WrittenStates {
+  Trajectory body;                  ///< T_W_B on the IMU clock
+  std::vector<ClaimedPose> claims;  ///< those of them whose covariance was worked out anew
+};
+WrittenStates read_states(const std::filesystem::path& folder);
 
 }  // namespace edged

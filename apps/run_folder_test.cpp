@@ -97,7 +97,7 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
         written.push_back({timestamp_from_seconds(1e9 + i / 7.0), output.state.T_W_B});
     }
   }
-  const Trajectory read = read_body(folder);
+  const Trajectory read = read_states(folder).body;
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, written[i].t);
@@ -123,7 +123,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
       claims.add(timestamp_from_seconds(i / 7.0), output);
     }
   }
-  const std::vector<ClaimedPose> read = read_claims(folder);
+  const std::vector<ClaimedPose> read = read_states(folder).claims;
   ASSERT_EQ(read.size(), 14u);
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, claims.all()[i].t);

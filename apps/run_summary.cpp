@@ -89,15 +89,14 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& 
   return out;
 }
 
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
-                  const GroundTruth& truth) {
+void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& rig, const GroundTruth& truth) {
   try {
     const OutputFrame frame(rig, truth.frame);
-    const Association association = associate(truth.trajectory, frame(body));
+    const Association association = associate(truth.trajectory, frame(written.body));
     summary.evaluation = evaluate(association, protocol("P3"));
     Trajectory true_body;
     for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
-    summary.consistency = check_consistency(true_body, claims);
+    summary.consistency = check_consistency(true_body, written.claims);
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
         summary.mpe_percent[name] = evaluate(association, protocol(name), {}).mpe_percent;

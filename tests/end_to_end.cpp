@@ -16,10 +16,6 @@
 namespace edged {
 namespace {
 
-bool has_pose(const OdometryOutput& output) {
-  return output.status == TrackingStatus::Good || output.status == TrackingStatus::Degraded;
-}
-
 /// The body's velocity in its own frame, from two poses around an instant.
 Eigen::Vector3d body_velocity(const StampedPose& before, const StampedPose& after) {
   const SE3 middle = interpolate(before.T, after.T, 0.5);
@@ -96,7 +92,7 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   Claims claims;
   for (const OdometryOutput& output : run.outputs) {
     claims.add(output.state.t, output);
-    if (!has_pose(output)) continue;
+    if (!is_tracking(output.status)) continue;
     estimate.push_back(frame({output.state.t, output.state.T_W_B}));
     const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
                                         [](const StampedPose& pose, Timestamp t) { return pose.t < t; });

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edged/estimator/marginalization.hpp"
+#include "edged/estimator/covariance.hpp"
 
 namespace edged {
 namespace {
@@ -133,13 +133,9 @@ double worst_depth_error(Window& window, const LogScale& scale) {
 }
 
 LogScale estimate_scale(Window& window) {
-  const std::vector<Factor> factors = window.factors();
   const auto& [id, ln_s] = *window.ln_scale.rbegin();
-  std::set<BlockKey> others;
-  for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
-  others.erase({BlockKind::LogScale, id});
-  const LinearPrior marginal = marginalize(window, factors, others);
-  return {ln_s, marginal.J.size() == 1 ? 1.0 / std::abs(marginal.J(0, 0)) : window.depth_config.scale_sigma};
+  const auto P = covariance(window, {{BlockKind::LogScale, id}});
+  return {ln_s, P ? std::sqrt((*P)(0, 0)) : window.depth_config.scale_sigma};
 }
 
 LinearPrior scale_prior(BlockKey scale, double sigma) {

@@ -25,7 +25,7 @@ bool plausible(const NavState& state) {
 }  // namespace
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
-    : noise_(noise), config_(config), window_(rig, config.cauchy_scale, config.depth_factor, config.calibration),
+    : noise_(noise), config_(config), window_(rig, config.cauchy_scale, config.depth_factor),
       standstill_(config.standstill), initializer_(rig, noise, config), depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
@@ -37,6 +37,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
     result.waiting_for = std::move(start.waiting_for);
     if (!start.window) return result;
     window_ = std::move(*start.window);
+    window_.free_calibration(config_.calibration);
     initialized_ = true;
     slide();
     return result;
@@ -67,14 +68,6 @@ std::optional<double> Estimator::depth(FeatureId id) const {
   const StateId newest = window_.states.rbegin()->first;
   const double z = (window_.T_W_C(newest, found->second.camera).inverse() * window_.position(found->second)).z();
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
-}
-
-Rig Estimator::calibrated_rig() const {
-  Rig rig;
-  for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
-    rig.cameras.push_back(window_.calibrated(camera));
-  }
-  return rig;
 }
 
 std::optional<LogScale> Estimator::depth_scale() const {

@@ -48,9 +48,6 @@ class Estimator {
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
   std::optional<LogScale> depth_scale() const;
 
-  /// The cameras as they are by what has been seen: rotation against the body, and the time offset that is left over.
-  Rig calibrated_rig() const;
-
   const Window& window() const { return window_; }
 
  private:

@@ -28,7 +28,7 @@ void EstimatorConfig::visit(ConfigFields& fields) {
              {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});
   fields.add("min_noise_scale", min_noise_scale, {"", 0.01, 1, "least adapted noise over the configured one"});
   fields.add("max_imu_strain", max_imu_strain,
-             {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less and the status is Degraded"});
+             {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less"});
   fields.add("max_noise_scale", max_noise_scale, {"", 1, 100, "largest adapted noise over the configured one"});
   fields.group("calibration", calibration);
   fields.group("landmarks", landmarks);

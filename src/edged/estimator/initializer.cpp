@@ -134,7 +134,7 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   state.T_W_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor, config_.calibration);
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
   const StateId id = window.add_state(window_state(state, input.imu.back().gyro_B, {}, true));
   window.add_observations(id, input.observations);
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
@@ -215,7 +215,7 @@ std::string Initializer::scale_text(double sigma) const {
 
 /// The buffer's views as keyframes where the alignment puts them.
 Window Initializer::aligned_window(const Alignment& alignment) const {
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor, config_.calibration);
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const NavState& nav = alignment.states[i];
     Preintegration imu =

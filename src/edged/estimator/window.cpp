@@ -71,7 +71,7 @@ WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Pre
   return state;
 }
 
-Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth, const CalibrationConfig& config)
+Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
     : cameras(rig.cameras),
       calibration(rig.cameras.size(), CalibrationBlock{}),
       noise_scale(rig.cameras.size(), 1.0),
@@ -81,8 +81,8 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
       depth_loss_(std::make_unique<ceres::CauchyLoss>(depth.cauchy_scale)) {
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     calibration[camera][3] = to_seconds(cameras[camera].time_offset);
-    soft_priors.push_back(calibration_prior({BlockKind::Calibration, camera}, calibration[camera], config));
   }
+  free_calibration({0.0, 0.0});
   if (!depth.enabled) return;
   ln_scale[0] = 0.0;
   soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
@@ -124,6 +124,13 @@ RigCamera Window::calibrated(std::size_t camera) const {
   found.T_B_C = camera_pose(found.T_B_C, {}, SE3(), off.data());
   found.time_offset = duration_from_seconds(off[3]);
   return found;
+}
+
+void Window::free_calibration(const CalibrationConfig& config) {
+  std::erase_if(soft_priors, [](const LinearPrior& soft) { return soft.blocks.front().kind == BlockKind::Calibration; });
+  for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+    soft_priors.push_back(calibration_prior({BlockKind::Calibration, camera}, calibration[camera], config));
+  }
 }
 
 Eigen::Vector3d Window::position(const Feature& feature) const {

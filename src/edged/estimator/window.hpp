@@ -26,11 +26,10 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
-/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given:
-/// the default, because a start in slow motion can not tell a turned camera from a wrong scale.
+/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given.
 struct CalibrationConfig {
-  double rotation_sigma_deg = 0.0;
-  double time_offset_sigma_ms = 0.0;
+  double rotation_sigma_deg = 1.0;
+  double time_offset_sigma_ms = 5.0;
   void visit(ConfigFields& fields);
 };
 
@@ -71,9 +70,9 @@ struct Factor {
 
 class Window {
  public:
-  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already.
-  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {},
-         const CalibrationConfig& calibration = {});
+  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already. Calibrations are
+  /// held as given until free_calibration().
+  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
   // --- contents -------------------------------------------------------------------------------------------------------
   std::map<StateId, WindowState> states;      ///< ids grow with time
@@ -98,7 +97,10 @@ class Window {
 
   const WindowState& newest() const { return states.rbegin()->second; }
   SE3 T_W_C(StateId state, std::size_t camera) const;
-  /// The camera with the calibration found so far.
+  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a turned
+  /// camera looks like another scale.
+  void free_calibration(const CalibrationConfig& config);
+  /// The camera by what has been seen: its rotation against the body, and the time offset that is left over.
   RigCamera calibrated(std::size_t camera) const;
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;

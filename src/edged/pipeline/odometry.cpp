@@ -93,7 +93,6 @@ struct Odometry::Impl {
   StageTimings timings;
 
   SE3 T_W_S;  ///< the estimator's own frame in the world: moved when it starts again after a loss
-  bool ever_started = false;
   StatusJudge judge;
   FeatureId next_feature = 1;
   BodyMotion body;              ///< predicted, then optimised
@@ -317,14 +316,15 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
 }
 
 void Odometry::Impl::calibrate() {
-  used_rig = estimator.calibrated_rig();
-  for (Channel& channel : channels) channel.camera = used_rig.camera(channel.camera.name);
+  for (std::size_t camera = 0; camera < channels.size(); ++camera) {
+    channels[camera].camera = used_rig.cameras[camera] = estimator.window().calibrated(camera);
+  }
 }
 
 /// The estimator has started, in a frame S of its own. The first start makes it the world; later ones are put where the
 /// dead reckoning has come to, position and yaw, so that the trajectory goes on.
 void Odometry::Impl::start_frame(const SE3& T_new_old) {
-  if (ever_started) {
+  if (judge.ever_started()) {
     const SE3 T_Sold_Snew = T_new_old.inverse();
     const Eigen::Matrix3d R = (T_W_S * T_Sold_Snew).R();
     const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
@@ -332,7 +332,6 @@ void Odometry::Impl::start_frame(const SE3& T_new_old) {
     const Eigen::Vector3d p_W_B = T_W_S * (T_Sold_Snew * body.now().T_W_B.translation());
     T_W_S = SE3(q, p_W_B - q * body.now().T_W_B.translation());
   }
-  ever_started = true;
   for (Channel& channel : channels) channel.move(T_new_old);
 }
 

@@ -52,6 +52,19 @@ TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
   EXPECT_THAT(judge.reason(), testing::HasSubstr("contradict"));
 }
 
+TEST(StatusJudge, BearsMoreStrainAfterALossByIt) {
+  StatusJudge judge({});
+  EstimatorResult strained = healthy();
+  strained.imu_strain = 0.6;
+  EXPECT_EQ(judge.judge(strained, true, at(0.0)), TrackingStatus::Lost);
+  judge.judge({}, false, at(1.0));
+  EXPECT_EQ(judge.judge(strained, true, at(2.0)), TrackingStatus::Good);
+  strained.imu_strain = 0.7;
+  EXPECT_EQ(judge.judge(strained, true, at(2.1)), TrackingStatus::Degraded);
+  strained.imu_strain = 0.8;
+  EXPECT_EQ(judge.judge(strained, true, at(2.2)), TrackingStatus::Lost);
+}
+
 TEST(StatusJudge, ForgetsThePastWhenItStartsAnew) {
   StatusJudge judge({});
   EstimatorResult blind = healthy();
