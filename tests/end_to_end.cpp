@@ -78,6 +78,7 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
   }
   packetizer.finish();
   process_ready_packets();
+  run.rig = odometry.rig();
   return run;
 }
 

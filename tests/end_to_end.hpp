@@ -34,6 +34,7 @@ struct FlightRun {
   std::vector<OdometryOutput> outputs;   ///< one a packet
   std::vector<double> event_frame_sums;  ///< sum of grey values, one a packet; zero without an event frame
   RunStatistics statistics;
+  Rig rig;  ///< as calibrated along the way
 };
 
 FlightRun run_flight(const Calibration& calibration, std::span<const Measurement> measurements, Mode mode,

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
 constexpr double kDoubtGain = 0.25;           // a packet
-constexpr double kRestStretch = 10.0;         // times the longest IMU interval
 constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is moving is not at rest
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
@@ -59,7 +58,9 @@ Eigen::Vector3d Estimator::gyro_bias() const {
 
 std::optional<Matrix15d> Estimator::covariance() {
   if (!initialized_) return std::nullopt;
-  return edged::covariance(window_, window_.states.rbegin()->first);
+  std::optional<Matrix15d> P = edged::covariance(window_, window_.states.rbegin()->first);
+  if (P) *P *= config_.sigma_inflation * config_.sigma_inflation;
+  return P;
 }
 
 std::optional<double> Estimator::depth(FeatureId id) const {
@@ -131,9 +132,7 @@ void Estimator::slide() {
   // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
   if (window_.states.size() > static_cast<std::size_t>(config_.recent_states)) {
     const auto aged = std::prev(window_.states.end(), config_.recent_states + 1);
-    // At rest new keyframes would push those with a baseline out of the window.
-    const double longest_s = config_.max_interval_s * (standstill_.still() ? kRestStretch : 1.0);
-    if (!aged->second.keyframe) drop_or_promote(window_, aged->first, longest_s);
+    if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) {
     drop_oldest_keyframe(window_, config_.landmarks);

@@ -40,7 +40,7 @@ class Estimator {
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 
-  /// Of the newest state: see covariance() of a window. Nothing before the start.
+  /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the start.
   std::optional<Matrix15d> covariance();
 
   /// z-depth of a landmark in its own camera at the newest state [m].

@@ -30,6 +30,8 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("max_imu_strain", max_imu_strain,
              {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less"});
   fields.add("max_noise_scale", max_noise_scale, {"", 1, 100, "largest adapted noise over the configured one"});
+  fields.add("sigma_inflation", sigma_inflation,
+             {"", 0.1, 100, "reported standard deviations over those of independent corner errors"});
   fields.group("calibration", calibration);
   fields.group("landmarks", landmarks);
   fields.group("standstill", standstill);

@@ -31,6 +31,7 @@ struct EstimatorConfig {
   double min_noise_scale = 0.3;    ///< bounds of the adapted noise over the configured one
   double max_noise_scale = 4.0;
   double max_imu_strain = 0.3;     ///< beyond it (Window::imu_strain) the cameras are believed less
+  double sigma_inflation = 2.5;    ///< of what covariance() gives: errors of sights last from image to image
   CalibrationConfig calibration;
   LandmarkConfig landmarks;
   StandstillConfig standstill;

@@ -10,6 +10,8 @@
 namespace edged {
 namespace {
 
+constexpr double kRestStretch = 10.0;
+
 /// The prior (always) and every other factor with a block that leaves.
 std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
   std::vector<Factor> factors = window.factors();
@@ -54,12 +56,14 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto state = window.states.find(id);
   const auto next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
-  if (joined.dt() > max_interval_s) {
+  const bool rested = state->second.rested && next->second.rested;
+  const bool settles = !state->second.rested && next->second.rested;
+  if (settles || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
     state->second.keyframe = true;
     return;
   }
   next->second.imu = std::move(joined);
-  next->second.rested &= state->second.rested;
+  next->second.rested = rested;
   for (auto& [feature_id, feature] : window.features) feature.seen.erase(id);
   window.states.erase(state);
   window.drop_orphaned_priors();
