@@ -7,11 +7,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/io/merger.hpp"
 
 namespace edged {
 namespace {
-
-constexpr Duration kBatchSpan = std::chrono::milliseconds(5);
 
 template <typename Stream>
 Timestamp next_stamp(std::optional<Stream>& stream) {
@@ -69,15 +68,11 @@ void TextDataset::find_ends() {
 
 std::optional<Measurement> TextDataset::next() {
   while (true) {
-    const Timestamp t_imu = next_stamp(imu_), t_events = next_stamp(events_), t_frame = next_stamp(frames_);
-    if (t_imu == Timestamp::max() && t_events == Timestamp::max() && t_frame == Timestamp::max()) return std::nullopt;
-    if (t_imu <= t_events && t_imu <= t_frame) return imu_->pop();
-    if (t_events <= t_frame) {
-      // Events at the stamp of a frame come before it, those at the stamp of an IMU sample after it.
-      const Timestamp before_frame = t_frame == Timestamp::max() ? t_frame : t_frame + Duration(1);
-      const Timestamp end = std::min({t_imu, before_frame, t_events + kBatchSpan});
-      return EventBatch{layout_.events->camera, events_->take_before(end)};
-    }
+    const Turn turn = next_turn(next_stamp(imu_), next_stamp(events_), next_stamp(frames_));
+    if (turn.stream == Turn::Stream::None) return std::nullopt;
+    if (turn.stream == Turn::Stream::Imu) return imu_->pop();
+    if (turn.stream == Turn::Stream::Events)
+      return EventBatch{layout_.events->camera, events_->take_before(turn.events_end)};
     if (auto frame = load(frames_->pop())) return std::move(*frame);
   }
 }

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Binary files: reading them in parts, and little-endian numbers out of bytes that may be damaged.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace edged {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
+
+static_assert(std::endian::native == std::endian::little, "binary formats are copied into numbers as they are");
+
+/// Bytes that cannot be what they should. Caught by the reader of the format, which counts it.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Takes numbers off the front of some bytes. Throws Damage where they end too early.
+class ByteReader {
+ public:
+  explicit ByteReader(ByteSpan bytes) : all_(bytes) {}
+
+  template <typename T>
+  requires std::is_arithmetic_v<T> T number() {
+    T value;
+    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+    return value;
+  }
+
+  ByteSpan take(std::size_t count) {
+    if (count > left()) throw Damage("ends too early");
+    const ByteSpan part = all_.subspan(at_, count);
+    at_ += count;
+    return part;
+  }
+
+  std::string_view text(std::size_t count) {
+    const ByteSpan part = take(count);
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
+  }
+
+  std::size_t at() const { return at_; }
+  std::size_t left() const { return all_.size() - at_; }
+
+ private:
+  ByteSpan all_;
+  std::size_t at_ = 0;
+};
+
+/// A file read by position.
+class BinaryFile {
+ public:
+  /// Throws InputError when it cannot be opened.
+  explicit BinaryFile(const std::filesystem::path& file);
+
+  std::uint64_t size() const { return size_; }
+  /// The bytes from `offset` on, fewer at the end of the file.
+  Bytes read(std::uint64_t offset, std::size_t count);
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace edged

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The compressions of recordings, one block at a time.
+#pragma once
+
+#include <string_view>
+
+#include "edged/io/bytes.hpp"
+
+namespace edged {
+
+struct Decompressed {
+  Bytes bytes;
+  bool whole = false;  ///< false: damaged or cut; `bytes` holds what came before
+};
+
+/// method: "none" or "", "lz4" (LZ4 frames), "bz2" or "zstd". More than max_bytes counts as damage, so that damaged
+/// lengths cannot fill the memory. Throws Damage for another method.
+Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t max_bytes);
+
+}  // namespace edged

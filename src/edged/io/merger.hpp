@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Measurements of several streams, as they come from a file, put into the order that Dataset promises.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "edged/core/types.hpp"
+#include "edged/io/repairs.hpp"
+
+namespace edged {
+
+/// Which stream is next, and where its batch has to end if it is that of the events.
+struct Turn {
+  enum class Stream { None, Imu, Events, Frame } stream = Stream::None;
+  Timestamp events_end = Timestamp::max();  ///< the batch holds events before this stamp
+};
+
+/// The order of Dataset from the next stamp of each stream (Timestamp::max() for one that has ended).
+Turn next_turn(Timestamp imu, Timestamp events, Timestamp frame);
+
+/// The items of one stream, T with a member `Timestamp t`, sorted although they may come a little out of order. A stamp
+/// far ahead of all others counts only once another confirms it, so that one damaged stamp does not end the stream.
+template <typename T>
+class ArrivalQueue {
+ public:
+  /// subject: begins the kinds of repairs. max_held: more than this are not held back, whatever the other streams do.
+  ArrivalQueue(std::string subject, bool stamps_repeat, std::size_t max_held, Repairs& repairs)
+      : subject_(std::move(subject)), stamps_repeat_(stamps_repeat), max_held_(max_held), repairs_(repairs) {}
+
+  /// floor: stamp of what has been handed out; earlier items come too late.
+  void push(T item, Timestamp floor);
+  /// Nothing more will come.
+  void finish(Timestamp floor);
+
+  const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
+  Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : sorted_.front().t; }
+  T pop();
+
+  /// Stamp of the last arrival.
+  std::optional<Timestamp> last() const { return last_; }
+  /// What is before this has to leave, as too much is held.
+  Timestamp overflow() const {
+    return sorted_.size() <= max_held_ ? Timestamp::min() : sorted_[sorted_.size() - max_held_].t + Duration(1);
+  }
+
+ private:
+  static constexpr Duration kJump = std::chrono::seconds(10);
+  void insert(T item, Timestamp floor);
+
+  std::string subject_;
+  bool stamps_repeat_;
+  std::size_t max_held_;
+  Repairs& repairs_;
+  std::deque<T> sorted_;
+  std::optional<T> suspect_;  ///< far ahead of those before, or the first of all
+  std::optional<Timestamp> last_;
+  Timestamp newest_ = Timestamp::min();
+};
+
+/// Push what the file gives, pop what is ready: `while (!(m = merger.pop()) && more) push(...)`. Holds back what an
+/// expected stream may still precede, for at most a second of recording and a few million events. Items that come later
+/// are left out, those out of order before that sorted in; both are counted.
+class Merger {
+ public:
+  struct Streams {
+    bool events = false, frames = false, imu = false;
+    std::string event_camera = "events";
+  };
+
+  Merger(Streams expected, Repairs& repairs);
+
+  void push(std::span<const Event> events);
+  void push(Frame frame);
+  void push(const ImuSample& sample);
+  /// The file has ended: all that is held gets ready.
+  void finish();
+
+  /// The next measurement, or nothing: push more, or after finish() the end.
+  std::optional<Measurement> pop();
+
+ private:
+  Timestamp horizon() const;
+  EventBatch take_events(Timestamp end);
+
+  Streams expected_;
+  ArrivalQueue<Event> events_;
+  ArrivalQueue<Frame> frames_;
+  ArrivalQueue<ImuSample> imu_;
+  Timestamp floor_ = Timestamp::min();
+  bool finished_ = false;
+};
+
+}  // namespace edged

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Order, bounds and damage of merged streams.
+#include "edged/io/merger.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <vector>
+
+namespace edged {
+namespace {
+
+Timestamp at_ms(double t) { return timestamp_from_seconds(t * 1e-3); }
+ImuSample imu_at(double t) { return {at_ms(t), {}, {}}; }
+std::vector<Event> events_at(std::initializer_list<double> stamps) {
+  std::vector<Event> events;
+  for (const double t : stamps) events.push_back({at_ms(t), 1, 1, true});
+  return events;
+}
+
+/// "I1 E2,3 F4": what can be popped, stamps in ms.
+std::string popped(Merger& merger) {
+  std::string text;
+  const auto add = [&](const char* kind, Timestamp t) { text += fmt::format("{}{}", kind, to_ns(t) / 1'000'000); };
+  while (const auto m = merger.pop()) {
+    if (!text.empty()) text += ' ';
+    if (const auto* s = std::get_if<ImuSample>(&*m)) add("I", s->t);
+    if (const auto* f = std::get_if<Frame>(&*m)) add("F", f->t);
+    if (const auto* b = std::get_if<EventBatch>(&*m))
+      for (const Event& e : b->events) add(&e == b->events.data() ? "E" : ",", e.t);
+  }
+  return text;
+}
+
+TEST(Merger, SortsStreamsThatArriveAtDifferentDelaysAndBreaksTiesAsDatasetSays) {
+  Repairs repairs;
+  Merger merger({true, true, true, "events"}, repairs);
+  merger.push(imu_at(0));
+  merger.push(imu_at(2));
+  merger.push(imu_at(4));
+  EXPECT_EQ(popped(merger), "");  // events and frames may still precede
+  merger.push(events_at({0, 1, 2, 3, 4}));
+  merger.push(Frame{at_ms(2), "frames", {}});
+  merger.push(Frame{at_ms(4), "frames", {}});
+  EXPECT_EQ(popped(merger), "I0 E0,1 I2 E2 F2");  // up to a millisecond before the stream that is last
+  merger.finish();
+  EXPECT_EQ(popped(merger), "E3 I4 E4 F4");
+  EXPECT_TRUE(repairs.counts().empty());
+}
+
+TEST(Merger, BatchesSpanAtMostFiveMilliseconds) {
+  Repairs repairs;
+  Merger merger({true, false, false, "events"}, repairs);
+  merger.push(events_at({0, 2, 4, 6, 8}));
+  merger.finish();
+  EXPECT_EQ(popped(merger), "E0,2,4 E6,8");
+}
+
+TEST(Merger, WaitsOneSecondForAStreamThatStaysAway) {
+  Repairs repairs;
+  Merger merger({true, true, true, "events"}, repairs);
+  for (int t = 0; t <= 900; t += 100) merger.push(imu_at(t));
+  EXPECT_EQ(popped(merger), "");
+  merger.push(imu_at(1150));
+  EXPECT_EQ(popped(merger), "I0 I100");
+}
+
+TEST(Merger, LateItemsAreSortedInWhilePossibleAndCountedAlways) {
+  Repairs repairs;
+  Merger merger({true, false, false, "events"}, repairs);
+  merger.push(events_at({10, 20, 15, 30}));
+  EXPECT_EQ(popped(merger), "E10 E15 E20");
+  merger.push(events_at({12, 40}));
+  merger.finish();
+  EXPECT_EQ(popped(merger), "E30 E40");
+  EXPECT_EQ(repairs.counts().at("events: out of order, sorted in"), 1u);
+  EXPECT_EQ(repairs.counts().at("events: out of order, dropped"), 1u);
+}
+
+TEST(Merger, RepeatedStampsAreLeftOutExceptOfEvents) {
+  Repairs repairs;
+  Merger merger({true, false, true, "events"}, repairs);
+  merger.push(imu_at(1));
+  merger.push(imu_at(1));
+  merger.push(events_at({1, 1}));
+  merger.finish();
+  EXPECT_EQ(popped(merger), "I1 E1,1");
+  EXPECT_EQ(repairs.counts().at("imu: duplicate stamp"), 1u);
+}
+
+TEST(Merger, OneStampFarAheadDoesNotEndTheStream) {
+  Repairs repairs;
+  Merger merger({false, false, true, "events"}, repairs);
+  for (const double t : {9e9, 0.0, 5.0, 7e7, 10.0, 15.0}) merger.push(imu_at(t));
+  merger.finish();
+  EXPECT_EQ(popped(merger), "I0 I5 I10 I15");
+  EXPECT_EQ(repairs.counts().at("imu: stamp far ahead, dropped"), 2u);
+}
+
+TEST(Merger, AGapThatTheNextStampConfirmsIsKept) {
+  Repairs repairs;
+  Merger merger({false, false, true, "events"}, repairs);
+  for (const double t : {0.0, 5.0, 60'000.0, 60'005.0}) merger.push(imu_at(t));
+  merger.finish();
+  EXPECT_EQ(popped(merger), "I0 I5 I60000 I60005");
+  EXPECT_TRUE(repairs.counts().empty());
+}
+
+TEST(Merger, HoldsABoundedNumberOfEventsWhoseStampsStandStill) {
+  Repairs repairs;
+  Merger merger({true, false, true, "events"}, repairs);
+  const std::vector<Event> many(1'000'000, Event{at_ms(1), 1, 1, true});
+  std::size_t out = 0;
+  for (int i = 0; i < 6; ++i) {
+    merger.push(many);
+    while (const auto m = merger.pop()) out += std::get<EventBatch>(*m).events.size();
+  }
+  EXPECT_GE(out, 2'000'000u);
+}
+
+}  // namespace
+}  // namespace edged
