@@ -15,6 +15,8 @@ if(EDGED_SANITIZE)
   target_compile_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
   target_link_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE})
+  # Memory that Eigen's code in libraries took is freed by ours: both must take it from malloc as it is.
+  target_compile_definitions(edged_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ...)
