@@ -234,14 +234,10 @@ void add_enhance_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<EnhanceOptions>();
   CLI::App* enhance =
       app.add_subcommand("enhance", "Draw the event frame of one moment and every step of its enhancement");
-  enhance->add_option("RECORDING", options->source.recording, "Folder (format found by content), or sim:PRESET[:SEED]")
-      ->required();
+  add_source_options(*enhance, options->source);
   enhance->add_option("--at", options->at_s, "[s] from the recording's start: the first packet from then on")
       ->required();
   enhance->add_option("--out", options->out, "Folder for sheet.png and one picture per step")->required();
-  CLI::Option* rig =
-      enhance->add_option("--rig", options->source.rig, "Calibration that ships with the program, by name");
-  enhance->add_option("--calib", options->source.calib, "Calibration file or folder")->excludes(rig);
   add_config_options(*enhance, options->config);
   enhance->add_flag("--quiet", options->quiet, "No status line");
   enhance->footer(

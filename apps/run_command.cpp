@@ -324,11 +324,7 @@ int run(const RunOptions& options) {
 void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
-  run_app->add_option("RECORDING", options->source.recording, "Folder (format found by content), or sim:PRESET[:SEED]")
-      ->required();
-  CLI::Option* rig =
-      run_app->add_option("--rig", options->source.rig, "Calibration that ships with the program, by name");
-  run_app->add_option("--calib", options->source.calib, "Calibration file or folder")->excludes(rig);
+  add_source_options(*run_app, options->source);
   add_config_options(*run_app, options->config);
   run_app->add_option("KEY=VALUE", options->config.assignments, "More options, as with --set");
   run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/io/prophesee/raw.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/sim/simulator.hpp"
 
@@ -36,9 +37,20 @@ std::string rig_list() {
   return list;
 }
 
-Source open_folder(const SourceOptions& options) {
+RecordingOptions recording_options(const SourceOptions& options) {
+  RecordingOptions chosen;
+  if (!options.geometry.empty()) {
+    chosen.geometry = parse_geometry(options.geometry);
+    if (!chosen.geometry)
+      throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
+  }
+  return chosen;
+}
+
+Source open_on_disk(const SourceOptions& options) {
   std::optional<Calibration> calibration = chosen_calibration(options);
-  Recording recording = open_recording(options.recording, calibration ? &calibration->rig : nullptr);
+  Recording recording =
+      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
   if (!calibration) calibration = std::move(recording.calibration);
   if (!calibration) {
     throw InputError::format(
@@ -56,8 +68,17 @@ Source open_folder(const SourceOptions& options) {
 
 }  // namespace
 
+void add_source_options(CLI::App& command, SourceOptions& options) {
+  command.add_option("RECORDING", options.recording, "Folder or file (format found by content), or sim:PRESET[:SEED]")
+      ->required();
+  CLI::Option* rig = command.add_option("--rig", options.rig, "Calibration that ships with the program, by name");
+  command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
+  command.add_option("--geometry", options.geometry,
+                     "WIDTHxHEIGHT [px] of the event sensor, for files that do not hold it");
+}
+
 Source open_source(const SourceOptions& options) {
-  if (!options.recording.starts_with(kSimulatorPrefix)) return open_folder(options);
+  if (!options.recording.starts_with(kSimulatorPrefix)) return open_on_disk(options);
   const SimulatorConfig config = simulator_config(options.recording.substr(kSimulatorPrefix.size()));
   auto simulator = std::make_unique<Simulator>(config);
   Calibration calibration = chosen_calibration(options).value_or(simulator->calibration());

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// RECORDING on the command line: a folder, or "sim:PRESET[:SEED]" for the simulator; with the calibration that fits it.
+// RECORDING on the command line: a folder or file, or "sim:PRESET[:SEED]" for the simulator; with the calibration that
+// fits it.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +19,7 @@ struct SourceOptions {
   std::string recording;
   std::string rig;              ///< name of a shipped rig; "" where not given
   std::filesystem::path calib;  ///< calibration file; "" where not given
+  std::string geometry;         ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
 };
 
 struct Source {
@@ -24,6 +27,9 @@ struct Source {
   Calibration calibration;
   std::optional<int> seed;  ///< of the simulator
 };
+
+/// Adds RECORDING, --rig, --calib and --geometry.
+void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
 Source open_source(const SourceOptions& options);

@@ -1,25 +1,41 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which format a folder is.
+// Which format a folder or a file is.
 #include "edged/io/recording.hpp"
 
 #include "edged/core/check.hpp"
+#include "edged/io/bytes.hpp"
 #include "edged/io/formats.hpp"
+#include "edged/io/prophesee/raw.hpp"
 
 namespace edged {
+namespace {
 
-Recording open_recording(const std::filesystem::path& folder, const Rig* rig) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder, ignored)) throw InputError::format("{}: no such folder", folder.string());
-  if (!std::filesystem::is_directory(folder, ignored))
-    throw InputError::format("{}: is a file; give the folder of the recording (unpack an archive first)",
-                             folder.string());
+Recording open_folder(const std::filesystem::path& folder, const Rig* rig) {
   if (is_ecd_folder(folder)) return open_ecd(folder, rig);
   if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);
   throw InputError::format(
       "{}: no recording found; looked for events.txt, images.txt or imu.txt (Event-Camera Dataset) and for "
       "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC)",
       folder.string());
+}
+
+Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
+  constexpr std::size_t kHeadBytes = 4096;
+  const Bytes head = BinaryFile(file).read(0, kHeadBytes);
+  if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
+  throw InputError::format(
+      "{}: is no file that is known by its content; looked for Prophesee RAW and DAT. Of a recording in several files "
+      "give the folder (unpack an archive first)",
+      file.string());
+}
+
+}  // namespace
+
+Recording open_recording(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
+  return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig) : open_file(path, rig, options);
 }
 
 }  // namespace edged

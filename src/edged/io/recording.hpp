@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <opencv2/core/types.hpp>
 #include <optional>
 
 #include "edged/core/dataset.hpp"
@@ -17,12 +18,19 @@ struct Recording {
   std::optional<Calibration> calibration;  ///< where the recording brings a complete one (EuRoC, calibration.yaml)
 };
 
-/// Opens a folder, its format found by content:
+/// What the user may say of a recording that it does not tell itself, or not clearly.
+struct RecordingOptions {
+  std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
+};
+
+/// Opens a folder or a file, its format found by content:
 /// - Event-Camera Dataset text (events.txt, images.txt, imu.txt, groundtruth.txt, calib.txt; one sensor is enough).
 ///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours there counts.
 /// - EuRoC ASL (mav0 or its parent): camera "cam0", ground truth of "body".
+/// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
-/// contradicts the recording's own calib.txt. Throws InputError that lists what was looked for.
-Recording open_recording(const std::filesystem::path& folder, const Rig* rig = nullptr);
+/// contradicts the recording. Throws InputError that lists what was looked for.
+Recording open_recording(const std::filesystem::path& path, const Rig* rig = nullptr,
+                         const RecordingOptions& options = {});
 
 }  // namespace edged

@@ -180,7 +180,7 @@ TEST(Recording, UnknownFoldersAreRefusedWithWhatWasLookedFor) {
   TempFolder folder;
   EXPECT_THAT(input_error([&] { open_recording(folder.path()); }),
               ::testing::AllOf(HasSubstr("events.txt"), HasSubstr("cam0/data.csv")));
-  EXPECT_THAT(input_error([&] { open_recording(folder.path() / "none"); }), HasSubstr("no such folder"));
+  EXPECT_THAT(input_error([&] { open_recording(folder.path() / "none"); }), HasSubstr("no such file or folder"));
   EXPECT_THAT(input_error([&] { open_recording(folder.write("a.bag", "x")); }), HasSubstr("give the folder"));
 }
 

@@ -22,8 +22,8 @@ constexpr std::uint32_t bits(Word word, unsigned first, unsigned count) {
   return static_cast<std::uint32_t>((word >> first) & ((Word{1} << count) - 1));
 }
 
-/// What `counter` of so many bits stands for after `last`. It wrapped when it moved by clearly more than half its range:
-/// a flipped bit never does, so that the next counter brings the time back to where it was.
+/// What `counter` of so many bits stands for after `last`. It wrapped when it moved by clearly more than half its
+/// range: a flipped bit never does, so that the next counter brings the time back to where it was.
 std::int64_t continued(std::int64_t last, std::uint32_t counter, unsigned width) {
   const std::int64_t period = std::int64_t{1} << width, limit = period / 16 * 9;
   std::int64_t step = counter - (last & (period - 1));

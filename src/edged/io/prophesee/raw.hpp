@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Files of Prophesee cameras: RAW in EVT 2.0, 2.1 and 3.0, with old and new headers, and DAT.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "edged/io/bytes.hpp"
+#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/recording.hpp"
+
+namespace edged {
+
+/// What the text lines at the beginning of such a file say.
+struct PropheseeHeader {
+  EvtFormat format = EvtFormat::Evt2;
+  std::optional<cv::Size> geometry;  ///< sensor [px], said or known from the name of the camera
+  std::size_t bytes = 0;             ///< events begin here
+};
+
+/// From the first bytes of a file. Throws InputError, naming `file`, when it has no events of a known encoding.
+PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file);
+
+/// "640x480"; nothing where it is no size.
+std::optional<cv::Size> parse_geometry(std::string_view text);
+
+/// From the first bytes of a file.
+bool is_prophesee_file(ByteSpan head);
+/// geometry: of the sensor, as the user gives it.
+Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry);
+
+}  // namespace edged

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Prophesee files: headers old and new, damage, the real one.
+#include "edged/io/prophesee/raw.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "edged/io/prophesee/evt_test_support.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct RawFile {
+  std::string name, header;
+  EvtFormat format;
+};
+
+class PropheseeFile : public ::testing::TestWithParam<RawFile> {};
+
+const std::string kDatType{'\x0C', '\x08'};
+
+INSTANTIATE_TEST_SUITE_P(
+    , PropheseeFile,
+    ::testing::Values(
+        RawFile{"evt3", "% date 2023-03-29 16:37:46\n% evt 3.0\n% format EVT3;height=720;width=1280\n% end\n",
+                EvtFormat::Evt3},
+        RawFile{"evt3_geometry_only", "% evt 3.0\r\n% geometry 1280x720\r\n% end\r\n", EvtFormat::Evt3},
+        RawFile{"evt2_without_end", "% evt 2.0\n% plugin_name hal_plugin_gen41_evk2\n", EvtFormat::Evt2},
+        RawFile{"evt21", "% format EVT21;endianness=little;height=720;width=1280\n% end\n", EvtFormat::Evt21},
+        RawFile{"evt21_of_two_keys", "% evt 2.1\n% endianness little\n% geometry 1280x720\n% end\n", EvtFormat::Evt21},
+        RawFile{"evt21_halves_swapped", "% format EVT21;height=720;width=1280\n% end\n", EvtFormat::Evt21Legacy},
+        RawFile{"dat", "% Data file containing CD events\n% Version 2\n% Width 1280\n% Height 720\n" + kDatType,
+                EvtFormat::Dat}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+TEST_P(PropheseeFile, GivesBackEveryEvent) {
+  TempFolder folder;
+  const std::vector<Event> events = generated_events(200'000, 1280, 720, 20);
+  const auto file = folder.write("a.bin", GetParam().header + EvtEncoder(GetParam().format).encode(events));
+  const Recording recording = open_recording(file);
+  const DatasetInfo& info = recording.dataset->info();
+  EXPECT_TRUE(info.has_events && !info.has_frames && !info.has_imu);
+  EXPECT_EQ(info.name, "a");
+  EXPECT_EQ(info.begin, events.front().t);
+  EXPECT_EQ(info.end.value_or(events.back().t), events.back().t);
+  EXPECT_EQ(info.end.has_value(), GetParam().format != EvtFormat::Evt3);
+  const Contents c = read_all(*recording.dataset);
+  EXPECT_TRUE(c.events == events);
+  EXPECT_TRUE(recording.dataset->repairs().empty());
+  for (const Measurement& m : c.all) {
+    const auto& batch = std::get<EventBatch>(m);
+    EXPECT_EQ(batch.camera, "events");
+    EXPECT_LE(batch.events.back().t - batch.events.front().t, std::chrono::milliseconds(5));
+  }
+}
+
+TEST_P(PropheseeFile, CutAnywhereItGivesWhatCameBefore) {
+  TempFolder folder;
+  const std::vector<Event> events = generated_events(2000, 1280, 720, 20);
+  const std::string whole = GetParam().header + EvtEncoder(GetParam().format).encode(events);
+  std::size_t before = 0;
+  for (int percent = 0; percent < 100; ++percent) {
+    const auto file = folder.write("a.raw", whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
+    std::vector<Event> read;
+    const std::string error = input_error([&] { read = read_all(*open_recording(file).dataset).events; });
+    EXPECT_EQ(error.empty(), !read.empty()) << percent;
+    ASSERT_GE(read.size(), before) << percent;
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), events.begin())) << percent;
+    before = read.size();
+  }
+  EXPECT_GT(before, 1900u);
+}
+
+TEST_P(PropheseeFile, FlippedBitsAreSurvived) {
+  TempFolder folder;
+  const std::vector<Event> events = generated_events(2000, 1280, 720, 100);
+  const std::string whole = GetParam().header + EvtEncoder(GetParam().format).encode(events);
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = whole;
+    // The header in every third file, which may make it another file altogether.
+    const std::size_t from = i % 3 == 0 ? 0 : GetParam().header.size(), room = (i % 3 == 0 ? 200 : whole.size() - from);
+    const std::size_t at = from + random() % room;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
+    const auto file = folder.write("a.raw", damaged);
+    std::vector<Event> read;
+    const std::string error = input_error([&] { read = read_all(*open_recording(file).dataset).events; });
+    if (i % 3 == 0) continue;
+    EXPECT_EQ(error, "");
+    EXPECT_GT(read.size(), 1500u) << "byte " << at;
+  }
+}
+
+std::string refusal(const std::string& content) {
+  TempFolder folder;
+  const auto file = folder.write("a.raw", content);
+  return input_error([&] { open_recording(file); });
+}
+
+TEST(PropheseeRaw, RefusalsSayWhatIsWrongAndWhatToDo) {
+  const std::string evt2 = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
+  EXPECT_THAT(refusal("% evt 2.0\n% end\n" + evt2), HasSubstr("--geometry"));
+  EXPECT_THAT(refusal("% format HISTO3D;height=320;width=320\n% end\n"), HasSubstr("`HISTO3D`"));
+  EXPECT_THAT(refusal("% evt 2.0\n% geometry 100x100\n% end\n"), HasSubstr("holds no events"));
+  EXPECT_THAT(refusal("% Version 2\n% Width 9\n% Height 9\n"), HasSubstr("ends in its header"));
+  EXPECT_THAT(refusal("% Version 2\n% Width 9\n% Height 9\n\x0E\x08"), HasSubstr("type 14"));
+  EXPECT_THAT(refusal("neither text nor events"), HasSubstr("Prophesee RAW"));
+}
+
+TEST(PropheseeRaw, TheRigGoesBeforeTheUsersSizeAndThatBeforeTheHeaders) {
+  TempFolder folder;
+  const std::vector<Event> events = generated_events(2000, 640, 480, 20);
+  const auto file =
+      folder.write("a.raw", "% evt 2.0\n% geometry 640x480\n% end\n" + EvtEncoder(EvtFormat::Evt2).encode(events));
+  const auto count = [&](const Rig* rig, std::optional<cv::Size> geometry) {
+    return read_all(*open_recording(file, rig, {.geometry = geometry}).dataset).events.size();
+  };
+  EXPECT_EQ(count(nullptr, std::nullopt), 2000u);
+  const std::size_t smaller = count(nullptr, cv::Size(640, 400));
+  EXPECT_LT(smaller, 2000u);
+  Rig rig;
+  rig.cameras.push_back({"events", Modality::Events, CameraModel(640, 240, 200, 200, 160, 120), SE3(), Duration(0)});
+  EXPECT_LT(count(&rig, cv::Size(640, 480)), smaller);
+}
+
+TEST(PropheseeRaw, AFileMostlyOutsideItsSensorIsRefused) {
+  const std::vector<Event> events = generated_events(5000, 1280, 720, 20);
+  EXPECT_THAT(refusal("% evt 3.0\n% geometry 320x320\n% end\n" + EvtEncoder(EvtFormat::Evt3).encode(events)),
+              HasSubstr("--geometry"));
+}
+
+TEST(PropheseeRaw, ReadsTheRealGen3Recording) {
+  const auto file = data_folder() / "formats" / "gen3_evt2.raw";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no data";
+  const Recording recording = open_recording(file);
+  const Contents c = read_all(*recording.dataset);
+  EXPECT_EQ(c.events.size(), 521'252u);  // every word of types 0 and 1, as counted without this decoder
+  EXPECT_TRUE(recording.dataset->repairs().empty());
+  EXPECT_NEAR(to_seconds(c.events.back().t - c.events.front().t), 0.096, 0.002);
+}
+
+}  // namespace
+}  // namespace edged
