@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/io/prophesee/raw.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/sim/simulator.hpp"
 

@@ -22,4 +22,8 @@ inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data
 std::optional<std::filesystem::path> find_mav0(const std::filesystem::path& folder);
 Recording open_euroc(const std::filesystem::path& mav0);
 
+/// Size of the event sensor of a file: of the rig, else as said by the user or the file. Warns where they differ,
+/// throws InputError where nobody says it.
+cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig);
+
 }  // namespace edged

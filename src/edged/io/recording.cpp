@@ -4,6 +4,7 @@
 #include "edged/io/recording.hpp"
 
 #include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/prophesee/raw.hpp"
@@ -24,8 +25,10 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   constexpr std::size_t kHeadBytes = 4096;
   const Bytes head = BinaryFile(file).read(0, kHeadBytes);
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
+  if (is_aedat4(head)) return open_aedat4(file, rig, options.geometry);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for Prophesee RAW and DAT. Of a recording in several files "
+      "{}: is no file that is known by its content; looked for Prophesee RAW and DAT and for AEDAT4. Of a recording in "
+      "several files "
       "give the folder (unpack an archive first)",
       file.string());
 }

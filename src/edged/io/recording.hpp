@@ -7,6 +7,7 @@
 #include <memory>
 #include <opencv2/core/types.hpp>
 #include <optional>
+#include <string_view>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calibration.hpp"
@@ -23,11 +24,15 @@ struct RecordingOptions {
   std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
 };
 
+/// "640x480"; nothing where it is no size.
+std::optional<cv::Size> parse_geometry(std::string_view text);
+
 /// Opens a folder or a file, its format found by content:
 /// - Event-Camera Dataset text (events.txt, images.txt, imu.txt, groundtruth.txt, calib.txt; one sensor is enough).
 ///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours there counts.
 /// - EuRoC ASL (mav0 or its parent): camera "cam0", ground truth of "body".
 /// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
+/// - AEDAT4: cameras "events" and "frames".
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
 /// contradicts the recording. Throws InputError that lists what was looked for.
 Recording open_recording(const std::filesystem::path& path, const Rig* rig = nullptr,

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 
 #include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
 #include "edged/io/merger.hpp"
 
 namespace edged {
@@ -67,17 +67,10 @@ std::string_view encoding_name(const HeaderFields& fields) {
   return fields.contains("Data") || fields.contains("Version") ? "DAT" : evt;
 }
 
-std::optional<int> pixels(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > 16384) return std::nullopt;
-  return value;
-}
-
 std::optional<cv::Size> header_geometry(const HeaderFields& fields) {
   for (const auto& [w, h] : {std::pair("width", "height"), std::pair("Width", "Height")}) {
-    const auto width = pixels(field_or_empty(fields, w)), height = pixels(field_or_empty(fields, h));
-    if (width && height) return cv::Size(*width, *height);
+    const auto said = parse_geometry(fmt::format("{}x{}", field_or_empty(fields, w), field_or_empty(fields, h)));
+    if (said) return said;
   }
   if (const auto size = parse_geometry(field_or_empty(fields, "geometry"))) return size;
   struct Known {
@@ -94,18 +87,6 @@ std::optional<cv::Size> header_geometry(const HeaderFields& fields) {
   for (const Known& known : kKnown)
     if (field_or_empty(fields, known.key).find(known.part) != std::string_view::npos) return known.size;
   return std::nullopt;
-}
-
-cv::Size sensor_geometry(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig) {
-  if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
-    const cv::Size size(camera->model.width(), camera->model.height());
-    if (said && *said != size)
-      spdlog::warn("{}: the sensor has {} x {} px, but the event camera of rig {} has {} x {} px: is it the right one?",
-                   file.string(), said->width, said->height, rig->name, size.width, size.height);
-    return size;
-  }
-  if (said) return *said;
-  throw InputError::format("{}: does not hold the size of its sensor; give --geometry WIDTHxHEIGHT", file.string());
 }
 
 /// Events alone, block by block.
@@ -202,13 +183,6 @@ class PropheseeDataset final : public Dataset {
 
 bool is_prophesee_file(ByteSpan head) { return head.size() > 2 && head[0] == '%' && head[1] == ' '; }
 
-std::optional<cv::Size> parse_geometry(std::string_view text) {
-  const std::size_t cut = text.find('x');
-  if (cut == std::string_view::npos) return std::nullopt;
-  const auto width = pixels(text.substr(0, cut)), height = pixels(text.substr(cut + 1));
-  return width && height ? std::optional(cv::Size(*width, *height)) : std::nullopt;
-}
-
 PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
   PropheseeHeader header;
   HeaderFields fields = header_fields({reinterpret_cast<const char*>(head.data()), head.size()}, header.bytes);
@@ -243,7 +217,7 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
 Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry) {
   const PropheseeHeader header = read_prophesee_header(BinaryFile(file).read(0, kHeaderBytes), file.string());
   return {std::make_unique<PropheseeDataset>(file, header,
-                                             sensor_geometry(file, geometry ? geometry : header.geometry, rig)),
+                                             event_sensor_size(file, geometry ? geometry : header.geometry, rig)),
           std::nullopt};
 }
 

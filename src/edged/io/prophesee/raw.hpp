@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "edged/io/bytes.hpp"
 #include "edged/io/prophesee/evt.hpp"
@@ -21,9 +20,6 @@ struct PropheseeHeader {
 
 /// From the first bytes of a file. Throws InputError, naming `file`, when it has no events of a known encoding.
 PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file);
-
-/// "640x480"; nothing where it is no size.
-std::optional<cv::Size> parse_geometry(std::string_view text);
 
 /// From the first bytes of a file.
 bool is_prophesee_file(ByteSpan head);

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// AEDAT4 files of iniVation's DV: events, frames and IMU in compressed packets.
+#pragma once
+
+#include "edged/io/bytes.hpp"
+#include "edged/io/recording.hpp"
+
+namespace edged {
+
+/// From the first bytes of a file.
+bool is_aedat4(ByteSpan head);
+
+/// Cameras "events" and "frames"; stamps in Unix time. geometry: of the event sensor, for files that do not say it.
+Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry);
+
+}  // namespace edged

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// FlatBuffers read as they are, every access within the buffer: what the generated code of the library checks
+// beforehand.
+#pragma once
+
+#include <optional>
+
+#include "edged/io/bytes.hpp"
+
+namespace edged {
+
+/// A number at `offset`. Throws Damage beyond the end.
+template <typename T>
+T number_at(ByteSpan bytes, std::size_t offset) {
+  if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) throw Damage("points beyond its end");
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+/// The items of a vector: count of them from `at` on.
+struct FlatVector {
+  std::size_t at = 0, count = 0;
+};
+
+/// One table of a buffer. Fields are numbered from 0 in the order of the schema; absent ones have their default.
+class FlatTable {
+ public:
+  /// The root table of a buffer.
+  explicit FlatTable(ByteSpan buffer) : FlatTable(buffer, number_at<std::uint32_t>(buffer, 0)) {}
+
+  template <typename T>
+  T number(unsigned field, T otherwise = 0) const {
+    const std::size_t at = place(field);
+    return at ? number_at<T>(buffer_, at) : otherwise;
+  }
+
+  /// item_bytes: 1 for strings, 4 for tables. An absent vector is empty.
+  FlatVector vector(unsigned field, std::size_t item_bytes) const {
+    const std::size_t at = place(field);
+    if (!at) return {};
+    const std::size_t begin = at + number_at<std::uint32_t>(buffer_, at);
+    const std::size_t count = number_at<std::uint32_t>(buffer_, begin);
+    if (count > (buffer_.size() - begin - 4) / item_bytes) throw Damage("a list goes beyond its end");
+    return {begin + 4, count};
+  }
+
+  ByteSpan bytes(unsigned field) const {
+    const FlatVector list = vector(field, 1);
+    return buffer_.subspan(list.at, list.count);
+  }
+
+  /// The table that item `index` of a vector of tables points to.
+  FlatTable table(const FlatVector& list, std::size_t index) const {
+    const std::size_t at = list.at + 4 * index;
+    return {buffer_, at + number_at<std::uint32_t>(buffer_, at)};
+  }
+
+ private:
+  FlatTable(ByteSpan buffer, std::size_t at) : buffer_(buffer), at_(at) {
+    // A distance back (or, if negative, ahead) from the table; unsigned, so that a wrong one ends beyond the buffer.
+    const auto back = number_at<std::int32_t>(buffer_, at_);
+    layout_ = at_ - static_cast<std::size_t>(static_cast<std::int64_t>(back));
+    layout_bytes_ = number_at<std::uint16_t>(buffer_, layout_);
+  }
+
+  /// Where a field is; 0 for an absent one.
+  std::size_t place(unsigned field) const {
+    const std::size_t entry = 4 + 2 * std::size_t{field};
+    if (entry + 2 > layout_bytes_) return 0;
+    const auto offset = number_at<std::uint16_t>(buffer_, layout_ + entry);
+    return offset ? at_ + offset : 0;
+  }
+
+  ByteSpan buffer_;
+  std::size_t at_;            ///< of the table
+  std::size_t layout_;        ///< of the list of its fields' places
+  std::size_t layout_bytes_;  ///< of that list
+};
+
+/// The four characters behind the root's offset that name the type of a buffer.
+inline std::string_view flat_identifier(ByteSpan buffer) {
+  if (buffer.size() < 8) throw Damage("ends too early");
+  return {reinterpret_cast<const char*>(buffer.data()) + 4, 4};
+}
+
+}  // namespace edged

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The size of an event sensor, from whoever knows it.
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+
+#include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
+
+namespace edged {
+namespace {
+
+std::optional<int> pixels(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > 16384) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<cv::Size> parse_geometry(std::string_view text) {
+  const std::size_t cut = text.find('x');
+  if (cut == std::string_view::npos) return std::nullopt;
+  const auto width = pixels(text.substr(0, cut)), height = pixels(text.substr(cut + 1));
+  return width && height ? std::optional(cv::Size(*width, *height)) : std::nullopt;
+}
+
+cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig) {
+  if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
+    const cv::Size size(camera->model.width(), camera->model.height());
+    if (said && *said != size)
+      spdlog::warn("{}: the sensor has {} x {} px, but the event camera of rig {} has {} x {} px: is it the right one?",
+                   file.string(), said->width, said->height, rig->name, size.width, size.height);
+    return size;
+  }
+  if (said) return *said;
+  throw InputError::format("{}: does not hold the size of its sensor; give --geometry WIDTHxHEIGHT", file.string());
+}
+
+}  // namespace edged
