@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 ImuSample interpolate_samples(const ImuSample& a, const ImuSample& b, Timestamp t) {
   const double span = to_seconds(b.t - a.t);
   const double share = span > 0.0 ? to_seconds(t - a.t) / span : 0.0;
-  return {t, a.gyro_B + share * (b.gyro_B - a.gyro_B), a.accel_B + share * (b.accel_B - a.accel_B)};
+  return {t, a.gyro_B + share * (b.gyro_B - a.gyro_B), a.accel_B + share * (b.accel_B - a.accel_B), in_gap(a, b)};
 }
 
 /// samples cover t.
@@ -63,6 +63,8 @@ Matrix9d next_covariance(const Matrix9d& covariance, const StepJacobians& step, 
 }
 
 }  // namespace
+
+bool in_gap(const ImuSample& a, const ImuSample& b) { return a.made_up || b.made_up || b.t - a.t > kMaxSampleInterval; }
 
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1) {
   EDGED_CHECK(t_0 <= t_1, "slice from {} to {} ns", to_ns(t_0), to_ns(t_1));
@@ -121,7 +123,7 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dv_d_ba_ -= step.d_v_d_accel;
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
-  const bool gap = b.t - a.t > kMaxSampleInterval;
+  const bool gap = in_gap(a, b);
   const bool gyro_out = gap || out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
   const bool accel_out = gap || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
   const double gyro_sigma = noise_.gyro_noise * (gyro_out ? noise_.saturation_inflation : 1.0);

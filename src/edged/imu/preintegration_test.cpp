@@ -348,6 +348,20 @@ TEST(SliceImu, BridgesAGapBetweenSamples) {
   EXPECT_NEAR(so3::log(integrated.dR(kNoBias)).z(), 0.15, 1e-12);
 }
 
+TEST(SliceImu, DoesNotPassOffAsMeasuredWhatItMakesUpInAGap) {
+  std::vector<ImuSample> samples;
+  for (const int ms : {0, 5, 10, 310, 315, 320}) {
+    samples.push_back({Timestamp(ms * kMillisecond), Vector3d(0, 0, 0.5), Vector3d(0, 0, 9.81)});
+  }
+  const auto saturated = [&](int from_ms, int to_ms) {
+    const auto slice = slice_imu(samples, Timestamp(from_ms * kMillisecond), Timestamp(to_ms * kMillisecond));
+    return Preintegration(slice, kNoBias, kNoBias, {}).saturated();
+  };
+  EXPECT_FALSE(saturated(2, 10));
+  for (int ms = 5; ms < 310; ms += 15) EXPECT_TRUE(saturated(ms, ms + 15)) << ms << " ms";
+  EXPECT_FALSE(saturated(310, 318));
+}
+
 TEST(SliceImu, RefusesWhatTheSamplesDoNotCover) {
   const std::vector<ImuSample> samples = helix().samples(0.0, 0.05, 5 * kMillisecond);
   EXPECT_THROW(slice_imu(samples, Timestamp(-kMillisecond), Timestamp(kMillisecond)), CheckError);
