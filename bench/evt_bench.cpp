@@ -12,9 +12,9 @@ namespace {
 
 /// Argument: the EvtFormat. Generated events, in rows of up to 20 neighbours.
 void decode_evt(benchmark::State& state) {
-  constexpr std::size_t kEvents = 1'000'000, kBlock = 262144;
+  constexpr std::size_t kStreamEvents = 1'000'000, kBlock = 262144;
   const auto format = static_cast<EvtFormat>(state.range(0));
-  const std::string bytes = EvtEncoder(format).encode(generated_events(kEvents, 1280, 720, 2));
+  const std::string bytes = EvtEncoder(format).encode(generated_events(kStreamEvents, 1280, 720, 2));
   std::vector<Event> events;
   for (auto _ : state) {
     EvtDecoder decoder(format, 1280, 720);
@@ -24,9 +24,9 @@ void decode_evt(benchmark::State& state) {
       decoder.decode(bytes_of(bytes).subspan(at, std::min(kBlock, bytes.size() - at)), events);
       count += events.size();
     }
-    if (count != kEvents) state.SkipWithError("events are missing");
+    if (count != kStreamEvents) state.SkipWithError("events are missing");
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kEvents));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kStreamEvents));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
 }
 BENCHMARK(decode_evt)->DenseRange(0, 4)->Unit(benchmark::kMillisecond);
