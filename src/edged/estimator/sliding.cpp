@@ -57,8 +57,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
   const bool rested = state->second.rested && next->second.rested;
-  const bool settles = !state->second.rested && next->second.rested;
-  if (settles || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
+  if (joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
     state->second.keyframe = true;
     return;
   }
