@@ -43,6 +43,12 @@ RecordingOptions recording_options(const SourceOptions& options) {
     if (!chosen.geometry)
       throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
+  for (const std::string& text : options.topics) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw InputError::format("--topic {}: write ROLE=NAME, such as events=/dvs/events", text);
+    chosen.topics[text.substr(0, equals)] = text.substr(equals + 1);
+  }
   return chosen;
 }
 
@@ -74,6 +80,12 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
   command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
   command.add_option("--geometry", options.geometry,
                      "WIDTHxHEIGHT [px] of the event sensor, for files that do not hold it");
+  command
+      .add_option(
+          "--topic", options.topics,
+          "Topic of a ROS bag as ROLE=NAME: events, frames, imu or truth; NAME none leaves it out; may be repeated "
+          "[the only topic of a fitting type]")
+      ->allow_extra_args(false);
 }
 
 Source open_source(const SourceOptions& options) {

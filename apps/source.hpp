@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calibration.hpp"
@@ -17,9 +18,10 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;              ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;  ///< calibration file; "" where not given
-  std::string geometry;         ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
+  std::string rig;                  ///< name of a shipped rig; "" where not given
+  std::filesystem::path calib;      ///< calibration file; "" where not given
+  std::string geometry;             ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
+  std::vector<std::string> topics;  ///< of bags: ROLE=NAME
 };
 
 struct Source {
@@ -28,7 +30,7 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// Adds RECORDING, --rig, --calib and --geometry.
+/// Adds RECORDING, --rig, --calib, --geometry and --topic.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <opencv2/core/types.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "edged/core/dataset.hpp"
@@ -22,6 +24,8 @@ struct Recording {
 /// What the user may say of a recording that it does not tell itself, or not clearly.
 struct RecordingOptions {
   std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
+  /// Of bags: role ("events", "frames", "imu", "truth") to topic or "none".
+  std::map<std::string, std::string> topics = {};
 };
 
 /// "640x480"; nothing where it is no size.
@@ -33,6 +37,7 @@ std::optional<cv::Size> parse_geometry(std::string_view text);
 /// - EuRoC ASL (mav0 or its parent): camera "cam0", ground truth of "body".
 /// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
 /// - AEDAT4: cameras "events" and "frames".
+/// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body".
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
 /// contradicts the recording. Throws InputError that lists what was looked for.
 Recording open_recording(const std::filesystem::path& path, const Rig* rig = nullptr,

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// ROS 2 bags as recorders leave them: a folder with one file or several that follow each other.
+#pragma once
+
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+/// The .db3 or .mcap files of a folder in the order of their numbers; empty where there are none. metadata.yaml, which
+/// crashed recorders do not write, says nothing that the files do not.
+std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder);
+
+/// The messages of one file after those of the other.
+class BagFolder final : public MessageSource {
+ public:
+  explicit BagFolder(const std::vector<std::filesystem::path>& parts, Repairs* repairs);
+
+  Wire wire() const override { return parts_.front().source->wire(); }
+  const std::vector<Topic>& topics() const override { return topics_; }
+  Duration length() const override;
+  std::optional<Message> next() override;
+
+ private:
+  struct Part {
+    std::unique_ptr<MessageSource> source;
+    std::vector<std::size_t> topics;  ///< its topics among those of all
+  };
+  std::vector<Part> parts_;
+  std::vector<Topic> topics_;
+  std::size_t current_ = 0;
+};
+
+}  // namespace edged

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The messages of a bag, whatever its container: ROS 1 bag, SQLite or MCAP.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/core/time.hpp"
+#include "edged/io/bytes.hpp"
+#include "edged/io/repairs.hpp"
+
+namespace edged {
+
+/// How numbers and texts of a message are laid out.
+enum class Wire { Ros1, Cdr };
+
+struct Topic {
+  std::string name;       ///< "/dvs/events"
+  std::string type;       ///< "dvs_msgs/EventArray", in ROS 2 too
+  std::size_t count = 0;  ///< of messages
+};
+
+struct Message {
+  std::size_t topic = 0;  ///< index of topics()
+  ByteSpan data;          ///< valid until the next call
+};
+
+/// Messages in file order, which is about the order of their recording. Damage is passed over and counted; what is
+/// whole before it is given.
+class MessageSource {
+ public:
+  virtual ~MessageSource() = default;
+  virtual Wire wire() const = 0;
+  virtual const std::vector<Topic>& topics() const = 0;
+  /// From the first to the last message, by the recorder's clock.
+  virtual Duration length() const = 0;
+  virtual std::optional<Message> next() = 0;
+};
+
+/// Whether open_messages can open it, found by content.
+bool is_bag(const std::filesystem::path& path);
+
+/// Opens a bag; throws InputError where it is none. repairs may be null: then nothing is counted.
+std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs);
+
+/// Index of the topic of that name and type, which is added where it is new. "pkg/msg/Name" becomes "pkg/Name".
+std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type);
+
+}  // namespace edged

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Field by field, as the definitions of the messages have them.
+#include "edged/io/ros/messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::uint32_t kLargestSide = 32768;  // of an image or sensor [px]
+
+/// How an image's encoding turns into grey; conversion < 0: it is grey.
+struct Encoding {
+  std::string_view name;
+  int type;
+  int conversion;
+};
+
+// Bayer patterns: ROS names the first row, OpenCV the second row from the second column on.
+constexpr std::array kEncodings = {
+    Encoding{"mono8", CV_8UC1, -1},
+    Encoding{"8UC1", CV_8UC1, -1},
+    Encoding{"mono16", CV_16UC1, -1},
+    Encoding{"16UC1", CV_16UC1, -1},
+    Encoding{"bgr8", CV_8UC3, cv::COLOR_BGR2GRAY},
+    Encoding{"8UC3", CV_8UC3, cv::COLOR_BGR2GRAY},
+    Encoding{"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY},
+    Encoding{"bgra8", CV_8UC4, cv::COLOR_BGRA2GRAY},
+    Encoding{"rgba8", CV_8UC4, cv::COLOR_RGBA2GRAY},
+    Encoding{"bayer_rggb8", CV_8UC1, cv::COLOR_BayerBG2GRAY},
+    Encoding{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerRG2GRAY},
+    Encoding{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGR2GRAY},
+    Encoding{"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2GRAY},
+};
+
+/// The upper byte of each pixel.
+cv::Mat upper_bytes(const cv::Mat& words, bool big_endian) {
+  cv::Mat gray(words.size(), CV_8UC1);
+  for (int y = 0; y < words.rows; ++y)
+    for (int x = 0; x < words.cols; ++x) gray.at<std::uint8_t>(y, x) = words.ptr(y)[2 * x + (big_endian ? 0 : 1)];
+  return gray;
+}
+
+Timestamp checked_stamp(std::int64_t ns) {
+  if (ns < 0 || ns > kMaxStampNs) throw Damage("stamp out of range");
+  return timestamp_from_ns(ns);
+}
+
+StampedPose pose_from(Timestamp t, WireReader& message) {
+  const Eigen::Vector3d p = message.vector<3>();
+  const Eigen::Vector4d xyzw = message.vector<4>();
+  if (!p.allFinite() || !(std::abs(xyzw.norm() - 1.0) < 0.1)) throw Damage("no pose");
+  return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
+}
+
+}  // namespace
+
+WireReader::WireReader(Wire wire, ByteSpan message) : wire_(wire), reader_(message) {
+  if (wire == Wire::Ros1) return;
+  ByteReader kind(message);
+  kind.take(1);
+  if (kind.number<std::uint8_t>() != 1) throw Damage("its CDR is not the plain little-endian one");
+  kind.take(2);
+  reader_ = ByteReader(message.subspan(4));
+}
+
+std::string_view WireReader::text() {
+  const std::string_view value = reader_.text(number<std::uint32_t>());
+  return wire_ == Wire::Cdr && value.ends_with('\0') ? value.substr(0, value.size() - 1) : value;
+}
+
+ByteSpan WireReader::bytes() { return reader_.take(number<std::uint32_t>()); }
+
+Timestamp WireReader::time() {
+  const std::int64_t s = wire_ == Wire::Cdr ? number<std::int32_t>() : std::int64_t{number<std::uint32_t>()};
+  return checked_stamp(s * 1'000'000'000 + number<std::uint32_t>());
+}
+
+Timestamp WireReader::header() {
+  if (wire_ == Wire::Ros1) number<std::uint32_t>();  // seq
+  const Timestamp stamp = time();
+  text();  // frame_id
+  return stamp;
+}
+
+std::uint32_t WireReader::list(std::size_t item_bytes) {
+  const auto length = number<std::uint32_t>();
+  if (length > reader_.left() / item_bytes) throw Damage("list longer than its message");
+  return length;
+}
+
+EventArray read_event_array(WireReader message) {
+  constexpr std::size_t kEventBytes = 13;
+  message.header();
+  EventArray array;
+  array.height = message.number<std::uint32_t>();
+  array.width = message.number<std::uint32_t>();
+  array.events.resize(message.list(kEventBytes));
+  for (Event& event : array.events) {
+    event.x = message.number<std::uint16_t>();
+    event.y = message.number<std::uint16_t>();
+    event.t = message.time();
+    event.positive = message.number<std::uint8_t>() != 0;
+  }
+  return array;
+}
+
+EventPacket read_event_packet(WireReader message) {
+  EventPacket packet;
+  packet.stamp = message.header();
+  packet.height = message.number<std::uint32_t>();
+  packet.width = message.number<std::uint32_t>();
+  packet.sequence = message.number<std::uint64_t>();
+  packet.time_base = message.number<std::uint64_t>();
+  packet.encoding = message.text();
+  message.number<std::uint8_t>();  // of the computer that recorded; the encodings have their own
+  packet.events = message.bytes();
+  return packet;
+}
+
+ImuSample read_imu(WireReader message) {
+  const Timestamp t = message.header();
+  message.vector<4 + 9>();  // orientation and its covariance: not measured
+  const Eigen::Vector3d gyro = message.vector<3>();
+  message.vector<9>();
+  const Eigen::Vector3d accel = message.vector<3>();
+  if (!gyro.allFinite() || !accel.allFinite()) throw Damage("not finite");
+  return {t, gyro, accel};
+}
+
+GrayImage read_image(WireReader message) {
+  GrayImage out{message.header(), {}};
+  const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
+  const std::string_view name = message.text();
+  const bool big_endian = message.number<std::uint8_t>() != 0;
+  const auto step = message.number<std::uint32_t>();
+  const ByteSpan data = message.bytes();
+
+  const auto* const encoding = std::ranges::find(kEncodings, name, &Encoding::name);
+  if (encoding == kEncodings.end()) throw Damage("encoding `" + std::string(name) + "` is not known");
+  const std::size_t row = width * std::size_t{CV_ELEM_SIZE(encoding->type)};
+  if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide || step < row ||
+      data.size() < (height - 1) * std::size_t{step} + row)
+    throw Damage("size of the image contradicts its data");
+  // The library wants a mutable pointer, but only reads.
+  const cv::Mat raw(static_cast<int>(height), static_cast<int>(width), encoding->type,
+                    const_cast<std::uint8_t*>(data.data()), step);
+  if (encoding->type == CV_16UC1) {
+    out.image = upper_bytes(raw, big_endian);
+  } else if (encoding->conversion < 0) {
+    out.image = raw.clone();
+  } else {
+    cv::cvtColor(raw, out.image, encoding->conversion);
+  }
+  return out;
+}
+
+GrayImage read_compressed_image(WireReader message) try {
+  GrayImage out{message.header(), {}};
+  message.text();  // format: the data tell it themselves
+  const ByteSpan data = message.bytes();
+  if (data.empty()) throw Damage("no image");
+  const cv::Mat raw(1, static_cast<int>(data.size()), CV_8UC1, const_cast<std::uint8_t*>(data.data()));
+  out.image = cv::imdecode(raw, cv::IMREAD_GRAYSCALE);
+  if (out.image.empty()) throw Damage("image cannot be decoded");
+  return out;
+} catch (const cv::Exception&) {
+  throw Damage("image cannot be decoded");
+}
+
+StampedPose read_pose_stamped(WireReader message) {
+  const Timestamp t = message.header();
+  return pose_from(t, message);
+}
+
+StampedPose read_child_pose(WireReader message) {
+  const Timestamp t = message.header();
+  message.text();
+  return pose_from(t, message);
+}
+
+}  // namespace edged

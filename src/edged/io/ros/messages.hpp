@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The messages that matter here, out of either wire format. All throw Damage for bytes that make no sense.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+/// Fields in the order of the message's definition. ROS 1 packs them; CDR begins with four bytes that name its kind and
+/// aligns each number to its own size, counted from behind them.
+class WireReader {
+ public:
+  WireReader(Wire wire, ByteSpan message);
+
+  template <typename T>
+  T number() {
+    if (wire_ == Wire::Cdr) reader_.take((sizeof(T) - reader_.at() % sizeof(T)) % sizeof(T));
+    return reader_.number<T>();
+  }
+  template <int N>
+  Eigen::Matrix<double, N, 1> vector() {
+    Eigen::Matrix<double, N, 1> v;
+    for (double& x : v) x = number<double>();
+    return v;
+  }
+  std::string_view text();
+  ByteSpan bytes();
+  Timestamp time();
+  /// The stamp of a std_msgs/Header.
+  Timestamp header();
+  /// Length of a list whose items take at least that many bytes.
+  std::uint32_t list(std::size_t item_bytes);
+
+ private:
+  Wire wire_;
+  ByteReader reader_;
+};
+
+/// dvs_msgs, prophesee_event_msgs or dv_ros_msgs EventArray.
+struct EventArray {
+  std::uint32_t width = 0, height = 0;
+  std::vector<Event> events;
+};
+EventArray read_event_array(WireReader message);
+
+/// event_camera_msgs/EventPacket: events as the sensor coded them.
+struct EventPacket {
+  Timestamp stamp;
+  std::uint32_t width = 0, height = 0;
+  std::uint64_t sequence = 0;   ///< counts packets
+  std::uint64_t time_base = 0;  ///< [ns], for some encodings
+  std::string_view encoding;
+  ByteSpan events;
+};
+EventPacket read_event_packet(WireReader message);
+
+ImuSample read_imu(WireReader message);
+
+/// Any 8 or 16 bit encoding, as grey.
+struct GrayImage {
+  Timestamp t;
+  cv::Mat image;  ///< CV_8UC1
+};
+GrayImage read_image(WireReader message);
+GrayImage read_compressed_image(WireReader message);
+
+StampedPose read_pose_stamped(WireReader message);
+/// TransformStamped and Odometry, which name the child frame before the pose.
+StampedPose read_child_pose(WireReader message);
+
+}  // namespace edged

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Types, ties and the messages about them.
+#include "edged/io/ros/topic_choice.hpp"
+
+#include <algorithm>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+std::optional<Role> role_of(const std::string& type) {
+  static const std::map<std::string, Role> roles = {
+      {"dvs_msgs/EventArray", Role::Events},
+      {"prophesee_event_msgs/EventArray", Role::Events},
+      {"dv_ros_msgs/EventArray", Role::Events},
+      {"event_camera_msgs/EventPacket", Role::Events},
+      {"event_array_msgs/EventArray", Role::Events},
+      {"sensor_msgs/Image", Role::Frames},
+      {"sensor_msgs/CompressedImage", Role::Frames},
+      {"sensor_msgs/Imu", Role::Imu},
+      {"geometry_msgs/PoseStamped", Role::Truth},
+      {"geometry_msgs/TransformStamped", Role::Truth},
+      {"nav_msgs/Odometry", Role::Truth},
+  };
+  const auto found = roles.find(type);
+  return found == roles.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    if (topics[i].count > 0 && role_of(topics[i].type) == role) found.push_back(i);
+  // The same images once more, compressed: the original is enough.
+  std::erase_if(found, [&](std::size_t i) {
+    return std::ranges::any_of(found, [&](std::size_t j) { return topics[i].name == topics[j].name + "/compressed"; });
+  });
+  return found;
+}
+
+std::string listed(const std::vector<Topic>& topics, const std::vector<std::size_t>& which) {
+  std::string list;
+  for (const std::size_t i : which) list += (list.empty() ? "" : ", ") + topics[i].name;
+  return list.empty() ? "none" : list;
+}
+
+std::size_t wanted_topic(const std::vector<Topic>& topics, Role role, const std::string& name,
+                         const std::string& file) {
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    if (topics[i].name == name && role_of(topics[i].type) == role) return i;
+  throw InputError::format("{}: no topic {} that could be {}; there are: {}", file, name,
+                           kRoleNames[static_cast<std::size_t>(role)], listed(topics, candidates(topics, role)));
+}
+
+void check_role_names(const WantedTopics& wanted) {
+  for (const auto& [role, name] : wanted)
+    if (std::ranges::find(kRoleNames, role) == kRoleNames.end())
+      throw InputError::format("--topic {}={}: the role must be one of {}", role, name, fmt::join(kRoleNames, ", "));
+}
+
+[[noreturn]] void refuse_without_sensor(const std::vector<Topic>& topics, const std::string& file) {
+  std::string types;
+  for (const Topic& topic : topics)
+    types += fmt::format("{}{} ({})", types.empty() ? "" : ", ", topic.name, topic.type);
+  throw InputError::format("{}: no events, images or IMU among its topics: {}", file, types);
+}
+
+}  // namespace
+
+TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file) {
+  check_role_names(wanted);
+  TopicChoice choice;
+  std::string ties;
+  for (std::size_t r = 0; r < kRoleNames.size(); ++r) {
+    const auto role = static_cast<Role>(r);
+    if (const auto name = wanted.find(kRoleNames[r]); name != wanted.end()) {
+      if (name->second != "none") choice.topics[r] = wanted_topic(topics, role, name->second, file);
+      continue;
+    }
+    const std::vector<std::size_t> fitting = candidates(topics, role);
+    if (fitting.size() == 1) choice.topics[r] = fitting.front();
+    if (fitting.size() > 1) ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
+  }
+  if (!ties.empty())
+    throw InputError::format("{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none){}", file,
+                             ties);
+  if (!choice.of(Role::Events) && !choice.of(Role::Frames) && !choice.of(Role::Imu))
+    refuse_without_sensor(topics, file);
+  return choice;
+}
+
+}  // namespace edged

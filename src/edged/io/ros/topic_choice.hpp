@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Which topic of a bag is which sensor: by type, or as the user says.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+enum class Role { Events, Frames, Imu, Truth };
+inline constexpr std::array<const char*, 4> kRoleNames = {"events", "frames", "imu", "truth"};
+
+/// Roles by name with the topic the user wants, or "none".
+using WantedTopics = std::map<std::string, std::string>;
+
+/// Index of the topic of each role.
+struct TopicChoice {
+  std::array<std::optional<std::size_t>, kRoleNames.size()> topics;
+  std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
+};
+
+/// The only topic of a fitting type takes its role. Throws InputError that lists them where there are several, where
+/// the bag lacks a wanted one, and where no sensor is left.
+TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
+
+}  // namespace edged
