@@ -10,7 +10,7 @@
 #include <iterator>
 #include <random>
 
-#include "edged/io/event_text.hpp"
+#include "edged/io/text/event_text.hpp"
 
 namespace edged {
 namespace {

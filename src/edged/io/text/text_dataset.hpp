@@ -10,8 +10,8 @@
 #include <string>
 
 #include "edged/core/dataset.hpp"
-#include "edged/io/event_text.hpp"
-#include "edged/io/stamped_lines.hpp"
+#include "edged/io/text/event_text.hpp"
+#include "edged/io/text/stamped_lines.hpp"
 
 namespace edged {
 

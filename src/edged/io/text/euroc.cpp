@@ -5,7 +5,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
-#include "edged/io/text_dataset.hpp"
+#include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 
 namespace edged {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Merging of sensors by stamp, lazy loading of images.
-#include "edged/io/text_dataset.hpp"
+#include "edged/io/text/text_dataset.hpp"
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Parsing and ordering of events.txt.
-#include "edged/io/event_text.hpp"
+#include "edged/io/text/event_text.hpp"
 
 #include <algorithm>
 #include <array>
