@@ -22,6 +22,12 @@ using ByteSpan = std::span<const std::uint8_t>;
 
 static_assert(std::endian::native == std::endian::little, "binary formats are copied into numbers as they are");
 
+/// The same bytes as text, which ends where they do.
+inline std::string_view as_text(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+inline ByteSpan as_bytes(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
 /// Bytes that cannot be what they should. Caught by the reader of the format, which counts it.
 class Damage : public std::runtime_error {
  public:
@@ -47,10 +53,7 @@ class ByteReader {
     return part;
   }
 
-  std::string_view text(std::size_t count) {
-    const ByteSpan part = take(count);
-    return {reinterpret_cast<const char*>(part.data()), part.size()};
-  }
+  std::string_view text(std::size_t count) { return as_text(take(count)); }
 
   std::size_t at() const { return at_; }
   std::size_t left() const { return all_.size() - at_; }

@@ -95,8 +95,7 @@ Aedat4Header read_aedat4_header(BinaryFile& file, const std::string& name) try {
   header.compression = aedat4_compression(table.number<std::int32_t>(0));
   header.table_at = table.number<std::int64_t>(1, -1);
   header.packets_at = kAedat4Magic.size() + 4 + bytes;
-  const ByteSpan xml = table.bytes(2);
-  read_streams({reinterpret_cast<const char*>(xml.data()), xml.size()}, name, header);
+  read_streams(as_text(table.bytes(2)), name, header);
   if (!header.events && !header.frames && !header.imu)
     throw InputError::format("{}: nothing to read: its header names no events, frames or IMU", name);
   return header;
@@ -293,9 +292,7 @@ class Aedat4Dataset final : public Dataset {
 
 }  // namespace
 
-bool is_aedat4(ByteSpan head) {
-  return std::string_view(reinterpret_cast<const char*>(head.data()), head.size()).starts_with(kAedat4Magic);
-}
+bool is_aedat4(ByteSpan head) { return as_text(head).starts_with(kAedat4Magic); }
 
 Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry) {
   BinaryFile bytes(file);

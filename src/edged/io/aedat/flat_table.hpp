@@ -82,7 +82,7 @@ class FlatTable {
 /// The four characters behind the root's offset that name the type of a buffer.
 inline std::string_view flat_identifier(ByteSpan buffer) {
   if (buffer.size() < 8) throw Damage("ends too early");
-  return {reinterpret_cast<const char*>(buffer.data()) + 4, 4};
+  return as_text(buffer.subspan(4, 4));
 }
 
 }  // namespace edged

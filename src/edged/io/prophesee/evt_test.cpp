@@ -20,7 +20,7 @@ class EvtRoundTrip : public ::testing::TestWithParam<EvtFormat> {};
 std::vector<Event> decode_all(EvtDecoder& decoder, const std::string& bytes, std::size_t chunk) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < bytes.size(); i += chunk)
-    decoder.decode(bytes_of(bytes).subspan(i, std::min(chunk, bytes.size() - i)), events);
+    decoder.decode(as_bytes(bytes).subspan(i, std::min(chunk, bytes.size() - i)), events);
   return events;
 }
 
@@ -74,7 +74,7 @@ TEST_P(EvtRoundTrip, NoiseNeverLeavesTheSensor) {
     std::string noise(random() % 3000, '\0');
     for (char& c : noise) c = static_cast<char>(random());
     std::vector<Event> events;
-    decoder.decode(bytes_of(noise), events);
+    decoder.decode(as_bytes(noise), events);
     for (const Event& e : events) ASSERT_TRUE(e.x < 320 && e.y < 240);
     if (i % 100 == 0) decoder.reset();
   }
@@ -98,7 +98,7 @@ TEST(EvtDecoder, EventsBeforeTheFirstTimeAreCounted) {
   std::string bytes = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
   std::vector<Event> events;
   EvtDecoder decoder(EvtFormat::Evt2, 100, 100);
-  decoder.decode(bytes_of(bytes).subspan(4), events);  // without the first word
+  decoder.decode(as_bytes(bytes).subspan(4), events);  // without the first word
   EXPECT_TRUE(events.empty());
   EXPECT_EQ(decoder.counts().untimed, 10u);
 }
@@ -108,7 +108,7 @@ TEST(EvtDecoder, ReadsTheWordsOfTheDocumentation) {
   std::vector<Event> imx636, genx320;
   const auto read = [](EvtFormat format, const std::string& bytes) {
     std::vector<Event> events;
-    EvtDecoder(format, 2048, 2048).decode(bytes_of(bytes), events);
+    EvtDecoder(format, 2048, 2048).decode(as_bytes(bytes), events);
     return events;
   };
   const std::string high_legacy{'\0', '\0', '\0', '\x80', '\0', '\0', '\0', '\0'};
@@ -125,7 +125,7 @@ TEST(EvtDecoder, UnknownWordsArePassedOverAndCounted) {
   const std::string bytes = EvtEncoder(EvtFormat::Evt3).encode(events);
   std::vector<Event> read;
   EvtDecoder decoder(EvtFormat::Evt3, 640, 480);
-  decoder.decode(bytes_of(std::string{'\x12', '\x90'} + bytes), read);
+  decoder.decode(as_bytes(std::string{'\x12', '\x90'} + bytes), read);
   EXPECT_TRUE(read == events);
   EXPECT_EQ(decoder.counts().unknown, 1u);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/io/bytes.hpp"
 #include "edged/io/prophesee/evt.hpp"
 
 namespace edged {
@@ -112,9 +113,5 @@ class EvtEncoder {
   std::uint64_t high_ = ~std::uint64_t{0};  ///< upper part of the time last written
   std::string bytes_;
 };
-
-inline std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
 
 }  // namespace edged

@@ -185,7 +185,7 @@ bool is_prophesee_file(ByteSpan head) { return head.size() > 2 && head[0] == '%'
 
 PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
   PropheseeHeader header;
-  HeaderFields fields = header_fields({reinterpret_cast<const char*>(head.data()), head.size()}, header.bytes);
+  HeaderFields fields = header_fields(as_text(head), header.bytes);
   split_format(fields);
   header.geometry = header_geometry(fields);
   const std::string_view name = encoding_name(fields);

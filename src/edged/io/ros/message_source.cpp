@@ -21,7 +21,7 @@ Container container_of(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) return bag_parts(path).empty() ? Container::None : Container::Folder;
   if (!std::filesystem::is_regular_file(path)) return Container::None;
   const Bytes head = BinaryFile(path).read(0, 16);
-  const std::string_view magic(reinterpret_cast<const char*>(head.data()), head.size());
+  const std::string_view magic = as_text(head);
   if (magic.starts_with("#ROSBAG V2.0\n")) return Container::Bag;
   if (magic.starts_with("\x89MCAP0\r\n")) return Container::Mcap;
   if (magic.starts_with("SQLite format 3")) return Container::Db3;

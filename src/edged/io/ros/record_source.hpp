@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What ROS 1 bags and MCAP files have in common.
+#pragma once
+
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+/// A file of records, most of them in chunks that may be compressed. An index at the end tells topics and counts; where
+/// it is missing or damaged (a recorder that crashed), the file is read through once.
+class RecordSource : public MessageSource {
+ public:
+  const std::vector<Topic>& topics() const final { return topics_; }
+  Duration length() const final { return last_ > first_ ? last_ - first_ : Duration(0); }
+  std::optional<Message> next() final;
+
+ protected:
+  /// first_record: its offset, behind the magic bytes.
+  RecordSource(const std::filesystem::path& file, std::uint64_t first_record, Repairs* repairs);
+
+  /// Topics, counts and times, for the end of a constructor. Throws InputError when there is nothing to read.
+  void find_topics();
+
+  // What a format has of its own. Each may throw Damage.
+
+  /// Describes topics and chunks from the index.
+  virtual void read_index() = 0;
+  /// Forgets what the records described so far.
+  virtual void forget() = 0;
+  /// Steps over the record of the file at at(). False: nothing in it is for take_message().
+  virtual bool load_record() = 0;
+  /// The next record in memory, if it is a message.
+  virtual std::optional<Message> take_message() = 0;
+
+  BinaryFile& file() { return file_; }
+  std::uint64_t at() const { return at_; }
+  void go_to(std::uint64_t place) { at_ = place; }
+  /// Records for take_message(), which takes them off reader().
+  void load(Bytes records);
+  ByteReader& reader() { return reader_; }
+  /// Index of the topic with that name and type.
+  std::size_t describe_topic(std::string_view name, std::string_view type);
+  void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
+  void add_chunk_place(std::uint64_t place) { chunk_places_.push_back(place); }
+  void extend(Timestamp t);
+  void repair(const std::string& kind, const std::string& detail);
+
+ private:
+  void read_through();
+  void rewind();
+  bool load_next_record();
+
+  std::string name_;
+  BinaryFile file_;
+  std::uint64_t first_record_;
+  Repairs* repairs_;
+  std::vector<Topic> topics_;
+  std::vector<std::uint64_t> chunk_places_;  ///< of the index, rising: where reading goes on after damage
+  Timestamp first_ = Timestamp::max(), last_ = Timestamp::min();
+  std::uint64_t at_ = 0;  ///< next record of the file
+  Bytes records_;         ///< those being read
+  ByteReader reader_{ByteSpan()};
+};
+
+}  // namespace edged
