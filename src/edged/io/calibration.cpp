@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration_formats.hpp"
+#include "edged/io/calib/calibration_formats.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/text.hpp"
 

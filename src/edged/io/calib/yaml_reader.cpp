@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Access to yaml with good complaints.
-#include "edged/io/yaml_reader.hpp"
+#include "edged/io/calib/yaml_reader.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

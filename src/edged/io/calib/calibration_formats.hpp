@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "edged/io/calibration.hpp"
-#include "edged/io/yaml_reader.hpp"
+#include "edged/io/calib/yaml_reader.hpp"
 
 namespace edged {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // One reader per calibration format. Each says which way its transform points.
-#include "edged/io/calibration_formats.hpp"
+#include "edged/io/calib/calibration_formats.hpp"
 
 #include <cmath>
 
