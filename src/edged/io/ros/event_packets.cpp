@@ -48,15 +48,63 @@ std::vector<Event> decode_libcaer(const EventPacket& packet) {
   return events;
 }
 
+/// Words of 16 bits: kind 4, value 12. Times are microseconds since the time base, which is on the clock of the stamps;
+/// a column goes on until the next. Events come one by one, or as bits for eight rows from a base row on.
+std::vector<Event> decode_libcaer_cmp(const EventPacket& packet, std::uint16_t& column) {
+  enum Kind : std::uint8_t { TimeHigh, TimeLow, Column, Row, BaseRow, EightRows };
+  check_time_base(packet);
+  std::vector<Event> events;
+  std::uint64_t high = 0, low = 0;
+  std::uint16_t base_row = 0;
+  bool positive = false;
+  const auto add = [&](unsigned row, bool polarity) {
+    const auto t = static_cast<std::int64_t>(packet.time_base + (high << 12U | low) * 1000);
+    events.push_back({timestamp_from_ns(t), column, static_cast<std::uint16_t>(row), polarity});
+  };
+  for (ByteReader reader(packet.events); reader.left() >= 2;) {
+    const auto word = reader.number<std::uint16_t>();
+    const std::uint16_t value = word & 0xFFFU, pixel = word & 0x7FFU;
+    const bool polarity = (word >> 11U & 1U) != 0;
+    switch (word >> 12U) {
+      case TimeHigh:
+        high = value;
+        break;
+      case TimeLow:
+        low = value;
+        break;
+      case Column:
+        column = pixel;
+        break;
+      case Row:
+        add(pixel, polarity);
+        break;
+      case BaseRow:
+        base_row = pixel;
+        positive = polarity;
+        break;
+      case EightRows:
+        for (unsigned i = 0; i < 8; ++i)
+          if ((word >> i & 1U) != 0) add(base_row + i, positive);
+        base_row = static_cast<std::uint16_t>(base_row + 8);
+        break;
+      default:
+        throw Damage("word of a kind that libcaer_cmp does not have");
+    }
+  }
+  return events;
+}
+
 }  // namespace
 
 std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   if (sequence_ && packet.sequence != *sequence_ + 1) {
     sensor_to_stamps_.reset();
     evt3_.reset();
+    column_ = 0;
   }
   sequence_ = packet.sequence;
   if (packet.encoding == "libcaer") return decode_libcaer(packet);
+  if (packet.encoding == "libcaer_cmp") return decode_libcaer_cmp(packet, column_);
 
   std::vector<Event> events;
   if (packet.encoding == "evt3") {
@@ -64,7 +112,7 @@ std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   } else if (packet.encoding == "mono") {
     events = decode_mono(packet);
   } else {
-    throw Damage("encoding `" + std::string(packet.encoding) + "` is none of evt3, mono and libcaer");
+    throw Damage("encoding `" + std::string(packet.encoding) + "` is none of evt3, mono, libcaer and libcaer_cmp");
   }
   if (events.empty()) return events;
   // The stamp is that of the first event; mono says from where it counts.

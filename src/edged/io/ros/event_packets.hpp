@@ -10,9 +10,9 @@
 
 namespace edged {
 
-/// Encodings evt3, mono and libcaer. Sensors with a clock of their own (all but libcaer) are set to that of the stamps
-/// once, by the first packet and again where packets are missing: their distances are the sensor's, without the jitter
-/// of the stamps.
+/// Encodings evt3, mono, libcaer and libcaer_cmp. Sensors with a clock of their own (those of the first two) are set to
+/// that of the stamps once, by the first packet and again where packets are missing: their distances are the sensor's,
+/// without the jitter of the stamps.
 class EventPacketDecoder {
  public:
   /// Throws Damage for what it cannot decode, other encodings among it.
@@ -20,6 +20,7 @@ class EventPacketDecoder {
 
  private:
   EvtDecoder evt3_{EvtFormat::Evt3, 1 << 11, 1 << 11};  // as many pixels as its words can name
+  std::uint16_t column_ = 0;                            ///< of libcaer_cmp, kept from packet to packet
   std::optional<std::uint64_t> sequence_;               ///< of the last packet
   std::optional<Duration> sensor_to_stamps_;
 };

@@ -40,12 +40,13 @@ TEST_P(RealBag, GivesAllItsEventsInOrder) {
   for (const auto& [kind, count] : r.dataset->repairs()) ADD_FAILURE() << kind << ": " << count;
 }
 
-// The count of the second but last is what the decoder gave, its sums are checked below.
+// The count of 1280 x 720 is what the decoder gave, its sums are checked below.
 INSTANTIATE_TEST_SUITE_P(Samples, RealBag,
                          ::testing::Values(BagSample{"event_camera_msgs_evt3.bag", 343'474, 640, 480, 2.08},
                                            BagSample{"rosbag2_sqlite_evt3", 343'474, 640, 480, 2.08},
                                            BagSample{"rosbag2_sqlite_evt3_1280x720", 82'469, 1280, 720, 1.2513},
-                                           BagSample{"rosbag2_sqlite_mono", 100, 640, 480, 0.0001}));
+                                           BagSample{"rosbag2_sqlite_mono", 100, 640, 480, 0.0001},
+                                           BagSample{"rosbag2_mcap_evt3", 571'266, 346, 260, 1.0}));
 
 /// Sums of columns, rows and polarities that event_camera_codecs, the encoding's own library, states of its samples.
 TEST(RosDataset, EventPacketsDecodeToTheSumsThatTheirOwnLibraryStates) {
@@ -60,16 +61,44 @@ TEST(RosDataset, EventPacketsDecodeToTheSumsThatTheirOwnLibraryStates) {
   EXPECT_EQ(sums("rosbag2_sqlite_evt3_1280x720"), (std::array<std::uint64_t, 3>{42'078'718, 31'656'267, 41'439}));
 }
 
-TEST(RosDataset, AnMcapWhoseEventsAreOfAnUnknownEncodingIsRefusedByItsName) {
+/// Counts and first stamp that event_camera_py, the encoding's own binding, states of this recording; its name says
+/// evt3, its packets libcaer_cmp.
+TEST(RosDataset, ACompressedDavisRecordingHasThePolaritiesAndTheBeginThatItsOwnLibraryStates) {
   const fs::path path = data_folder() / "formats" / "rosbag2_mcap_evt3";
   if (!fs::exists(path)) GTEST_SKIP() << "no data";
-  EXPECT_THAT(input_error([&] { open_recording(path); }), ::testing::HasSubstr("libcaer_cmp"));
+  const auto events = read_all(*open_recording(path).dataset).events;
+  EXPECT_EQ(std::ranges::count(events, true, &Event::positive), 211'043);
+  EXPECT_EQ(std::ranges::count(events, false, &Event::positive), 360'223);
+  const Timestamp begin = timestamp_from_ns(1'744'227'144'732'712'000);
+  EXPECT_EQ(events.front().t, begin);
+  EXPECT_EQ(std::ranges::max(events, {}, &Event::x).x, 345);
+  EXPECT_EQ(std::ranges::max(events, {}, &Event::y).y, 259);
+  std::int64_t sum_us = 0;
+  for (const Event& e : events) sum_us += (e.t - begin) / std::chrono::microseconds(1);
+  EXPECT_EQ(sum_us, 335'555'680'277);
+}
+
+/// Each packet of it begins at its time base and ends before that of the next, 10 ms later.
+TEST(RosDataset, PacketsOfACompressedDavisRecordingKeepToTheirTimeBases) {
+  const fs::path path = data_folder() / "formats" / "rosbag2_mcap_evt3";
+  if (!fs::exists(path)) GTEST_SKIP() << "no data";
   Repairs repairs;
   const auto source = open_messages(path, &repairs);
   ASSERT_EQ(source->topics().size(), 1u);
   EXPECT_EQ(source->topics().front().count, 100u);
+  EventPacketDecoder decoder;
   std::size_t messages = 0;
-  while (source->next()) ++messages;
+  Timestamp last = Timestamp::min();
+  while (const auto message = source->next()) {
+    ++messages;
+    const EventPacket packet = read_event_packet(WireReader(source->wire(), message->data));
+    const std::vector<Event> events = decoder.decode(packet);
+    EXPECT_EQ(to_ns(events.front().t), static_cast<std::int64_t>(packet.time_base));
+    EXPECT_GT(events.front().t, last);
+    EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::t));
+    last = events.back().t;
+    EXPECT_LT(last, events.front().t + std::chrono::milliseconds(10));
+  }
   EXPECT_EQ(messages, 100u);
   EXPECT_TRUE(repairs.counts().empty());
 }
