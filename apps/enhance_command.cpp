@@ -16,7 +16,7 @@
 #include "contact_sheet.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/last_stamp.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
 #include "source.hpp"

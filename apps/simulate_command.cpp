@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/ecd_writer.hpp"
+#include "edged/io/recording_writer.hpp"
 #include "edged/sim/simulator.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
@@ -59,13 +59,13 @@ int run_simulate(const SimulateOptions& options) {
       options.out.empty() ? std::filesystem::path("recordings") / fmt::format("{}_{}", options.preset, config.seed)
                           : options.out;
   StatusLine status(options.quiet);
-  EcdWriteOptions write;
-  write.calibration = simulator.calibration();
+  WriteOptions write;
   write.progress = [&](Timestamp t) {
     if (status.due()) status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s));
   };
   InterruptibleDataset dataset(simulator);
-  const EcdWriteCounts counts = write_ecd(dataset, folder, write);
+  const WriteCounts counts = write_recording(dataset, writable_format("ecd", folder),
+                                             {folder, simulator.info(), simulator.calibration()}, write);
   status.clear();
   if (options.json) {
     const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <map>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,7 @@ struct DatasetInfo {
   std::optional<Timestamp> begin;         ///< first stamp of any sensor, if known cheaply
   std::optional<Timestamp> end;           ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
+  cv::Size event_sensor;                  ///< size of the event camera [px]; empty where it is not known
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,

@@ -63,6 +63,15 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
+/// The bytes of a number as they lie in memory, appended.
+template <typename T>
+requires std::is_arithmetic_v<T>
+void append_number(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
 /// A file read by position.
 class BinaryFile {
  public:
@@ -75,6 +84,26 @@ class BinaryFile {
 
  private:
   std::ifstream file_;
+  std::uint64_t size_ = 0;
+};
+
+/// A new file, written front to back. All members throw InputError when it cannot be written.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& file);
+
+  std::uint64_t size() const { return size_; }
+  void write(std::string_view bytes);
+  /// Replaces bytes written before, which a format has to know only at its end.
+  void overwrite(std::uint64_t offset, std::string_view bytes);
+  /// To the disk.
+  void flush();
+
+ private:
+  void check() const;
+
+  std::string name_;
+  std::ofstream file_;
   std::uint64_t size_ = 0;
 };
 

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushBytes = 1 << 20;
-constexpr std::size_t kProgressEvery = 256;  // measurements
 
 /// A text file that comes into being with its first line.
 class LazyFile {
@@ -44,77 +43,6 @@ class LazyFile {
   fs::path file_;
   std::ofstream out_;
   fmt::memory_buffer text_;
-};
-
-class EcdWriter {
- public:
-  explicit EcdWriter(const fs::path& folder)
-      : folder_(folder), events_(folder / "events.txt"), images_(folder / "images.txt"), imu_(folder / "imu.txt") {}
-
-  Timestamp operator()(const EventBatch& batch) {
-    keep_to_one(event_camera_, batch.camera);
-    for (const Event& e : batch.events) {
-      const std::int64_t ns = to_ns(e.t);
-      if (ns < 0) {
-        events_.add(FMT_COMPILE("{} {} {} {:d}\n"), format_seconds(e.t), e.x, e.y, e.positive);
-      } else {
-        events_.add(FMT_COMPILE("{}.{:09} {} {} {:d}\n"), ns / 1'000'000'000, ns % 1'000'000'000, e.x, e.y, e.positive);
-      }
-    }
-    counts.events += batch.events.size();
-    return batch.events.empty() ? Timestamp::min() : batch.events.back().t;
-  }
-
-  Timestamp operator()(const Frame& frame) {
-    keep_to_one(frame_camera_, frame.camera);
-    if (counts.frames == 0) fs::create_directories(folder_ / "images");
-    const std::string name = fmt::format("images/frame_{:08}.png", counts.frames++);
-    const fs::path file = folder_ / name;
-    if (!cv::imwrite(file.string(), frame.image))
-      throw InputError::format("{}: cannot be written: is the disk full?", file.string());
-    images_.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
-    return frame.t;
-  }
-
-  Timestamp operator()(const ImuSample& s) {
-    imu_.add(FMT_COMPILE("{} {} {} {} {} {} {}\n"), format_seconds(s.t), s.accel_B.x(), s.accel_B.y(), s.accel_B.z(),
-             s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z());
-    ++counts.imu;
-    return s.t;
-  }
-
-  void write_ground_truth(const Trajectory& trajectory) {
-    LazyFile out(folder_ / "groundtruth.txt");
-    for (const StampedPose& pose : trajectory) {
-      const Eigen::Vector3d& p = pose.T.translation();
-      const Eigen::Quaterniond& q = pose.T.rotation();
-      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(),
-              q.z(), q.w());
-    }
-    out.flush();
-    counts.poses = trajectory.size();
-  }
-
-  void flush() {
-    events_.flush();
-    images_.flush();
-    imu_.flush();
-  }
-
-  EcdWriteCounts counts;
-
- private:
-  /// The format has no room for a second camera of a kind.
-  void keep_to_one(std::string& known, const std::string& camera) {
-    if (known.empty()) known = camera;
-    if (known != camera)
-      throw InputError::format("{}: the Event-Camera Dataset format holds one camera of a kind, not both {} and {}",
-                               folder_.string(), known, camera);
-  }
-
-  fs::path folder_;
-  LazyFile events_, images_, imu_;
-  std::string event_camera_, frame_camera_;
 };
 
 /// With the camera names that the reader of the format gives.
@@ -160,25 +88,84 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Cal
   return out;
 }
 
+class EcdWriter final : public RecordingWriter {
+ public:
+  explicit EcdWriter(const WriterSetup& setup)
+      : folder_(setup.path),
+        calibration_(setup.calibration),
+        events_(folder_ / "events.txt"),
+        images_(folder_ / "images.txt"),
+        imu_(folder_ / "imu.txt") {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw InputError::format("{}: cannot be made: {}", folder_.string(), error.message());
+    if (is_ecd_folder(folder_))
+      throw InputError::format("{}: holds a recording already: give another folder", folder_.string());
+    if (calibration_) write_calibration(*calibration_, folder_);
+  }
+
+  void write(const EventBatch& batch) override {
+    keep_to_one(event_camera_, batch.camera);
+    for (const Event& e : batch.events) {
+      const std::int64_t ns = to_ns(e.t);
+      if (ns < 0) {
+        events_.add(FMT_COMPILE("{} {} {} {:d}\n"), format_seconds(e.t), e.x, e.y, e.positive);
+      } else {
+        events_.add(FMT_COMPILE("{}.{:09} {} {} {:d}\n"), ns / 1'000'000'000, ns % 1'000'000'000, e.x, e.y, e.positive);
+      }
+    }
+  }
+
+  void write(const Frame& frame) override {
+    keep_to_one(frame_camera_, frame.camera);
+    if (frames_ == 0) fs::create_directories(folder_ / "images");
+    const std::string name = fmt::format("images/frame_{:08}.png", frames_++);
+    const fs::path file = folder_ / name;
+    if (!cv::imwrite(file.string(), frame.image))
+      throw InputError::format("{}: cannot be written: is the disk full?", file.string());
+    images_.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
+  }
+
+  void write(const ImuSample& s) override {
+    imu_.add(FMT_COMPILE("{} {} {} {} {} {} {}\n"), format_seconds(s.t), s.accel_B.x(), s.accel_B.y(), s.accel_B.z(),
+             s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z());
+  }
+
+  void write(const GroundTruth& truth) override {
+    LazyFile out(folder_ / "groundtruth.txt");
+    for (const StampedPose& pose : camera_ground_truth(truth, calibration_)) {
+      const Eigen::Vector3d& p = pose.T.translation();
+      const Eigen::Quaterniond& q = pose.T.rotation();
+      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(),
+              q.z(), q.w());
+    }
+    out.flush();
+  }
+
+  void finish() override {
+    events_.flush();
+    images_.flush();
+    imu_.flush();
+  }
+
+ private:
+  /// The format has no room for a second camera of a kind.
+  void keep_to_one(std::string& known, const std::string& camera) {
+    if (known.empty()) known = camera;
+    if (known != camera)
+      throw InputError::format("{}: the Event-Camera Dataset format holds one camera of a kind, not both {} and {}",
+                               folder_.string(), known, camera);
+  }
+
+  fs::path folder_;
+  std::optional<Calibration> calibration_;
+  LazyFile events_, images_, imu_;
+  std::string event_camera_, frame_camera_;
+  std::size_t frames_ = 0;
+};
+
 }  // namespace
 
-EcdWriteCounts write_ecd(Dataset& dataset, const fs::path& folder, const EcdWriteOptions& options) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
-  if (is_ecd_folder(folder))
-    throw InputError::format("{}: holds a recording already: give another folder", folder.string());
-
-  EcdWriter writer(folder);
-  if (options.calibration) write_calibration(*options.calibration, folder);
-  if (const auto truth = dataset.ground_truth())
-    writer.write_ground_truth(camera_ground_truth(*truth, options.calibration));
-  for (std::size_t i = 1; const auto measurement = dataset.next(); ++i) {
-    const Timestamp t = std::visit(writer, *measurement);
-    if (options.progress && i % kProgressEvery == 0) options.progress(t);
-  }
-  writer.flush();
-  return writer.counts;
-}
+std::unique_ptr<RecordingWriter> write_ecd(const WriterSetup& setup) { return std::make_unique<EcdWriter>(setup); }
 
 }  // namespace edged

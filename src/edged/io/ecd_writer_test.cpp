@@ -5,8 +5,6 @@
 
 #include <gmock/gmock.h>
 
-#include <random>
-
 #include "edged/io/recording.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -15,54 +13,18 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Gives what it is told to.
-class ListedDataset : public Dataset {
- public:
-  const DatasetInfo& info() const override { return info_; }
-  std::optional<Measurement> next() override {
-    if (next_ == measurements.size()) return std::nullopt;
-    return measurements[next_++];
-  }
-  std::optional<GroundTruth> ground_truth() const override { return truth; }
-
-  std::vector<Measurement> measurements;
-  std::optional<GroundTruth> truth;
-
- private:
-  DatasetInfo info_;
-  std::size_t next_ = 0;
-};
-
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-
-ListedDataset random_dataset() {
-  ListedDataset d;
-  std::mt19937_64 random(7);
-  Timestamp t = timestamp_from_ns(1'468'939'993'067'416'019);
-  for (int i = 0; i < 200; ++i) {
-    t += std::chrono::milliseconds(1);
-    const Eigen::Vector3d gyro(uniform(random), -uniform(random), 1e-9 * uniform(random));
-    d.measurements.push_back(ImuSample{t, gyro, gyro * 9.81});
-    EventBatch batch{"left", {}};
-    for (Timestamp e = t; e < t + std::chrono::microseconds(900); e += Duration(1 + random() % 20'000))
-      batch.events.push_back({e, static_cast<std::uint16_t>(random() % 240), static_cast<std::uint16_t>(random() % 180),
-                              random() % 2 == 1});
-    d.measurements.push_back(std::move(batch));
-    if (i % 40 != 0) continue;
-    cv::Mat image(180, 240, CV_8UC1);
-    for (auto& pixel : cv::Mat_<std::uint8_t>(image)) pixel = static_cast<std::uint8_t>(random());
-    d.measurements.push_back(Frame{t + std::chrono::microseconds(950), "left", image});
-  }
-  d.truth = GroundTruth{{{t, SE3(Eigen::Quaterniond(0.8, 0, 0, 0.6), {1, 2, 3})}}, "body"};
-  return d;
+void copy_as_ecd(Dataset& source, const std::filesystem::path& folder,
+                 const std::optional<Calibration>& calibration = {}) {
+  write_recording(source, writable_format("ecd", folder), {folder, {}, calibration});
 }
 
 TEST(EcdWriter, WrittenRecordingReadsBackToTheSameBits) {
   TempFolder folder;
   ListedDataset source = random_dataset();
   int calls = 0;
-  EcdWriteOptions options{load_rig("davis240c_ecd"), [&](Timestamp) { ++calls; }};
-  const EcdWriteCounts counts = write_ecd(source, folder.path() / "out", options);
+  const Calibration calibration = load_rig("davis240c_ecd");
+  const WriteCounts counts = write_recording(source, writable_format("ecd", ""), {folder.path() / "out", {}, calibration},
+                                             {.progress = [&](Timestamp) { ++calls; }});
   EXPECT_GT(calls, 0);
 
   ListedDataset again = random_dataset();
@@ -84,14 +46,14 @@ TEST(EcdWriter, WrittenRecordingReadsBackToTheSameBits) {
   }
   EXPECT_TRUE(r.dataset->repairs().empty());
   ASSERT_TRUE(r.calibration);
-  EXPECT_EQ(r.calibration->rig.camera("events").model, options.calibration->rig.camera("events").model);
+  EXPECT_EQ(r.calibration->rig.camera("events").model, calibration.rig.camera("events").model);
 }
 
 TEST(EcdWriter, GroundTruthBecomesThatOfTheCameraOnItsClock) {
   TempFolder folder;
   ListedDataset source = random_dataset();
   const Calibration calibration = load_rig("davis240c_ecd");
-  write_ecd(source, folder.path() / "out", {calibration, {}});
+  copy_as_ecd(source, folder.path() / "out", calibration);
   const GroundTruth truth = *open_recording(folder.path() / "out").dataset->ground_truth();
   const RigCamera& camera = calibration.rig.camera("events");
   EXPECT_EQ(truth.frame, "events");
@@ -102,20 +64,20 @@ TEST(EcdWriter, GroundTruthBecomesThatOfTheCameraOnItsClock) {
 TEST(EcdWriter, RefusesWhatTheFormatCannotHold) {
   TempFolder folder;
   ListedDataset source = random_dataset();
-  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "a"); }), HasSubstr("a calibration with extrinsics"));
+  EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "a"); }), HasSubstr("a calibration with extrinsics"));
   source.truth.reset();
   source.measurements.push_back(EventBatch{"right", {Event{}}});
-  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "b"); }), HasSubstr("not both left and right"));
+  EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "b"); }), HasSubstr("not both left and right"));
   folder.write("c/imu.txt", "");
-  EXPECT_THAT(input_error([&] { write_ecd(source, folder.path() / "c"); }), HasSubstr("holds a recording already"));
-  EXPECT_THAT(input_error([&] { write_ecd(source, "/proc/none/out"); }), HasSubstr("cannot be made"));
+  EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "c"); }), HasSubstr("holds a recording already"));
+  EXPECT_THAT(input_error([&] { copy_as_ecd(source, "/proc/none/out"); }), HasSubstr("cannot be made"));
 }
 
 TEST(EcdWriter, CopiesARealRecordingExactly) {
   const auto path = data_folder() / "ecd" / "slider_depth";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no data";
   TempFolder folder;
-  write_ecd(*open_recording(path).dataset, folder.path() / "out");
+  copy_as_ecd(*open_recording(path).dataset, folder.path() / "out");
   EXPECT_EQ(read_text(folder.path() / "out" / "events.txt"), read_text(path / "events.txt"));
   EXPECT_EQ(read_all(*open_recording(folder.path() / "out").dataset).frames.size(), 87u);
 }

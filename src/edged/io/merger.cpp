@@ -84,9 +84,8 @@ void ArrivalQueue<T>::insert(T item, Timestamp floor) {
   sorted_.insert(place, std::move(item));
 }
 
-Merger::Merger(Streams expected, Repairs& repairs)
-    : expected_(std::move(expected)),
-      events_("events", true, 4'000'000, repairs),
+Merger::Merger(Repairs& repairs)
+    : events_("events", true, 4'000'000, repairs),
       frames_("frames", false, 300, repairs),
       imu_("imu", false, 100'000, repairs) {}
 

@@ -71,7 +71,10 @@ class Merger {
     std::string event_camera = "events";
   };
 
-  Merger(Streams expected, Repairs& repairs);
+  explicit Merger(Repairs& repairs);
+
+  /// Streams to wait for; before any push.
+  void expect(const Streams& streams) { expected_ = streams; }
 
   void push(std::span<const Event> events);
   void push(Frame frame);

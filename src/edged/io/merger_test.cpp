@@ -35,7 +35,8 @@ std::string popped(Merger& merger) {
 
 TEST(Merger, SortsStreamsThatArriveAtDifferentDelaysAndBreaksTiesAsDatasetSays) {
   Repairs repairs;
-  Merger merger({true, true, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, true, true, "events"});
   merger.push(imu_at(0));
   merger.push(imu_at(2));
   merger.push(imu_at(4));
@@ -51,7 +52,8 @@ TEST(Merger, SortsStreamsThatArriveAtDifferentDelaysAndBreaksTiesAsDatasetSays) 
 
 TEST(Merger, BatchesSpanAtMostFiveMilliseconds) {
   Repairs repairs;
-  Merger merger({true, false, false, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, false, false, "events"});
   merger.push(events_at({0, 2, 4, 6, 8}));
   merger.finish();
   EXPECT_EQ(popped(merger), "E0,2,4 E6,8");
@@ -59,7 +61,8 @@ TEST(Merger, BatchesSpanAtMostFiveMilliseconds) {
 
 TEST(Merger, WaitsOneSecondForAStreamThatStaysAway) {
   Repairs repairs;
-  Merger merger({true, true, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, true, true, "events"});
   for (int t = 0; t <= 900; t += 100) merger.push(imu_at(t));
   EXPECT_EQ(popped(merger), "");
   merger.push(imu_at(1150));
@@ -68,7 +71,8 @@ TEST(Merger, WaitsOneSecondForAStreamThatStaysAway) {
 
 TEST(Merger, LateItemsAreSortedInWhilePossibleAndCountedAlways) {
   Repairs repairs;
-  Merger merger({true, false, false, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, false, false, "events"});
   merger.push(events_at({10, 20, 15, 30}));
   EXPECT_EQ(popped(merger), "E10 E15 E20");
   merger.push(events_at({12, 40}));
@@ -80,7 +84,8 @@ TEST(Merger, LateItemsAreSortedInWhilePossibleAndCountedAlways) {
 
 TEST(Merger, RepeatedStampsAreLeftOutExceptOfEvents) {
   Repairs repairs;
-  Merger merger({true, false, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, false, true, "events"});
   merger.push(imu_at(1));
   merger.push(imu_at(1));
   merger.push(events_at({1, 1}));
@@ -91,7 +96,8 @@ TEST(Merger, RepeatedStampsAreLeftOutExceptOfEvents) {
 
 TEST(Merger, OneStampFarAheadDoesNotEndTheStream) {
   Repairs repairs;
-  Merger merger({false, false, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({false, false, true, "events"});
   for (const double t : {9e9, 0.0, 5.0, 7e7, 10.0, 15.0}) merger.push(imu_at(t));
   merger.finish();
   EXPECT_EQ(popped(merger), "I0 I5 I10 I15");
@@ -100,7 +106,8 @@ TEST(Merger, OneStampFarAheadDoesNotEndTheStream) {
 
 TEST(Merger, AGapThatTheNextStampConfirmsIsKept) {
   Repairs repairs;
-  Merger merger({false, false, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({false, false, true, "events"});
   for (const double t : {0.0, 5.0, 60'000.0, 60'005.0}) merger.push(imu_at(t));
   merger.finish();
   EXPECT_EQ(popped(merger), "I0 I5 I60000 I60005");
@@ -109,7 +116,8 @@ TEST(Merger, AGapThatTheNextStampConfirmsIsKept) {
 
 TEST(Merger, HoldsABoundedNumberOfEventsWhoseStampsStandStill) {
   Repairs repairs;
-  Merger merger({true, false, true, "events"}, repairs);
+  Merger merger(repairs);
+  merger.expect({true, false, true, "events"});
   const std::vector<Event> many(1'000'000, Event{at_ms(1), 1, 1, true});
   std::size_t out = 0;
   for (int i = 0; i < 6; ++i) {

@@ -28,9 +28,8 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
   if (is_aedat4(head)) return open_aedat4(file, rig, options.geometry);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT and AEDAT4. Of a recording in "
-      "several files "
-      "give the folder (unpack an archive first)",
+      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT and AEDAT4. Of a recording "
+      "in several files give the folder (unpack an archive first)",
       file.string());
 }
 
@@ -39,12 +38,8 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
 Recording open_recording(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
-  if (is_bag(path)) {
-    const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr;
-    const auto sensor =
-        camera ? std::optional(cv::Size(camera->model.width(), camera->model.height())) : options.geometry;
-    return {std::make_unique<RosDataset>(path, options.topics, sensor), std::nullopt};
-  }
+  if (is_bag(path))
+    return {std::make_unique<RosDataset>(path, options.topics, rig, options.geometry), std::nullopt};
   return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig) : open_file(path, rig, options);
 }
 

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,50 @@ inline std::string read_text(const std::filesystem::path& file) {
 inline std::filesystem::path data_folder() {
   if (const char* own = std::getenv("EDGED_DATA")) return own;
   return std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+/// Gives what it is told to.
+class ListedDataset : public Dataset {
+ public:
+  const DatasetInfo& info() const override { return info_; }
+  std::optional<Measurement> next() override {
+    if (next_ == measurements.size()) return std::nullopt;
+    return measurements[next_++];
+  }
+  std::optional<GroundTruth> ground_truth() const override { return truth; }
+
+  std::vector<Measurement> measurements;
+  std::optional<GroundTruth> truth;
+
+ private:
+  DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, cv::Size(240, 180)};
+  std::size_t next_ = 0;
+};
+
+inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// 200 ms with events of one camera, frames and IMU, at Unix time. Events are stamped at whole ticks.
+inline ListedDataset random_dataset(Duration tick = Duration(1)) {
+  ListedDataset d;
+  std::mt19937_64 random(7);
+  Timestamp t = timestamp_from_ns(1'468'939'993'067'416'019);
+  for (int i = 0; i < 200; ++i) {
+    t += std::chrono::milliseconds(1);
+    const Eigen::Vector3d gyro(uniform(random), -uniform(random), 1e-9 * uniform(random));
+    d.measurements.push_back(ImuSample{t, gyro, gyro * 9.81});
+    EventBatch batch{"left", {}};
+    for (Timestamp e = t; e < t + std::chrono::microseconds(900); e += Duration(1 + random() % 20'000))
+      batch.events.push_back({e, static_cast<std::uint16_t>(random() % 240), static_cast<std::uint16_t>(random() % 180),
+                              random() % 2 == 1});
+    for (Event& event : batch.events) event.t -= event.t.time_since_epoch() % tick;
+    d.measurements.push_back(std::move(batch));
+    if (i % 40 != 0) continue;
+    cv::Mat image(180, 240, CV_8UC1);
+    for (auto& pixel : cv::Mat_<std::uint8_t>(image)) pixel = static_cast<std::uint8_t>(random());
+    d.measurements.push_back(Frame{t + std::chrono::microseconds(950), "left", image});
+  }
+  d.truth = GroundTruth{{{t, SE3(Eigen::Quaterniond(0.8, 0, 0, 0.6), {1, 2, 3})}}, "body"};
+  return d;
 }
 
 /// All a data set gives, sorted by kind.

@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include "edged/core/check.hpp"
-#include "edged/core/last_stamp.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/live/test_storm.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "edged/core/last_stamp.hpp"
+#include "edged/core/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

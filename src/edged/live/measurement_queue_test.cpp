@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "edged/core/last_stamp.hpp"
+#include "edged/core/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

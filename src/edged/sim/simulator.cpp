@@ -115,6 +115,7 @@ Simulator::Simulator(const SimulatorConfig& config)
   info_.begin = Timestamp() + std::min(Duration(0), time_offset_);
   info_.end = end_ + std::max(Duration(0), time_offset_);
   info_.has_events = info_.has_frames = info_.has_imu = true;
+  info_.event_sensor = cv::Size(config.camera.width, config.camera.height);
 }
 
 std::optional<GroundTruth> Simulator::ground_truth() const {

@@ -14,7 +14,7 @@
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/compression.hpp"
 #include "edged/io/formats.hpp"
-#include "edged/io/merger.hpp"
+#include "edged/io/streamed_dataset.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -130,49 +130,20 @@ cv::Mat grey_image(const FlatTable& frame) {
   return grey;
 }
 
-class Aedat4Dataset final : public Dataset {
+class Aedat4Dataset final : public StreamedDataset {
  public:
   Aedat4Dataset(const std::filesystem::path& file, BinaryFile bytes, const Aedat4Header& header, cv::Size geometry)
-      : name_(file.string()),
+      : StreamedDataset(file, "aedat4"),
         file_(std::move(bytes)),
         header_(header),
-        geometry_(geometry),
         at_(header.packets_at),
-        end_(file_.size()),
-        merger_({header.events.has_value(), header.frames.has_value(), header.imu.has_value()}, repairs_) {
-    info_.name = file.stem().string();
-    info_.format = "aedat4";
-    info_.has_events = header.events.has_value();
-    info_.has_frames = header.frames.has_value();
-    info_.has_imu = header.imu.has_value();
+        end_(file_.size()) {
+    set_sensor(geometry);
     read_table();
-    first_ = merged();
-    if (!first_) throw InputError::format("{}: nothing to read: holds no whole packet of events, frames or IMU", name_);
-    info_.begin = std::visit([](const auto& m) { return begin_of(m); }, *first_);
-  }
-
-  const DatasetInfo& info() const override { return info_; }
-  std::map<std::string, std::size_t> repairs() const override { return repairs_.counts(); }
-
-  std::optional<Measurement> next() override {
-    if (first_) return std::exchange(first_, std::nullopt);
-    return merged();
+    begin({header.events.has_value(), header.frames.has_value(), header.imu.has_value()});
   }
 
  private:
-  static Timestamp begin_of(const EventBatch& batch) { return batch.events.front().t; }
-  static Timestamp begin_of(const Frame& frame) { return frame.t; }
-  static Timestamp begin_of(const ImuSample& sample) { return sample.t; }
-
-  std::optional<Measurement> merged() {
-    while (true) {
-      if (auto measurement = merger_.pop()) return measurement;
-      if (finished_) return std::nullopt;
-      finished_ = !read_packet();
-      if (finished_) merger_.finish();
-    }
-  }
-
   /// The end of the recording and of its packets. An interrupted recording has no table and is read to its end.
   void read_table() try {
     if (header_.table_at < 0 || static_cast<std::uint64_t>(header_.table_at) >= file_.size())
@@ -192,7 +163,7 @@ class Aedat4Dataset final : public Dataset {
   }
 
   /// False at the end of the file, or where what follows is no packet.
-  bool read_packet() {
+  bool read_on() override {
     if (at_ >= end_) return false;
     const Bytes head = file_.read(at_, 8);
     const auto cut = [this] {
@@ -209,9 +180,12 @@ class Aedat4Dataset final : public Dataset {
       const Decompressed body =
           decompress(header_.compression, file_.read(begin, static_cast<std::size_t>(bytes)), kMostPacketBytes);
       if (!body.whole) throw Damage("cannot be unpacked");
-      if (stream == header_.events) push_events(without_length(body.bytes, "EVTS"));
-      if (stream == header_.frames) push_frame(FlatTable(without_length(body.bytes, "FRME")));
-      if (stream == header_.imu) push_imu(FlatTable(without_length(body.bytes, "IMUS")));
+      if (stream == header_.events) take_events(without_length(body.bytes, "EVTS"));
+      if (stream == header_.frames) {
+        const FlatTable frame(without_length(body.bytes, "FRME"));
+        push_frame(frame_stamp(frame), grey_image(frame));
+      }
+      if (stream == header_.imu) take_imu(FlatTable(without_length(body.bytes, "IMUS")));
     } catch (const Damage& damage) {
       repairs_.add("file: packet unreadable", fmt::format("{}: packet at byte {}: {}", name_, begin, damage.what()));
     }
@@ -227,7 +201,7 @@ class Aedat4Dataset final : public Dataset {
     return buffer;
   }
 
-  void push_events(ByteSpan buffer) {
+  void take_events(ByteSpan buffer) {
     constexpr std::size_t kEventBytes = 16;
     const FlatVector list = FlatTable(buffer).vector(0, kEventBytes);
     std::vector<Event> events;
@@ -237,31 +211,13 @@ class Aedat4Dataset final : public Dataset {
       const auto x = reader.number<std::int16_t>(), y = reader.number<std::int16_t>();
       const bool on = reader.number<std::uint8_t>() != 0;
       reader.take(3);
-      if (x >= 0 && y >= 0 && x < geometry_.width && y < geometry_.height)
-        events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
-      else
-        outside(x, y);
+      // Negative ones become large, and so lie outside of any sensor.
+      events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
     }
-    inside_ += events.size();
-    merger_.push(events);
+    push_events(std::move(events));
   }
 
-  void outside(int x, int y) {
-    repairs_.add("events: pixel outside the sensor", fmt::format("{}: pixel ({}, {}) outside the {} x {} sensor", name_,
-                                                                 x, y, geometry_.width, geometry_.height));
-    if (++outside_ > 1000 && outside_ > inside_ / 100)
-      throw InputError::format("{}: {} of {} events lie outside the {} x {} sensor: is this its calibration?", name_,
-                               outside_, outside_ + inside_, geometry_.width, geometry_.height);
-  }
-
-  void push_frame(const FlatTable& frame) {
-    cv::Mat image = grey_image(frame);
-    if (image_size_.empty()) image_size_ = image.size();
-    if (image.size() != image_size_) throw Damage("an image of another size");
-    merger_.push(Frame{frame_stamp(frame), "frames", std::move(image)});
-  }
-
-  void push_imu(const FlatTable& packet) {
+  void take_imu(const FlatTable& packet) {
     constexpr double kRadPerDeg = std::numbers::pi / 180;
     const FlatVector list = packet.vector(0, 4);
     for (std::size_t i = 0; i < list.count; ++i) {
@@ -272,22 +228,13 @@ class Aedat4Dataset final : public Dataset {
         if (!v.allFinite()) throw Damage("an IMU sample that is no number");
         return v;
       };
-      merger_.push(
-          ImuSample{stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kRadPerDeg, three(2) * kStandardGravity});
+      push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kRadPerDeg, three(2) * kStandardGravity});
     }
   }
 
-  std::string name_;
   BinaryFile file_;
   Aedat4Header header_;
-  cv::Size geometry_, image_size_;
   std::uint64_t at_, end_;  ///< of the next packet; behind the last
-  DatasetInfo info_;
-  Repairs repairs_;
-  Merger merger_;
-  std::optional<Measurement> first_;  ///< read for the begin
-  std::size_t inside_ = 0, outside_ = 0;
-  bool finished_ = false;
 };
 
 }  // namespace

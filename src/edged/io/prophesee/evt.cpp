@@ -66,7 +66,11 @@ class EvtDecoder::Sink {
     state.timed = std::abs(state.high) < kLongest_us >> unit;
   }
 
-  void unknown() { ++counts_.unknown; }
+  /// A word that tells of no change: external trigger, IMU of the camera (in no documented unit), others, continued.
+  /// All else is in none of the formats.
+  void no_change(std::uint32_t type) {
+    if (type != 0xA && type != 0xD && type != 0xE && type != 0xF) ++counts_.unknown;
+  }
 
  private:
   std::uint32_t width_, height_;
@@ -140,13 +144,8 @@ void EvtDecoder::evt2(std::uint32_t word, State& state, Sink& sink) {
     case 0x8:
       sink.time_high(state, bits(word, 0, 28), 28, 6);
       break;
-    case 0xA:  // external trigger
-    case 0xD:  // IMU of the camera, in no documented unit
-    case 0xE:  // others
-    case 0xF:  // continued
-      break;
     default:
-      sink.unknown();
+      sink.no_change(type);
   }
 }
 
@@ -160,13 +159,8 @@ void EvtDecoder::evt21(std::uint64_t word, State& state, Sink& sink) {
     case 0x8:
       sink.time_high(state, bits(word, 32, 28), 28, 6);
       break;
-    case 0xA:
-    case 0xD:
-    case 0xE:
-    case 0xF:
-      break;
     default:
-      sink.unknown();
+      sink.no_change(type);
   }
 }
 
@@ -175,7 +169,7 @@ void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
     sink.add_row(state, state.high << 12 | state.low, state.base_x, state.row, state.positive, bits(word, 0, columns));
     state.base_x += columns;
   };
-  switch (bits(word, 12, 4)) {
+  switch (const std::uint32_t type = bits(word, 12, 4)) {
     case 0x0:
       state.row = bits(word, 0, 11);
       break;
@@ -202,13 +196,9 @@ void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
       break;
     }
     case 0x7:  // continued
-    case 0xA:  // external trigger
-    case 0xD:  // IMU of the camera, in no documented unit
-    case 0xE:  // others
-    case 0xF:  // continued
       break;
     default:
-      sink.unknown();
+      sink.no_change(type);
   }
 }
 

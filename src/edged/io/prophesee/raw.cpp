@@ -3,15 +3,18 @@
 // Header lines `% key value`, and blocks of the file through the decoder.
 #include "edged/io/prophesee/raw.hpp"
 
-#include <spdlog/spdlog.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <map>
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
-#include "edged/io/merger.hpp"
+#include "edged/io/prophesee/raw_writer.hpp"
+#include "edged/io/streamed_dataset.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
@@ -89,72 +92,51 @@ std::optional<cv::Size> header_geometry(const HeaderFields& fields) {
   return std::nullopt;
 }
 
+Duration header_time_offset(const HeaderFields& fields) {
+  const std::string_view text = field_or_empty(fields, kTimeOffsetKey);
+  std::int64_t us = 0;
+  std::from_chars(text.data(), text.data() + text.size(), us);
+  return std::chrono::microseconds(std::clamp(us, -kMaxStampNs / 1000, kMaxStampNs / 1000));
+}
+
 /// Events alone, block by block.
-class PropheseeDataset final : public Dataset {
+class PropheseeDataset final : public StreamedDataset {
  public:
   PropheseeDataset(const std::filesystem::path& file, const PropheseeHeader& header, cv::Size geometry)
-      : file_(file),
-        name_(file.string()),
+      : StreamedDataset(file, header.format == EvtFormat::Dat ? "prophesee dat" : "prophesee raw"),
+        file_(file),
         at_(header.bytes),
-        decoder_(header.format, geometry.width, geometry.height),
-        merger_({.events = true}, repairs_) {
-    info_.name = file.stem().string();
-    info_.format = header.format == EvtFormat::Dat ? "prophesee dat" : "prophesee raw";
-    info_.has_events = true;
-    while (block_.empty() && read_block()) {
-    }
-    if (block_.empty()) throw InputError::format("{}: nothing to read: holds no events", name_);
-    info_.begin = block_.front().t;
+        time_offset_(header.time_offset),
+        decoder_(header.format, geometry.width, geometry.height) {
+    set_sensor(geometry);
     info_.end = last_stamp_of(header, geometry);
-    merger_.push(block_);
-  }
-
-  const DatasetInfo& info() const override { return info_; }
-
-  std::optional<Measurement> next() override {
-    while (true) {
-      if (auto measurement = merger_.pop()) return measurement;
-      if (at_end_) return std::nullopt;
-      at_end_ = !read_block();
-      merger_.push(block_);
-      if (at_end_) merger_.finish();
-    }
-  }
-
-  std::map<std::string, std::size_t> repairs() const override {
-    std::map<std::string, std::size_t> all = repairs_.counts();
-    const auto add = [&all](const char* kind, std::size_t count) {
-      if (count > 0) all[kind] += count;
-    };
-    add("events: pixel outside the sensor", decoder_.counts().outside);
-    add("events: before the first time", decoder_.counts().untimed);
-    add("events: unknown word", decoder_.counts().unknown);
-    return all;
+    begin({.events = true});
   }
 
  private:
-  /// Fills block_; false at the end of the file.
-  bool read_block() {
-    block_.clear();
+  bool read_on() override {
     const Bytes bytes = file_.read(at_, kEventBlockBytes);
     at_ += bytes.size();
-    decoder_.decode(bytes, block_);
-    good_ += block_.size();
-    refuse_nonsense();
+    const EvtDecoder::Counts before = decoder_.counts();
+    std::vector<Event> events;
+    decoder_.decode(bytes, events);
+    for (Event& event : events) event.t += time_offset_;
+    decoded_ += events.size();
+    push_events(std::move(events));
+    count_left_out(before, decoder_.counts());
     return !bytes.empty();
   }
 
-  void refuse_nonsense() const {
-    const EvtDecoder::Counts& counts = decoder_.counts();
-    const auto many = [this](std::size_t count) { return count > 1000 && count > good_ / 100; };
-    if (many(counts.outside))
-      throw InputError::format("{}: {} of {} events lie outside the sensor; give its size with --geometry WIDTHxHEIGHT",
-                               name_, counts.outside, counts.outside + good_);
-    if (many(counts.unknown))
+  void count_left_out(const EvtDecoder::Counts& before, const EvtDecoder::Counts& now) {
+    count_outside(now.outside - before.outside);
+    for (std::size_t i = before.untimed; i < now.untimed; ++i)
+      repairs_.add("events: before the first time", name_ + ": events before the first time of the stream");
+    for (std::size_t i = before.unknown; i < now.unknown; ++i)
+      repairs_.add("events: unknown word", name_ + ": words of no known type");
+    if (now.unknown > 1000 && now.unknown > decoded_ / 100)
       throw InputError::format(
-          "{}: {} words are of no known type: the file is damaged or not of the encoding that its "
-          "header names",
-          name_, counts.unknown);
+          "{}: {} words are of no known type: the file is damaged or not of the encoding that its header names", name_,
+          now.unknown);
   }
 
   /// From the last block; nothing for EVT 3, whose time wraps every 17 s.
@@ -164,19 +146,14 @@ class PropheseeDataset final : public Dataset {
     std::vector<Event> events;
     EvtDecoder(header.format, geometry.width, geometry.height)
         .decode(file_.read(header.bytes + blocks * kEventBlockBytes, kEventBlockBytes), events);
-    return events.empty() ? std::nullopt : std::optional(events.back().t);
+    return events.empty() ? std::nullopt : std::optional(events.back().t + time_offset_);
   }
 
   BinaryFile file_;
-  std::string name_;
   std::uint64_t at_;
-  DatasetInfo info_;
-  Repairs repairs_;
+  Duration time_offset_;
   EvtDecoder decoder_;
-  Merger merger_;
-  std::vector<Event> block_;
-  std::size_t good_ = 0;
-  bool at_end_ = false;
+  std::size_t decoded_ = 0;
 };
 
 }  // namespace
@@ -188,6 +165,7 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
   HeaderFields fields = header_fields(as_text(head), header.bytes);
   split_format(fields);
   header.geometry = header_geometry(fields);
+  header.time_offset = header_time_offset(fields);
   const std::string_view name = encoding_name(fields);
   if (name == "EVT2") {
     header.format = EvtFormat::Evt2;

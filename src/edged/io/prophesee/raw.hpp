@@ -15,6 +15,7 @@ namespace edged {
 struct PropheseeHeader {
   EvtFormat format = EvtFormat::Evt2;
   std::optional<cv::Size> geometry;  ///< sensor [px], said or known from the name of the camera
+  Duration time_offset{0};           ///< to be added to all stamps; in files of ours only
   std::size_t bytes = 0;             ///< events begin here
 };
 

@@ -6,54 +6,27 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
 
 namespace edged {
-namespace {
 
-Timestamp first_stamp(const Measurement& m) {
-  if (const auto* batch = std::get_if<EventBatch>(&m)) return batch->events.front().t;
-  if (const auto* frame = std::get_if<Frame>(&m)) return frame->t;
-  return std::get<ImuSample>(m).t;
-}
-
-Merger::Streams streams_of(const TopicChoice& choice) {
-  return {choice.of(Role::Events).has_value(), choice.of(Role::Frames).has_value(), choice.of(Role::Imu).has_value(),
-          "events"};
-}
-
-}  // namespace
-
-RosDataset::RosDataset(std::filesystem::path path, const WantedTopics& wanted, std::optional<cv::Size> sensor)
-    : path_(std::move(path)),
-      sensor_(sensor),
-      source_(open_messages(path_, &repairs_)),
-      choice_(choose_topics(source_->topics(), wanted, path_.string())),
-      merger_(streams_of(choice_), repairs_) {
-  info_.name = std::filesystem::absolute(path_ / ".").parent_path().stem().string();
+RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
+                       std::optional<cv::Size> geometry)
+    : StreamedDataset(path, "ros"),
+      source_(open_messages(path, &repairs_)),
+      choice_(choose_topics(source_->topics(), wanted, name_)),
+      geometry_(geometry) {
+  if (rig) rig_ = *rig;
   info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
-  info_.has_events = choice_.of(Role::Events).has_value();
-  info_.has_frames = choice_.of(Role::Frames).has_value();
-  info_.has_imu = choice_.of(Role::Imu).has_value();
-  first_ = merged();
-  if (!first_)
-    throw InputError::format("{}: nothing to read: none of its messages holds a measurement", path_.string());
-  info_.begin = first_stamp(*first_);
+  begin({choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(),
+         choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
 }
 
-std::optional<Measurement> RosDataset::next() { return first_ ? std::exchange(first_, std::nullopt) : merged(); }
-
-std::optional<Measurement> RosDataset::merged() {
-  while (true) {
-    if (auto measurement = merger_.pop()) return measurement;
-    if (finished_) return std::nullopt;
-    if (const auto message = source_->next()) {
-      feed(*message);
-    } else {
-      finished_ = true;
-      merger_.finish();
-    }
-  }
+bool RosDataset::read_on() {
+  const auto message = source_->next();
+  if (message) feed(*message);
+  return message.has_value();
 }
 
 void RosDataset::feed(const Message& message) {
@@ -71,7 +44,7 @@ void RosDataset::feed(const Message& message) {
         feed_frame(type, reader);
         break;
       case Role::Imu:
-        merger_.push(read_imu(reader));
+        push_imu(read_imu(reader));
         break;
       case Role::Truth:
         break;  // in a pass of its own
@@ -86,7 +59,7 @@ void RosDataset::feed(const Message& message) {
 void RosDataset::judge(std::size_t role, const std::string& reason) {
   constexpr std::size_t kTries = 10;
   const Topic& topic = source_->topics()[*choice_.topics[role]];
-  const std::string detail = fmt::format("{}: {} ({}): {}", path_.string(), topic.name, topic.type, reason);
+  const std::string detail = fmt::format("{}: {} ({}): {}", name_, topic.name, topic.type, reason);
   repairs_.add(fmt::format("{}: message unreadable", kRoleNames[role]), detail);
   ++bad_[role];
   if (good_[role] == 0 && bad_[role] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
@@ -106,28 +79,22 @@ void RosDataset::feed_events(const std::string& type, WireReader message) {
     size = cv::Size(static_cast<int>(array.width), static_cast<int>(array.height));
     events = std::move(array.events);
   }
-  if (!sensor_ && size.width > 0 && size.height > 0) sensor_ = size;
-  if (sensor_) {
-    const auto outside = [&](const Event& e) { return e.x >= sensor_->width || e.y >= sensor_->height; };
-    for (std::size_t left = std::erase_if(events, outside); left > 0; --left)
-      repairs_.add("events: pixel outside the sensor",
-                   fmt::format("{}: events outside the {} x {} sensor: is this its calibration?", path_.string(),
-                               sensor_->width, sensor_->height));
+  if (info_.event_sensor.empty()) {
+    const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
+    set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));
   }
-  merger_.push(events);
+  push_events(std::move(events));
 }
 
 void RosDataset::feed_frame(const std::string& type, WireReader message) {
   GrayImage gray = type == "sensor_msgs/Image" ? read_image(message) : read_compressed_image(message);
-  if (image_size_.empty()) image_size_ = gray.image.size();
-  if (gray.image.size() != image_size_) throw Damage("image of another size");
-  merger_.push(Frame{gray.t, "frames", gray.image});
+  push_frame(gray.t, std::move(gray.image));
 }
 
 std::optional<GroundTruth> RosDataset::ground_truth() const {
   const auto topic = choice_.of(Role::Truth);
   if (!topic) return std::nullopt;
-  const auto source = open_messages(path_, nullptr);
+  const auto source = open_messages(name_, nullptr);
   const bool plain = source_->topics()[*topic].type == "geometry_msgs/PoseStamped";
   GroundTruth truth;
   Trajectory& poses = truth.trajectory;

@@ -5,45 +5,37 @@
 
 #include <array>
 
-#include "edged/core/dataset.hpp"
-#include "edged/io/merger.hpp"
+#include "edged/camera/rig.hpp"
 #include "edged/io/ros/event_packets.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/topic_choice.hpp"
+#include "edged/io/streamed_dataset.hpp"
 
 namespace edged {
 
 /// Cameras "events" and "frames"; poses of "body".
-class RosDataset final : public Dataset {
+class RosDataset final : public StreamedDataset {
  public:
-  /// sensor: size of the event camera where the user's rig tells it, else that of the messages. Throws InputError where
-  /// topics have to be chosen or nothing can be read.
-  RosDataset(std::filesystem::path path, const WantedTopics& wanted, std::optional<cv::Size> sensor);
+  /// The size of the event camera is that of the rig, else `geometry`, else what its messages say. Throws InputError
+  /// where topics have to be chosen or nothing can be read.
+  RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
+             std::optional<cv::Size> geometry);
 
-  const DatasetInfo& info() const override { return info_; }
-  std::optional<Measurement> next() override;
   std::optional<GroundTruth> ground_truth() const override;
-  std::map<std::string, std::size_t> repairs() const override { return repairs_.counts(); }
 
  private:
-  std::optional<Measurement> merged();
+  bool read_on() override;
   void feed(const Message& message);
   void feed_events(const std::string& type, WireReader message);
   void feed_frame(const std::string& type, WireReader message);
   void judge(std::size_t role, const std::string& reason);
 
-  std::filesystem::path path_;
-  std::optional<cv::Size> sensor_;
-  Repairs repairs_;
   std::unique_ptr<MessageSource> source_;
   TopicChoice choice_;
-  DatasetInfo info_;
-  Merger merger_;
+  std::optional<Rig> rig_;
+  std::optional<cv::Size> geometry_;
   EventPacketDecoder packets_;
-  cv::Size image_size_;                                        ///< of the first image
   std::array<std::size_t, kRoleNames.size()> good_{}, bad_{};  ///< messages, by role
-  bool finished_ = false;
-  std::optional<Measurement> first_;  ///< read for the begin
 };
 
 }  // namespace edged

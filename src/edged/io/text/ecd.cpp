@@ -97,6 +97,7 @@ Recording open_ecd(const fs::path& folder, const Rig* rig) {
   layout.parse_stamp = parse_seconds;
   if (fs::exists(folder / "events.txt")) {
     const cv::Size size = sensor_size(folder, rig, recording.calibration);
+    layout.info.event_sensor = size;
     layout.events = EventFile{folder / "events.txt", "events", size.width, size.height};
   }
   if (fs::exists(folder / "images.txt")) layout.frames = FrameFile{"frames", ecd_images(folder)};

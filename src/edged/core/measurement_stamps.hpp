@@ -17,4 +17,10 @@ inline std::optional<Timestamp> last_stamp(const Measurement& measurement) {
   return events.empty() ? std::nullopt : std::optional(events.back().t);
 }
 
+/// The stamp of the measurement, of a batch its oldest event's; nothing for an empty batch.
+inline std::optional<Timestamp> first_stamp(const Measurement& measurement) {
+  const auto* batch = std::get_if<EventBatch>(&measurement);
+  return batch && !batch->events.empty() ? std::optional(batch->events.front().t) : last_stamp(measurement);
+}
+
 }  // namespace edged

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Header and words of RAW and DAT files.
+#include "edged/io/prophesee/raw_writer.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "edged/core/check.hpp"
+#include "edged/io/bytes.hpp"
+#include "edged/io/prophesee/evt_encoder.hpp"
+
+namespace edged {
+namespace {
+
+class EvtFileWriter final : public RecordingWriter {
+ public:
+  EvtFileWriter(const WriterSetup& setup, EvtFormat format)
+      : name_(setup.path.string()), sensor_(setup.event_sensor()), format_(format), encoder_(format), file_(setup.path) {
+    const int most = format == EvtFormat::Dat ? 1 << 14 : 1 << 11;
+    if (sensor_.width > most || sensor_.height > most)
+      throw InputError::format("{}: the format holds sensors of up to {} x {} px, this one has {} x {}", name_, most, most,
+                               sensor_.width, sensor_.height);
+  }
+
+  void write(const EventBatch& batch) override {
+    if (batch.events.empty()) return;
+    if (file_.size() == 0) write_header(batch.events.front().t);
+    shifted_ = batch.events;
+    for (Event& event : shifted_) event.t -= offset_;
+    file_.write(encoder_.encode(shifted_));
+  }
+
+  void finish() override {
+    if (file_.size() == 0) write_header(Timestamp());
+    file_.flush();
+  }
+
+ private:
+  void write_header(Timestamp first) {
+    const unsigned counter_bits = format_ == EvtFormat::Dat ? 32 : 24;
+    const std::int64_t offset_us = (to_ns(first) / 1000) >> counter_bits << counter_bits;
+    offset_ = std::chrono::microseconds(offset_us);
+    std::string text = format_ == EvtFormat::Dat
+                           ? fmt::format("% Data file containing CD events.\n% Version 2\n% Height {}\n% Width {}\n",
+                                         sensor_.height, sensor_.width)
+                           : fmt::format("% evt 3.0\n% format EVT3;height={0};width={1}\n% geometry {1}x{0}\n",
+                                         sensor_.height, sensor_.width);
+    if (offset_us != 0) text += fmt::format("% {} {}\n", kTimeOffsetKey, offset_us);
+    text += format_ == EvtFormat::Dat ? std::string("\x0c\x08") : std::string("% end\n");
+    file_.write(text);
+  }
+
+  std::string name_;
+  cv::Size sensor_;
+  EvtFormat format_;
+  EvtEncoder encoder_;
+  OutputFile file_;
+  Duration offset_{0};
+  std::vector<Event> shifted_;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordingWriter> write_raw(const WriterSetup& setup) {
+  return std::make_unique<EvtFileWriter>(setup, EvtFormat::Evt3);
+}
+
+std::unique_ptr<RecordingWriter> write_dat(const WriterSetup& setup) {
+  return std::make_unique<EvtFileWriter>(setup, EvtFormat::Dat);
+}
+
+}  // namespace edged

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The table of writable formats, and the loop that fills one.
+#include "edged/io/recording_writer.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/io/ecd_writer.hpp"
+#include "edged/io/formats.hpp"
+#include "edged/io/prophesee/raw_writer.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kMicrosecond = std::chrono::microseconds(1);
+
+constexpr std::array kWritable = {
+    WritableFormat{.name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
+    WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
+    WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
+};
+
+/// Hands on what the format holds and counts.
+class Sieve {
+ public:
+  Sieve(RecordingWriter& writer, const WritableFormat& format, bool round)
+      : writer_(writer), format_(format), round_(round) {}
+
+  void operator()(EventBatch& batch) {
+    if (format_.tick > Duration(1)) fit_to_tick(batch.events);
+    writer_.write(batch);
+    counts.events += batch.events.size();
+  }
+
+  void operator()(const Frame& frame) {
+    if (format_.frames) writer_.write(frame);
+    ++(format_.frames ? counts.frames : counts.frames_left_out);
+  }
+
+  void operator()(const ImuSample& sample) {
+    if (format_.imu) writer_.write(sample);
+    ++(format_.imu ? counts.imu : counts.imu_left_out);
+  }
+
+  void operator()(const GroundTruth& truth) {
+    if (format_.ground_truth) writer_.write(truth);
+    (format_.ground_truth ? counts.poses : counts.poses_left_out) = truth.trajectory.size();
+  }
+
+  WriteCounts counts;
+
+ private:
+  void fit_to_tick(std::vector<Event>& events) const {
+    for (Event& event : events) {
+      const Duration rest = event.t.time_since_epoch() % format_.tick;
+      if (rest != Duration(0) && !round_)
+        throw InputError::format(
+            "an event at {} s: format {} holds whole microseconds only; take another format, or --round to cut stamps",
+            format_seconds(event.t), format_.name);
+      event.t -= rest;
+    }
+  }
+
+  RecordingWriter& writer_;
+  const WritableFormat& format_;
+  bool round_;
+};
+
+}  // namespace
+
+cv::Size WriterSetup::event_sensor() const {
+  const Rig* rig = calibration ? &calibration->rig : nullptr;
+  const std::optional<cv::Size> said = info.event_sensor.empty() ? std::nullopt : std::optional(info.event_sensor);
+  return event_sensor_size(info.name, said, rig);
+}
+
+std::span<const WritableFormat> writable_formats() { return kWritable; }
+
+const WritableFormat& writable_format(std::string_view name, const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  const auto fits = [&](const WritableFormat& f) { return name.empty() ? f.extension == extension : f.name == name; };
+  if (const auto found = std::ranges::find_if(kWritable, fits); found != kWritable.end()) return *found;
+  std::vector<std::string> known;
+  for (const WritableFormat& f : kWritable)
+    known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
+  throw InputError::format("{}: nothing is written in format `{}`; there are: {}", path.string(),
+                           name.empty() ? extension : name, fmt::join(known, ", "));
+}
+
+WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, WriterSetup setup,
+                            const WriteOptions& options) {
+  constexpr std::size_t kProgressEvery = 256;  // measurements
+  if (!format.extension.empty() && std::filesystem::exists(setup.path))
+    throw InputError::format("{}: is there already: give another name", setup.path.string());
+  setup.info = dataset.info();
+  const std::unique_ptr<RecordingWriter> writer = format.open(setup);
+  Sieve sieve(*writer, format, options.round);
+  if (const auto truth = dataset.ground_truth()) sieve(*truth);
+  for (std::size_t i = 1; auto measurement = dataset.next(); ++i) {
+    const auto t = last_stamp(*measurement);
+    std::visit(sieve, *measurement);
+    if (options.progress && t && i % kProgressEvery == 0) options.progress(*t);
+  }
+  writer->finish();
+  return sieve.counts;
+}
+
+}  // namespace edged

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Every writable format gives back what was written.
+#include "edged/io/recording_writer.hpp"
+
+#include <gmock/gmock.h>
+
+#include "edged/io/recording.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+class WritableFormats : public ::testing::TestWithParam<WritableFormat> {
+ protected:
+  std::filesystem::path target() const { return folder_.path() / ("out" + std::string(GetParam().extension)); }
+  WriteCounts write(Dataset& dataset, const WriteOptions& options = {}) const {
+    return write_recording(dataset, GetParam(), {target(), {}, load_rig("davis240c_ecd")}, options);
+  }
+  Contents read_back() const { return read_all(*open_recording(target()).dataset); }
+
+  TempFolder folder_;
+};
+
+TEST_P(WritableFormats, GiveBackEveryEventAndWhatElseTheyHold) {
+  ListedDataset source = random_dataset(GetParam().tick);
+  const WriteCounts counts = write(source);
+  ListedDataset again = random_dataset(GetParam().tick);
+  const Contents a = read_all(again), b = read_back();
+  EXPECT_TRUE(a.events == b.events);
+  EXPECT_EQ(counts.events, a.events.size());
+  EXPECT_EQ(counts.frames, b.frames.size());
+  EXPECT_EQ(counts.imu, b.imu.size());
+  EXPECT_EQ(counts.frames + counts.frames_left_out, a.frames.size());
+  EXPECT_EQ(counts.imu + counts.imu_left_out, a.imu.size());
+  for (std::size_t i = 0; i < b.frames.size(); ++i)
+    EXPECT_EQ(cv::norm(a.frames[i].image, b.frames[i].image, cv::NORM_INF), 0.0);
+}
+
+TEST_P(WritableFormats, KeepEventsApartByLongSilences) {
+  ListedDataset source;
+  for (const std::int64_t s : {1, 2, 20, 60, 300})
+    source.measurements.push_back(EventBatch{"events", {Event{timestamp_from_ns(s * 1'000'000'000), 3, 5, true}}});
+  write(source);
+  std::vector<Timestamp> stamps;
+  for (const Event& event : read_back().events) stamps.push_back(event.t);
+  EXPECT_THAT(stamps, ::testing::ElementsAre(timestamp_from_seconds(1), timestamp_from_seconds(2),
+                                             timestamp_from_seconds(20), timestamp_from_seconds(60),
+                                             timestamp_from_seconds(300)));
+}
+
+TEST_P(WritableFormats, RefuseStampsTheyAreTooCoarseForUnlessToldToCutThem) {
+  if (GetParam().tick == Duration(1)) return;
+  ListedDataset fine;
+  fine.measurements.push_back(EventBatch{"events", {Event{timestamp_from_ns(1'234'567'891), 3, 5, true}}});
+  ListedDataset again = fine;
+  EXPECT_THAT(input_error([&] { write(fine); }), HasSubstr("1.234567891 s"));
+  std::filesystem::remove(target());
+  write(again, {.round = true});
+  EXPECT_EQ(read_back().events.front().t, timestamp_from_ns(1'234'567'000));
+}
+
+TEST_P(WritableFormats, LeaveAloneWhatIsThere) {
+  ListedDataset source = random_dataset(GetParam().tick), again = source;
+  write(source);
+  EXPECT_THAT(input_error([&] { write(again); }), HasSubstr("already"));
+}
+
+TEST_P(WritableFormats, SayWhereNothingCanBeWritten) {
+  ListedDataset source = random_dataset(GetParam().tick);
+  const WriterSetup setup{"/proc/none/out" + std::string(GetParam().extension), {}, load_rig("davis240c_ecd")};
+  EXPECT_THAT(input_error([&] { write_recording(source, GetParam(), setup); }), HasSubstr("/proc/none/out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WritableFormats, ::testing::ValuesIn(writable_formats().begin(), writable_formats().end()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(WritableFormat, IsFoundByNameOrExtensionElseTheRefusalListsThem) {
+  EXPECT_EQ(writable_format("", "a/b.raw").name, "raw");
+  EXPECT_EQ(writable_format("", "a/folder").name, "ecd");
+  EXPECT_EQ(writable_format("dat", "a/b.bin").name, "dat");
+  EXPECT_THAT(input_error([] { writable_format("", "a.xyz"); }), HasSubstr("`.xyz`; there are: ecd (a folder), raw"));
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Bounds and order of what readers push.
+#include "edged/io/streamed_dataset.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <utility>
+
+#include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+
+namespace edged {
+namespace {
+
+/// "events or IMU samples"
+std::string names_of(const Merger::Streams& streams) {
+  std::string names;
+  const auto add = [&names](bool there, const char* name) {
+    if (there) names += (names.empty() ? "" : " or ") + std::string(name);
+  };
+  add(streams.events, "events");
+  add(streams.frames, "frames");
+  add(streams.imu, "IMU samples");
+  return names;
+}
+
+}  // namespace
+
+StreamedDataset::StreamedDataset(const std::filesystem::path& path, std::string format)
+    : name_(path.string()), merger_(repairs_) {
+  info_.name = std::filesystem::absolute(path / ".").parent_path().stem().string();
+  info_.format = std::move(format);
+}
+
+void StreamedDataset::begin(const Merger::Streams& expected) {
+  info_.has_events = expected.events;
+  info_.has_frames = expected.frames;
+  info_.has_imu = expected.imu;
+  merger_.expect(expected);
+  first_ = merged();
+  if (!first_) throw InputError::format("{}: nothing to read: holds no {}", name_, names_of(expected));
+  info_.begin = first_stamp(*first_);
+}
+
+std::optional<Measurement> StreamedDataset::next() {
+  return first_ ? std::exchange(first_, std::nullopt) : merged();
+}
+
+std::optional<Measurement> StreamedDataset::merged() {
+  while (true) {
+    if (auto measurement = merger_.pop()) return measurement;
+    if (finished_) return std::nullopt;
+    finished_ = !read_on();
+    if (finished_) merger_.finish();
+  }
+}
+
+void StreamedDataset::push_events(std::vector<Event> events) {
+  if (const cv::Size size = info_.event_sensor; !size.empty())
+    count_outside(std::erase_if(events, [size](const Event& e) { return e.x >= size.width || e.y >= size.height; }));
+  inside_ += events.size();
+  merger_.push(events);
+}
+
+void StreamedDataset::push_frame(Timestamp t, cv::Mat image) {
+  if (image_size_.empty()) image_size_ = image.size();
+  if (image.size() != image_size_) throw Damage("an image of another size");
+  merger_.push(Frame{t, "frames", std::move(image)});
+}
+
+void StreamedDataset::count_outside(std::size_t count) {
+  const cv::Size size = info_.event_sensor;
+  for (; count > 0; --count, ++outside_)
+    repairs_.add("events: pixel outside the sensor",
+                 fmt::format("{}: events outside the {} x {} sensor", name_, size.width, size.height));
+  if (outside_ > 1000 && outside_ > inside_ / 100)
+    throw InputError::format(
+        "{}: {} of {} events lie outside the {} x {} sensor; give its size with --geometry WIDTHxHEIGHT, or the right "
+        "--rig or --calib",
+        name_, outside_, outside_ + inside_, size.width, size.height);
+}
+
+}  // namespace edged
