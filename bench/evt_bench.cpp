@@ -21,7 +21,7 @@ void decode_evt(benchmark::State& state) {
     std::size_t count = 0;
     for (std::size_t at = 0; at < bytes.size(); at += kBlock) {
       events.clear();
-      decoder.decode(bytes_of(bytes).subspan(at, std::min(kBlock, bytes.size() - at)), events);
+      decoder.decode(as_bytes(bytes).subspan(at, std::min(kBlock, bytes.size() - at)), events);
       count += events.size();
     }
     if (count != kStreamEvents) state.SkipWithError("events are missing");

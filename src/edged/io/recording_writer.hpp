@@ -53,7 +53,7 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
 
 struct WriteOptions {
   bool round = false;                       ///< stamps finer than the format's tick are cut to it, not refused
-  std::function<void(Timestamp)> progress;  ///< called now and then with the stamp reached
+  std::function<void(Timestamp)> progress = {};  ///< called now and then with the stamp reached
 };
 
 /// Written, and left out as the format has no room for it.

@@ -75,7 +75,7 @@ TEST_P(WritableFormats, SayWhereNothingCanBeWritten) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WritableFormats, ::testing::ValuesIn(writable_formats().begin(), writable_formats().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(WritableFormat, IsFoundByNameOrExtensionElseTheRefusalListsThem) {
   EXPECT_EQ(writable_format("", "a/b.raw").name, "raw");

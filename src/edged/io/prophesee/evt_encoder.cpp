@@ -57,10 +57,10 @@ void EvtEncoder::write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t m
 }
 
 void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
-  constexpr std::uint64_t kHalfRange = 2048;  // a silence longer than this would hide a wrap of the counter
+  constexpr std::uint64_t kLongestStep = 1024;  // of 4096: a longer one over the wrap would look like one back
   const std::uint64_t high = t_us >> 12;
   if (high_ != ~std::uint64_t{0})
-    while (high > high_ && high - high_ > kHalfRange) put3(0x8, (high_ += kHalfRange) & 0xFFF);
+    while (high > high_ && high - high_ > kLongestStep) put3(0x8, (high_ += kLongestStep) & 0xFFF);
   if (high != high_) put3(0x8, high & 0xFFF);
   high_ = high;
   const unsigned polarity = e.positive ? 0x800U : 0U;

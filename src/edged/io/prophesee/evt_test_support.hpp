@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/io/bytes.hpp"
 #include "edged/io/prophesee/evt_encoder.hpp"
 
 namespace edged {
