@@ -3,6 +3,8 @@
 // Ctrl-C and SIGTERM as a flag that the main loop asks for.
 #pragma once
 
+#include "edged/core/dataset.hpp"
+
 namespace edged {
 
 /// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once.
@@ -10,5 +12,18 @@ void catch_interrupts();
 
 /// The signal that came, or 0.
 int interrupt_signal();
+
+/// A data set that ends, cleanly, when the user interrupts.
+class InterruptibleDataset final : public Dataset {
+ public:
+  explicit InterruptibleDataset(Dataset& inner) : inner_(inner) {}
+  const DatasetInfo& info() const override { return inner_.info(); }
+  std::optional<Measurement> next() override { return interrupt_signal() == 0 ? inner_.next() : std::nullopt; }
+  std::optional<GroundTruth> ground_truth() const override { return inner_.ground_truth(); }
+  std::map<std::string, std::size_t> repairs() const override { return inner_.repairs(); }
+
+ private:
+  Dataset& inner_;
+};
 
 }  // namespace edged

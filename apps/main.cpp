@@ -10,6 +10,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "config_command.hpp"
+#include "convert_command.hpp"
 #include "depth_command.hpp"
 #include "edged/core/check.hpp"
 #include "enhance_command.hpp"
@@ -42,6 +43,7 @@ int run_program(int argc, char** argv) {
   app.footer(kFooter);
   std::function<int()> chosen;
   add_run_command(app, chosen);
+  add_convert_command(app, chosen);
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
   add_enhance_command(app, chosen);

@@ -30,18 +30,6 @@ struct SimulateOptions {
   bool json = false;
 };
 
-/// Ends early, and cleanly, when the user interrupts.
-class InterruptibleDataset : public Dataset {
- public:
-  explicit InterruptibleDataset(Dataset& inner) : inner_(inner) {}
-  const DatasetInfo& info() const override { return inner_.info(); }
-  std::optional<Measurement> next() override { return interrupt_signal() == 0 ? inner_.next() : std::nullopt; }
-  std::optional<GroundTruth> ground_truth() const override { return inner_.ground_truth(); }
-
- private:
-  Dataset& inner_;
-};
-
 SimulatorConfig load_config(const SimulateOptions& options) {
   SimulatorConfig config = simulator_preset(options.preset);
   ConfigFields fields = ConfigFields::of(config);
@@ -64,8 +52,8 @@ int run_simulate(const SimulateOptions& options) {
     if (status.due()) status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s));
   };
   InterruptibleDataset dataset(simulator);
-  const WriteCounts counts = write_recording(dataset, writable_format("ecd", folder),
-                                             {folder, simulator.info(), simulator.calibration()}, write);
+  const WriteCounts counts =
+      write_recording(dataset, writable_format("ecd", folder), folder, simulator.calibration(), write);
   status.clear();
   if (options.json) {
     const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/io/recording.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {
@@ -15,8 +14,9 @@ namespace {
 
 constexpr std::string_view kSimulatorPrefix = "sim:";
 
-/// "room" or "room:7".
-SimulatorConfig simulator_config(const std::string& text) {
+/// "sim:room" or "sim:room:7".
+SimulatorConfig simulator_config(const std::string& recording) {
+  const std::string text = recording.substr(kSimulatorPrefix.size());
   const std::size_t colon = text.find(':');
   SimulatorConfig config = simulator_preset(text.substr(0, colon));
   if (colon != std::string::npos) ConfigFields::of(config).set("seed", text.substr(colon + 1));
@@ -52,25 +52,6 @@ RecordingOptions recording_options(const SourceOptions& options) {
   return chosen;
 }
 
-Source open_on_disk(const SourceOptions& options) {
-  std::optional<Calibration> calibration = chosen_calibration(options);
-  Recording recording =
-      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
-  if (!calibration) calibration = std::move(recording.calibration);
-  if (!calibration) {
-    throw InputError::format(
-        "{}: brings no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE",
-        options.recording, rig_list());
-  }
-  if (!calibration->has_extrinsics) {
-    throw InputError::format(
-        "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing",
-        options.calib.string());
-  }
-  if (!calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
-  return {std::move(recording.dataset), std::move(*calibration), std::nullopt};
-}
-
 }  // namespace
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
@@ -88,12 +69,33 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
       ->allow_extra_args(false);
 }
 
+Recording open_uncalibrated(const SourceOptions& options) {
+  std::optional<Calibration> calibration = chosen_calibration(options);
+  if (options.recording.starts_with(kSimulatorPrefix)) {
+    auto simulator = std::make_unique<Simulator>(simulator_config(options.recording));
+    if (!calibration) calibration = simulator->calibration();
+    return {std::move(simulator), std::move(calibration)};
+  }
+  Recording recording =
+      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
+  if (calibration) recording.calibration = std::move(calibration);
+  return recording;
+}
+
 Source open_source(const SourceOptions& options) {
-  if (!options.recording.starts_with(kSimulatorPrefix)) return open_on_disk(options);
-  const SimulatorConfig config = simulator_config(options.recording.substr(kSimulatorPrefix.size()));
-  auto simulator = std::make_unique<Simulator>(config);
-  Calibration calibration = chosen_calibration(options).value_or(simulator->calibration());
-  return {std::move(simulator), std::move(calibration), config.seed};
+  Recording recording = open_uncalibrated(options);
+  if (!recording.calibration)
+    throw InputError::format(
+        "{}: brings no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE",
+        options.recording, rig_list());
+  if (!recording.calibration->has_extrinsics)
+    throw InputError::format(
+        "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing",
+        options.calib.empty() ? options.recording : options.calib.string());
+  if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
+  std::optional<int> seed;
+  if (options.recording.starts_with(kSimulatorPrefix)) seed = simulator_config(options.recording).seed;
+  return {std::move(recording.dataset), std::move(*recording.calibration), seed};
 }
 
 }  // namespace edged

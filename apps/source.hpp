@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edged/core/dataset.hpp"
-#include "edged/io/calibration.hpp"
+#include "edged/io/recording.hpp"
 
 namespace edged {
 
@@ -32,6 +32,10 @@ struct Source {
 
 /// Adds RECORDING, --rig, --calib, --geometry and --topic.
 void add_source_options(CLI::App& command, SourceOptions& options);
+
+/// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be
+/// opened.
+Recording open_uncalibrated(const SourceOptions& options);
 
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
 Source open_source(const SourceOptions& options);

@@ -73,7 +73,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Cal
     if (truth.frame == "body")
       throw InputError(
           "groundtruth.txt holds the pose of the camera, the ground truth is of the body: a calibration with "
-          "extrinsics is needed to write it");
+          "extrinsics is needed to write it: give --rig or --calib");
     return truth.trajectory;
   }
   const Rig& rig = calibration->rig;

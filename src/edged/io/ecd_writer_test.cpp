@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 void copy_as_ecd(Dataset& source, const std::filesystem::path& folder,
                  const std::optional<Calibration>& calibration = {}) {
-  write_recording(source, writable_format("ecd", folder), {folder, {}, calibration});
+  write_recording(source, writable_format("ecd", folder), folder, calibration);
 }
 
 TEST(EcdWriter, WrittenRecordingReadsBackToTheSameBits) {
@@ -23,7 +23,7 @@ TEST(EcdWriter, WrittenRecordingReadsBackToTheSameBits) {
   ListedDataset source = random_dataset();
   int calls = 0;
   const Calibration calibration = load_rig("davis240c_ecd");
-  const WriteCounts counts = write_recording(source, writable_format("ecd", ""), {folder.path() / "out", {}, calibration},
+  const WriteCounts counts = write_recording(source, writable_format("ecd", ""), folder.path() / "out", calibration,
                                              {.progress = [&](Timestamp) { ++calls; }});
   EXPECT_GT(calls, 0);
 

@@ -94,22 +94,28 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
                            name.empty() ? extension : name, fmt::join(known, ", "));
 }
 
-WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, WriterSetup setup,
-                            const WriteOptions& options) {
+WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
+                            const std::optional<Calibration>& calibration, const WriteOptions& options) {
   constexpr std::size_t kProgressEvery = 256;  // measurements
-  if (!format.extension.empty() && std::filesystem::exists(setup.path))
-    throw InputError::format("{}: is there already: give another name", setup.path.string());
-  setup.info = dataset.info();
-  const std::unique_ptr<RecordingWriter> writer = format.open(setup);
-  Sieve sieve(*writer, format, options.round);
-  if (const auto truth = dataset.ground_truth()) sieve(*truth);
-  for (std::size_t i = 1; auto measurement = dataset.next(); ++i) {
-    const auto t = last_stamp(*measurement);
-    std::visit(sieve, *measurement);
-    if (options.progress && t && i % kProgressEvery == 0) options.progress(*t);
+  const bool is_file = !format.extension.empty();
+  if (is_file && std::filesystem::exists(path))
+    throw InputError::format("{}: is there already: give another name", path.string());
+  try {
+    const std::unique_ptr<RecordingWriter> writer = format.open({path, dataset.info(), calibration});
+    Sieve sieve(*writer, format, options.round);
+    if (const auto truth = dataset.ground_truth()) sieve(*truth);
+    for (std::size_t i = 1; auto measurement = dataset.next(); ++i) {
+      const auto t = last_stamp(*measurement);
+      std::visit(sieve, *measurement);
+      if (options.progress && t && i % kProgressEvery == 0) options.progress(*t);
+    }
+    writer->finish();
+    return sieve.counts;
+  } catch (const InputError&) {
+    std::error_code ignored;
+    if (is_file) std::filesystem::remove(path, ignored);  // half a file passes for a whole one
+    throw;
   }
-  writer->finish();
-  return sieve.counts;
 }
 
 }  // namespace edged

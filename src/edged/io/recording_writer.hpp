@@ -63,9 +63,8 @@ struct WriteCounts {
 };
 
 /// Reads `dataset` to its end and writes it. Read back, every event is the same to the last bit. Throws InputError where
-/// something is at setup.path already or cannot be written, and for stamps of events that the format is too coarse for.
-/// setup.info is taken from the data set.
-WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, WriterSetup setup,
-                            const WriteOptions& options = {});
+/// something is at `path` already or cannot be written, and for stamps of events that the format is too coarse for.
+WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
+                            const std::optional<Calibration>& calibration, const WriteOptions& options = {});
 
 }  // namespace edged

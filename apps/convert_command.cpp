@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "convert_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/io/recording_writer.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "source.hpp"
+#include "status_line.hpp"
+
+namespace edged {
+namespace {
+
+struct ConvertOptions {
+  SourceOptions source;
+  std::filesystem::path target;
+  std::string format;
+  bool round = false, quiet = false, json = false;
+};
+
+/// "12.3 s", of how much where that is known.
+std::string progress_text(Timestamp t, const DatasetInfo& info) {
+  const Timestamp begin = info.begin.value_or(Timestamp());
+  const std::string done = fmt::format("{:.1f}", to_seconds(t - begin));
+  return info.end ? fmt::format("{} / {:.1f} s converted", done, to_seconds(*info.end - begin)) : done + " s converted";
+}
+
+std::string left_out_text(const WriteCounts& counts, std::string_view format) {
+  std::vector<std::string> parts;
+  const auto add = [&parts](std::size_t count, const char* what) {
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
+  };
+  add(counts.frames_left_out, "frames");
+  add(counts.imu_left_out, "IMU samples");
+  add(counts.poses_left_out, "true poses");
+  return parts.empty() ? "" : fmt::format("left out, as {} has no room for them: {}\n", format, fmt::join(parts, ", "));
+}
+
+void print_summary(const ConvertOptions& options, const WritableFormat& format, const WriteCounts& counts,
+                   const std::map<std::string, std::size_t>& repairs) {
+  if (options.json) {
+    const nlohmann::ordered_json json = {
+        {"from", options.source.recording},
+        {"to", options.target.string()},
+        {"format", format.name},
+        {"events", counts.events},
+        {"frames", counts.frames},
+        {"imu", counts.imu},
+        {"poses", counts.poses},
+        {"left_out",
+         {{"frames", counts.frames_left_out}, {"imu", counts.imu_left_out}, {"poses", counts.poses_left_out}}},
+        {"repairs", repairs}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses\n{}", options.target.string(), counts.events,
+             counts.frames, counts.imu, counts.poses, left_out_text(counts, format.name));
+  for (const auto& [kind, count] : repairs) fmt::print("repaired: {} ({})\n", kind, count);
+}
+
+int run_convert(const ConvertOptions& options) {
+  catch_interrupts();
+  const WritableFormat& format = writable_format(options.format, options.target);
+  const Recording recording = open_uncalibrated(options.source);
+  StatusLine status(options.quiet);
+  WriteOptions write{.round = options.round};
+  write.progress = [&](Timestamp t) {
+    if (status.due()) status.show(progress_text(t, recording.dataset->info()));
+  };
+  InterruptibleDataset dataset(*recording.dataset);
+  const WriteCounts counts = write_recording(dataset, format, options.target, recording.calibration, write);
+  status.clear();
+  print_summary(options, format, counts, dataset.repairs());
+  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<ConvertOptions>();
+  std::vector<std::string_view> names;
+  for (const WritableFormat& format : writable_formats()) names.push_back(format.name);
+  CLI::App* convert = app.add_subcommand("convert", "Write a recording in another format, every event to the last bit");
+  add_source_options(*convert, options->source);
+  convert->add_option("TARGET", options->target, "File or folder to make; its extension tells the format")->required();
+  convert->add_option("--format", options->format, fmt::format("One of {} [by extension]", fmt::join(names, ", ")));
+  convert->add_flag("--round", options->round, "Cut stamps that are finer than the format's instead of refusing them");
+  convert->add_flag("--quiet", options->quiet, "No status line");
+  convert->add_flag("--json", options->json, "Print the summary as json");
+  convert->footer(
+      "Examples:\n"
+      "  edged convert flight.aedat4 flight_folder\n"
+      "  edged convert gen3.raw events.dat --geometry 640x480");
+  convert->callback([options, &chosen] { chosen = [options] { return run_convert(*options); }; });
+}
+
+}  // namespace edged
