@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The three libraries behind one loop: feed all, take what comes, stop at the end, at damage or at the limit.
+// Unpacking: the three libraries behind one loop: feed all, take what comes, stop at the end, at damage or at the
+// limit.
 #include "edged/io/compression.hpp"
 
 #include <bzlib.h>
@@ -88,6 +89,29 @@ Decompressed unpack_bz2(ByteSpan packed, std::size_t max_bytes) {
                 });
 }
 
+std::string pack_lz4(std::string_view bytes) {
+  LZ4F_preferences_t preferences{};
+  preferences.frameInfo.blockMode = LZ4F_blockIndependent;
+  preferences.frameInfo.blockSizeID = LZ4F_max4MB;
+  preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  std::string packed(LZ4F_compressFrameBound(bytes.size(), &preferences), '\0');
+  const std::size_t size = LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), &preferences);
+  if (LZ4F_isError(size)) throw std::bad_alloc();
+  packed.resize(size);
+  return packed;
+}
+
+std::string pack_zstd(std::string_view bytes) {
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), &ZSTD_freeCCtx);
+  if (!context) throw std::bad_alloc();
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size = ZSTD_compress2(context.get(), packed.data(), packed.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(size)) throw std::bad_alloc();
+  packed.resize(size);
+  return packed;
+}
+
 }  // namespace
 
 Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t max_bytes) {
@@ -95,6 +119,13 @@ Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t ma
   if (method == "lz4") return unpack_lz4(packed, max_bytes);
   if (method == "zstd") return unpack_zstd(packed, max_bytes);
   if (method == "bz2") return unpack_bz2(packed, max_bytes);
+  throw Damage("compression `" + std::string(method) + "` is not known");
+}
+
+std::string compress(std::string_view method, std::string_view bytes) {
+  if (method.empty() || method == "none") return std::string(bytes);
+  if (method == "lz4") return pack_lz4(bytes);
+  if (method == "zstd") return pack_zstd(bytes);
   throw Damage("compression `" + std::string(method) + "` is not known");
 }
 

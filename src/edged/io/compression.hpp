@@ -3,6 +3,7 @@
 // The compressions of recordings, one block at a time.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "edged/io/bytes.hpp"
@@ -17,5 +18,9 @@ struct Decompressed {
 /// method: "none" or "", "lz4" (LZ4 frames), "bz2" or "zstd". More than max_bytes counts as damage, so that damaged
 /// lengths cannot fill the memory. Throws Damage for another method.
 Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t max_bytes);
+
+/// method: "none" or "", "lz4" (a frame of independent blocks with a checksum, which ROS reads, too) or "zstd" (with a
+/// checksum). Throws Damage for another method.
+std::string compress(std::string_view method, std::string_view bytes);
 
 }  // namespace edged

@@ -14,6 +14,7 @@
 #include "edged/io/ecd_writer.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
+#include "edged/io/ros/ros_writer.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -25,6 +26,10 @@ constexpr std::array kWritable = {
     WritableFormat{.name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
+    WritableFormat{
+        .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
+    WritableFormat{
+        .name = "mcap", .extension = ".mcap", .frames = true, .imu = true, .ground_truth = true, .open = write_mcap},
 };
 
 /// Hands on what the format holds and counts.

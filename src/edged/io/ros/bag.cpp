@@ -6,6 +6,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "edged/io/compression.hpp"
+#include "edged/io/ros/bag_format.hpp"
 
 namespace edged {
 
@@ -43,10 +44,9 @@ class BagFields {
 
 namespace {
 
-constexpr std::uint64_t kFirstRecord = 13;           // behind "#ROSBAG V2.0\n"
+constexpr std::uint64_t kFirstRecord = kBagMagic.size();
 constexpr std::uint32_t kLongestHeader = 1U << 20U;  // longer ones are damage
 constexpr std::uint32_t kLargestChunk = 1U << 30U;   // as recorded; usual are 768 kB
-enum BagOp : std::uint8_t { kMessage = 2, kBagHeader = 3, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
 
 /// Where a record of the file is. Its data may reach beyond the end of a cut file.
 struct BagRecord {
@@ -84,8 +84,8 @@ void Bag::read_index() {
     const BagFields fields(record.header);
     const Bytes data = file().read(record.data, record.size);
     const auto op = fields.number<std::uint8_t>("op");
-    if (op == kConnection) add_connection(fields, data);
-    if (op == kChunkInfo) add_chunk_info(fields, data);
+    if (op == kBagConnection) add_connection(fields, data);
+    if (op == kBagChunkInfo) add_chunk_info(fields, data);
     place = record.end();
   }
 }
@@ -97,11 +97,11 @@ bool Bag::load_record() {
   const BagFields fields(record.header);
   const auto op = fields.number<std::uint8_t>("op");
   go_to(record.end());
-  if (op != kChunk && op != kMessage && op != kConnection) return false;
+  if (op != kBagChunk && op != kBagMessage && op != kBagConnection) return false;
   if (record.size > kLargestChunk) throw Damage("record too long");
   const bool cut = record.end() > file().size();
   if (cut) repair("cut", "the file ends within a record");
-  if (op != kChunk) {
+  if (op != kBagChunk) {
     load(file().read(begin, static_cast<std::size_t>(record.end() - begin)));
     return true;
   }
@@ -118,8 +118,8 @@ std::optional<Message> Bag::take_message() {
   const BagFields fields(reader().take(reader().number<std::uint32_t>()));
   const ByteSpan data = reader().take(reader().number<std::uint32_t>());
   const auto op = fields.number<std::uint8_t>("op");
-  if (op == kConnection) add_connection(fields, data);
-  if (op != kMessage) return std::nullopt;
+  if (op == kBagConnection) add_connection(fields, data);
+  if (op != kBagMessage) return std::nullopt;
   const auto connection = topic_of_connection_.find(fields.number<std::uint32_t>("conn"));
   if (connection == topic_of_connection_.end()) throw Damage("message of an unknown connection");
   extend(fields.time("time"));

@@ -8,24 +8,15 @@
 #include <algorithm>
 
 #include "edged/io/compression.hpp"
+#include "edged/io/ros/mcap_format.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
 
-constexpr std::uint64_t kMagicBytes = 8;
+constexpr std::uint64_t kMagicBytes = kMcapMagic.size();
 constexpr std::uint64_t kRecordHead = 9;             // opcode and length
 constexpr std::uint64_t kLargestRecord = 1U << 30U;  // longer ones are damage
-enum McapOp : std::uint8_t {
-  kMcapFooter = 2,
-  kMcapSchema = 3,
-  kMcapChannel = 4,
-  kMcapMessage = 5,
-  kMcapChunk = 6,
-  kMcapChunkIndex = 8,
-  kMcapStatistics = 0x0B,
-  kMcapDataEnd = 0x0F
-};
 
 std::string_view mcap_text(ByteReader& reader) { return reader.text(reader.number<std::uint32_t>()); }
 

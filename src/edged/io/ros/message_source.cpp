@@ -8,8 +8,10 @@
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag.hpp"
 #include "edged/io/ros/bag_folder.hpp"
+#include "edged/io/ros/bag_format.hpp"
 #include "edged/io/ros/db3.hpp"
 #include "edged/io/ros/mcap.hpp"
+#include "edged/io/ros/mcap_format.hpp"
 
 namespace edged {
 
@@ -22,8 +24,8 @@ Container container_of(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return Container::None;
   const Bytes head = BinaryFile(path).read(0, 16);
   const std::string_view magic = as_text(head);
-  if (magic.starts_with("#ROSBAG V2.0\n")) return Container::Bag;
-  if (magic.starts_with("\x89MCAP0\r\n")) return Container::Mcap;
+  if (magic.starts_with(kBagMagic)) return Container::Bag;
+  if (magic.starts_with(kMcapMagic)) return Container::Mcap;
   if (magic.starts_with("SQLite format 3")) return Container::Db3;
   return Container::None;
 }

@@ -180,10 +180,10 @@ StampedPose read_pose_stamped(WireReader message) {
   return pose_from(t, message);
 }
 
-StampedPose read_child_pose(WireReader message) {
+NamedPose read_named_pose(WireReader message) {
   const Timestamp t = message.header();
-  message.text();
-  return pose_from(t, message);
+  const std::string_view frame = message.text();
+  return {pose_from(t, message), frame};
 }
 
 }  // namespace edged

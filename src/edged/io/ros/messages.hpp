@@ -70,7 +70,11 @@ GrayImage read_image(WireReader message);
 GrayImage read_compressed_image(WireReader message);
 
 StampedPose read_pose_stamped(WireReader message);
-/// TransformStamped and Odometry, which name the child frame before the pose.
-StampedPose read_child_pose(WireReader message);
+/// TransformStamped and Odometry, which name the frame whose pose it is.
+struct NamedPose {
+  StampedPose pose;
+  std::string_view frame;
+};
+NamedPose read_named_pose(WireReader message);
 
 }  // namespace edged

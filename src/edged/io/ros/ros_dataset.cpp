@@ -18,8 +18,8 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
       geometry_(geometry) {
   if (rig) rig_ = *rig;
   info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
-  begin({choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(),
-         choice_.of(Role::Imu).has_value()});
+  begin(
+      {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
 }
 
@@ -102,7 +102,13 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
     if (message->topic != *topic) continue;
     try {
       const WireReader reader(source->wire(), message->data);
-      poses.push_back(plain ? read_pose_stamped(reader) : read_child_pose(reader));
+      if (plain) {
+        poses.push_back(read_pose_stamped(reader));
+        continue;
+      }
+      const NamedPose named = read_named_pose(reader);
+      poses.push_back(named.pose);
+      if (named.frame == "events" || named.frame == "frames") truth.frame = named.frame;
     } catch (const Damage&) {
       // A pose that is missing is no loss: there are hundreds a second.
     }

@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Cameras "events" and "frames"; poses of "body".
+/// Cameras "events" and "frames"; poses of "body", or of the camera that the messages name so.
 class RosDataset final : public StreamedDataset {
  public:
   /// The size of the event camera is that of the rig, else `geometry`, else what its messages say. Throws InputError

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Fields of messages. The two generations differ in their headers, their times and the names of a few fields.
+#include "edged/io/ros/definitions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+/// `TIME` stands for each generation's own type of a stamp.
+struct Fields {
+  std::string_view type;
+  std::string_view md5;  ///< of those that are messages of a topic
+  std::string_view text;
+};
+
+constexpr std::string_view kHeader1 = "uint32 seq\ntime stamp\nstring frame_id\n";
+constexpr std::string_view kHeader2 = "builtin_interfaces/Time stamp\nstring frame_id\n";
+
+constexpr std::array kFields = {
+    Fields{"builtin_interfaces/Time", "", "int32 sec\nuint32 nanosec\n"},
+    Fields{"geometry_msgs/Quaternion", "", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
+    Fields{"geometry_msgs/Vector3", "", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Fields{"geometry_msgs/Transform", "",
+           "geometry_msgs/Vector3 translation\n"
+           "geometry_msgs/Quaternion rotation\n"},
+    Fields{"geometry_msgs/TransformStamped", "b5764a33bfeb3588febc2682852579b0",
+           "std_msgs/Header header\n"
+           "string child_frame_id\n"
+           "geometry_msgs/Transform transform\n"},
+    Fields{"dvs_msgs/Event", "",
+           "uint16 x\n"
+           "uint16 y\n"
+           "TIME ts\n"
+           "bool polarity\n"},
+    Fields{"dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "dvs_msgs/Event[] events\n"},
+    Fields{"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "string encoding\n"
+           "uint8 is_bigendian\n"
+           "uint32 step\n"
+           "uint8[] data\n"},
+    Fields{"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2",
+           "std_msgs/Header header\n"
+           "geometry_msgs/Quaternion orientation\n"
+           "float64[9] orientation_covariance\n"
+           "geometry_msgs/Vector3 angular_velocity\n"
+           "float64[9] angular_velocity_covariance\n"
+           "geometry_msgs/Vector3 linear_acceleration\n"
+           "float64[9] linear_acceleration_covariance\n"},
+    Fields{"sensor_msgs/RegionOfInterest", "",
+           "uint32 x_offset\n"
+           "uint32 y_offset\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "bool do_rectify\n"},
+    Fields{"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "string distortion_model\n"
+           "float64[] D\n"
+           "float64[9] K\n"
+           "float64[9] R\n"
+           "float64[12] P\n"
+           "uint32 binning_x\n"
+           "uint32 binning_y\n"
+           "sensor_msgs/RegionOfInterest roi\n"},
+};
+
+const Fields& fields_of(std::string_view type) {
+  const auto* const found = std::ranges::find(kFields, type, &Fields::type);
+  EDGED_CHECK(found != kFields.end(), "no definition of {}", type);
+  return *found;
+}
+
+std::string text_of(std::string_view type, Wire wire) {
+  if (type == "std_msgs/Header") return std::string(wire == Wire::Ros1 ? kHeader1 : kHeader2);
+  std::string text(fields_of(type).text);
+  if (const std::size_t at = text.find("TIME "); at != std::string::npos)
+    text.replace(at, 4, wire == Wire::Ros1 ? "time" : "builtin_interfaces/Time");
+  if (type == "sensor_msgs/CameraInfo" && wire == Wire::Cdr)
+    for (std::size_t at = text.find("] "); at != std::string::npos; at = text.find("] ", at + 1))
+      text[at + 2] = static_cast<char>(text[at + 2] - 'A' + 'a');
+  return text;
+}
+
+/// Types of the fields that are messages, in the order in which they occur, and theirs.
+void add_inner_types(std::string_view text, Wire wire, std::vector<std::string>& types) {
+  for (std::size_t begin = 0; begin < text.size(); begin = text.find('\n', begin) + 1) {
+    const std::string_view type = text.substr(begin, text.find_first_of(" [", begin) - begin);
+    if (type.find('/') == std::string_view::npos || std::ranges::find(types, type) != types.end()) continue;
+    types.emplace_back(type);
+    add_inner_types(text_of(type, wire), wire, types);
+  }
+}
+
+}  // namespace
+
+MessageDefinition definition_of(std::string_view type, Wire wire) {
+  MessageDefinition definition{text_of(type, wire), wire == Wire::Ros1 ? std::string(fields_of(type).md5) : ""};
+  std::vector<std::string> inner;
+  add_inner_types(definition.text, wire, inner);
+  for (const std::string& name : inner)
+    definition.text += std::string(80, '=') + "\nMSG: " + name + "\n" + text_of(name, wire);
+  return definition;
+}
+
+}  // namespace edged

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the messages that are written consist of, as ROS tools want it told in the file.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+struct MessageDefinition {
+  std::string text;  ///< fields, then those of every message in it, as ROS 1 or 2 puts them
+  std::string md5;   ///< by which ROS 1 knows versions of a message; empty for CDR
+};
+
+/// type: "dvs_msgs/EventArray" or another one that is written here or by the tests (CheckError for any other).
+MessageDefinition definition_of(std::string_view type, Wire wire);
+
+}  // namespace edged

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Facts of the MCAP format that its reader and its writer share.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace edged {
+
+inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";  // at both ends
+
+enum McapOp : std::uint8_t {
+  kMcapHeader = 1,
+  kMcapFooter = 2,
+  kMcapSchema = 3,
+  kMcapChannel = 4,
+  kMcapMessage = 5,
+  kMcapChunk = 6,
+  kMcapMessageIndex = 7,
+  kMcapChunkIndex = 8,
+  kMcapStatistics = 0x0B,
+  kMcapDataEnd = 0x0F
+};
+
+}  // namespace edged

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Messages into either wire format: the counterpart of messages.hpp.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "edged/camera/camera_model.hpp"
+#include "edged/core/types.hpp"
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+/// Takes the fields in the order of the message's definition; see WireReader.
+class WireWriter {
+ public:
+  explicit WireWriter(Wire wire);
+
+  template <typename T>
+  void number(T value) {
+    if (wire_ == Wire::Cdr) out_.append((sizeof(T) - (out_.size() - kKindBytes) % sizeof(T)) % sizeof(T), '\0');
+    append_number(out_, value);
+  }
+  void numbers(std::span<const double> values);
+  void text(std::string_view value);
+  void bytes(ByteSpan value);
+  /// Within what the format holds: see latest_stamp().
+  void time(Timestamp t);
+  void header(Timestamp stamp, std::string_view frame_id);
+
+  const std::string& message() const { return out_; }
+
+ private:
+  static constexpr std::size_t kKindBytes = 4;
+  Wire wire_;
+  std::string out_;
+};
+
+/// Stamps from zero up to this one can be written.
+Timestamp latest_stamp(Wire wire);
+
+/// dvs_msgs/EventArray, prophesee_event_msgs/EventArray and dv_ros_msgs/EventArray; not empty, with the first event's
+/// stamp.
+std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sensor);
+/// sensor_msgs/Image of 8 bit.
+std::string image_message(Wire wire, const Frame& frame);
+/// sensor_msgs/Imu.
+std::string imu_message(Wire wire, const ImuSample& sample);
+/// geometry_msgs/TransformStamped from frame `child` to "world".
+std::string transform_message(Wire wire, const StampedPose& pose, std::string_view child);
+/// sensor_msgs/CameraInfo.
+std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view camera, const CameraModel& model);
+
+}  // namespace edged
