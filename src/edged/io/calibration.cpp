@@ -21,22 +21,19 @@ namespace {
 constexpr double kLongLeverArm = 0.5;  // [m]
 
 /// The first file of a folder, by name, that begins and ends so.
-fs::path find_file(const fs::path& folder, const std::string& begin, const std::string& end) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(begin) && name.ends_with(end)) found.push_back(entry.path());
-  }
-  return found.empty() ? fs::path() : *std::min_element(found.begin(), found.end());
+std::optional<SourcePath> find_file(const SourcePath& folder, const std::string& begin, const std::string& end) {
+  for (const std::string& name : folder.names())
+    if (name.starts_with(begin) && name.ends_with(end)) return folder / name;
+  return std::nullopt;
 }
 
-bool starts_with_a_number(const fs::path& file) {
+bool starts_with_a_number(const SourcePath& file) {
   LineReader lines(file);
   const auto line = lines.next();
   return line && parse_number(FieldReader(line->text).next()).has_value();
 }
 
-Calibration read_file(const fs::path& file) {
+Calibration read_file(const SourcePath& file) {
   if (starts_with_a_number(file)) return read_ecd_calib(file);
   const YamlReader root(file);
   if (root.find("edged_rig")) return read_own_yaml(root);
@@ -49,7 +46,7 @@ Calibration read_file(const fs::path& file) {
       file.string());
 }
 
-void check(const Calibration& calibration, const fs::path& path) {
+void check(const Calibration& calibration, const SourcePath& path) {
   if (!calibration.has_extrinsics) return;
   for (const RigCamera& camera : calibration.rig.cameras) {
     const double arm = camera.T_B_C.translation().norm();
@@ -78,33 +75,30 @@ std::string format_transform(const std::string& name, const SE3& T) {
   return out;
 }
 
+/// The files to read of a folder: the calibration, and the IMU's noise where it has a file of its own.
+std::pair<SourcePath, std::optional<SourcePath>> files_of_folder(const SourcePath& folder) {
+  if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) return {own, std::nullopt};
+  const auto mav0 = find_mav0(folder);
+  if (mav0 && (*mav0 / "cam0" / "sensor.yaml").is_file()) return {*mav0 / "cam0" / "sensor.yaml", std::nullopt};
+  const SourcePath beside = mav0 ? mav0->parent_path() / "dso" : folder;  // where TUM-VI has it
+  for (const SourcePath& place : {folder, beside})
+    if (const auto camchain = place.is_folder() ? find_file(place, "camchain", ".yaml") : std::nullopt)
+      return {*camchain, find_file(place, "imu", ".yaml")};
+  if (const SourcePath calib = folder / "calib.txt"; calib.is_file()) return {calib, std::nullopt};
+  throw InputError::format(
+      "{}: no calibration found; looked for calibration.yaml, [mav0/]cam0, camchain*.yaml, calib.txt", folder.string());
+}
+
 }  // namespace
 
-Calibration load_calibration(const fs::path& path, const fs::path& imu_file) {
-  if (!fs::exists(path)) throw InputError::format("{}: no such calibration", path.string());
-  fs::path file = path, noise = imu_file;
-  if (fs::is_directory(path)) {
-    const auto mav0 = find_mav0(path);
-    const fs::path camchain = find_file(path, "camchain", ".yaml");
-    if (fs::exists(path / "calibration.yaml")) {
-      file = path / "calibration.yaml";
-    } else if (mav0) {
-      file = *mav0 / "cam0" / "sensor.yaml";
-    } else if (!camchain.empty()) {
-      file = camchain;
-      if (noise.empty()) noise = find_file(path, "imu", ".yaml");
-    } else if (fs::exists(path / "calib.txt")) {
-      file = path / "calib.txt";
-    } else {
-      throw InputError::format(
-          "{}: no calibration found; looked for calibration.yaml, [mav0/]cam0, camchain*.yaml, calib.txt",
-          path.string());
-    }
-  }
+Calibration load_calibration(const SourcePath& path, const fs::path& imu_file) {
+  if (!path.is_file() && !path.is_folder()) throw InputError::format("{}: no such calibration", path.string());
+  auto [file, noise] = path.is_folder() ? files_of_folder(path) : std::pair(path, std::optional<SourcePath>());
+  if (!imu_file.empty()) noise = imu_file;
   Calibration calibration = read_file(file);
-  if (calibration.rig.name.empty()) calibration.rig.name = file.stem().string();
-  if (!noise.empty()) {
-    calibration.imu = read_kalibr_noise(YamlReader(noise));
+  if (calibration.rig.name.empty()) calibration.rig.name = fs::path(file.name()).stem().string();
+  if (noise) {
+    calibration.imu = read_kalibr_noise(YamlReader(*noise));
     calibration.has_imu_noise = true;
   }
   check(calibration, file);

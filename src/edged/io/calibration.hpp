@@ -9,6 +9,7 @@
 
 #include "edged/camera/rig.hpp"
 #include "edged/imu/noise.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
@@ -29,7 +30,7 @@ struct Calibration {
 /// A folder is searched for calibration.yaml, mav0, camchain*.yaml with imu*.yaml, calib.txt, in that order.
 /// Throws InputError for unknown content, a rotation that is not orthonormal, or impossible intrinsics; logs a warning
 /// for a lever arm beyond 0.5 m.
-Calibration load_calibration(const std::filesystem::path& path, const std::filesystem::path& imu_file = {});
+Calibration load_calibration(const SourcePath& path, const std::filesystem::path& imu_file = {});
 
 /// A rig by name (config/rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.
 Calibration load_rig(const std::string& name_or_path);

@@ -8,19 +8,20 @@
 #include <optional>
 
 #include "edged/io/recording.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
 /// Something of an Event-Camera Dataset text folder is there.
-bool is_ecd_folder(const std::filesystem::path& folder);
-Recording open_ecd(const std::filesystem::path& folder, const Rig* rig);
+bool is_ecd_folder(const SourcePath& folder);
+Recording open_ecd(const SourcePath& folder, const Rig* rig);
 /// Size of the first readable image of images.txt.
-std::optional<cv::Size> ecd_image_size(const std::filesystem::path& folder);
+std::optional<cv::Size> ecd_image_size(const SourcePath& folder);
 inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data set's sensor where nothing else tells
 
 /// The folder itself or its mav0, whichever holds cam0 or imu0.
-std::optional<std::filesystem::path> find_mav0(const std::filesystem::path& folder);
-Recording open_euroc(const std::filesystem::path& mav0);
+std::optional<SourcePath> find_mav0(const SourcePath& folder);
+Recording open_euroc(const SourcePath& mav0);
 
 /// Size of the event sensor of a file: of the rig, else as said by the user or the file. Warns where they differ,
 /// throws InputError where nobody says it.

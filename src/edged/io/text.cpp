@@ -4,7 +4,6 @@
 #include "edged/io/text.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -65,21 +64,26 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
 
 }  // namespace
 
-BlockReader::BlockReader(const std::filesystem::path& file, std::size_t block_bytes)
-    : name_(file.string()), file_(std::fopen(name_.c_str(), "rb")), buffer_(block_bytes + 1) {
-  if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+BlockReader::BlockReader(const SourcePath& file, std::size_t block_bytes)
+    : name_(file.string()), source_(file.open()), buffer_(block_bytes + 1) {}
+
+/// As much as there is room for, or to the end; one byte is kept for a line end.
+void BlockReader::fill() try {
+  while (!at_end_ && filled_ < buffer_.size() - 1) {
+    const std::size_t got = source_->read({buffer_.data() + filled_, buffer_.size() - 1 - filled_});
+    filled_ += got;
+    at_end_ = got == 0;
+  }
+} catch (const Damage& damage) {
+  damage_ = damage.what();
+  at_end_ = true;
 }
 
 std::string_view BlockReader::next() {
   filled_ -= given_;
   std::memmove(buffer_.data(), buffer_.data() + given_, filled_);
   given_ = 0;
-  const std::size_t room = buffer_.size() - 1 - filled_;
-  const std::size_t got = at_end_ ? 0 : std::fread(buffer_.data() + filled_, 1, room, file_.get());
-  if (std::ferror(file_.get())) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
-  filled_ += got;
-  at_end_ = at_end_ || got < room;
+  fill();
 
   const std::string_view all(buffer_.data(), filled_);
   const std::size_t last_end = all.rfind('\n');
@@ -160,10 +164,10 @@ std::string format_seconds(Timestamp t) {
   return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", size / 1'000'000'000, size % 1'000'000'000);
 }
 
-std::optional<Timestamp> last_stamp(const std::filesystem::path& file,
-                                    std::optional<Timestamp> (*parse)(std::string_view)) {
+std::optional<Timestamp> last_stamp(const SourcePath& file, std::optional<Timestamp> (*parse)(std::string_view)) {
   constexpr std::streamoff kTail = 8192;
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (file.is_archived()) return std::nullopt;
+  std::ifstream in(file.string(), std::ios::binary | std::ios::ate);
   if (!in) return std::nullopt;
   const std::streamoff size = in.tellg();
   const std::streamoff from = std::max<std::streamoff>(0, size - kTail);

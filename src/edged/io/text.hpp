@@ -6,8 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,13 +13,14 @@
 #include <vector>
 
 #include "edged/core/time.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
 /// A file as blocks of whole lines. Throws InputError when it cannot be read or is not text (no line end in a block).
 class BlockReader {
  public:
-  explicit BlockReader(const std::filesystem::path& file, std::size_t block_bytes = 256 * 1024);
+  explicit BlockReader(const SourcePath& file, std::size_t block_bytes = 256 * 1024);
 
   /// The next block, which ends with '\n'; empty at the end of the file. Valid until the next call.
   std::string_view next();
@@ -29,13 +28,15 @@ class BlockReader {
   /// True once the file turned out to end without '\n' (one is added to the last block).
   bool unterminated() const { return unterminated_; }
 
+  /// What ended the file before its end (a damaged archive); "" where nothing did.
+  const std::string& damage() const { return damage_; }
+
  private:
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
+  void fill();
 
   std::string name_;
-  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<ByteSource> source_;
+  std::string damage_;
   std::vector<char> buffer_;
   std::size_t filled_ = 0;  ///< bytes in buffer_
   std::size_t given_ = 0;   ///< of those, the ones already handed out
@@ -52,8 +53,10 @@ struct TextLine {
 /// A file line by line; blank lines and those that start with '#' are left out.
 class LineReader {
  public:
-  explicit LineReader(const std::filesystem::path& file) : blocks_(file, 64 * 1024) {}
+  explicit LineReader(const SourcePath& file) : blocks_(file, 64 * 1024) {}
   std::optional<TextLine> next();
+  /// As of BlockReader.
+  const std::string& damage() const { return blocks_.damage(); }
 
  private:
   BlockReader blocks_;
@@ -101,8 +104,9 @@ std::optional<Timestamp> parse_nanoseconds(std::string_view field);
 /// Seconds with all nine decimals.
 std::string format_seconds(Timestamp t);
 
-/// Stamp of the last complete line (its first field), read from the end of the file; nothing when there is none.
-std::optional<Timestamp> last_stamp(const std::filesystem::path& file,
+/// Stamp of the last complete line (its first field), read from the end of the file; nothing when there is none, or in an
+/// archive, whose files have no end that could be read alone.
+std::optional<Timestamp> last_stamp(const SourcePath& file,
                                     std::optional<Timestamp> (*parse)(std::string_view));
 
 }  // namespace edged

@@ -61,7 +61,7 @@ ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
 }
 
-Trajectory read_poses(const std::filesystem::path& file, ParseLine parse, const DamageHandler& on_damage) {
+Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandler& on_damage) {
   const auto damaged = [&](std::size_t line, const std::string& detail) {
     if (!on_damage) throw InputError::format("{}:{}: {}", file.string(), line, detail);
     on_damage(line, detail);
@@ -87,11 +87,11 @@ Trajectory read_poses(const std::filesystem::path& file, ParseLine parse, const 
 
 }  // namespace
 
-Trajectory read_tum(const std::filesystem::path& file, const DamageHandler& on_damage) {
+Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage) {
   return read_poses(file, parse_tum, on_damage);
 }
 
-Trajectory read_euroc_csv(const std::filesystem::path& file, const DamageHandler& on_damage) {
+Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage) {
   return read_poses(file, parse_euroc, on_damage);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edged/core/types.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
@@ -20,10 +21,10 @@ using DamageHandler = std::function<void(std::size_t line, const std::string& de
 /// strictly in what is returned. A bad line (unreadable, not finite, no unit quaternion, stamp not after the one above)
 /// goes to on_damage; without it, InputError naming file and line, but a repeated stamp only keeps the first pose
 /// (logged).
-Trajectory read_tum(const std::filesystem::path& file, const DamageHandler& on_damage = {});
+Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage = {});
 
 /// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Damage as read_tum.
-Trajectory read_euroc_csv(const std::filesystem::path& file, const DamageHandler& on_damage = {});
+Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage = {});
 
 /// KITTI: 12 numbers of [R | t], row by row; the index of the pose counts as seconds. Damage as read_tum.
 Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});

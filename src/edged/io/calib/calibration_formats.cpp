@@ -173,20 +173,20 @@ ImuNoise read_kalibr_noise(const YamlReader& root) {
   return noise;
 }
 
-Calibration read_euroc(const std::filesystem::path& file) {
+Calibration read_euroc(const SourcePath& file) {
   const YamlReader node(file);
   if (node.at("sensor_type").text() != "camera") node.at("sensor_type").fail("must be camera: give cam0/sensor.yaml");
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const SourcePath folder = file.parent_path();
   RigCamera camera;
-  camera.name = folder.filename().string();
+  camera.name = folder.name();
   camera.model = read_model(node, read_distortion(node, "distortion_model", "distortion_coefficients"));
   camera.T_B_C = node.at("T_BS").transform();  // p_B = T_BS * p_S: the same as ours while the IMU is the body
 
   Calibration out;
-  const std::filesystem::path mav0 = folder.parent_path();
-  out.rig.name = (mav0.filename() == "mav0" ? mav0.parent_path() : mav0).filename().string();
-  const std::filesystem::path imu_file = mav0 / "imu0" / "sensor.yaml";
-  out.has_imu_noise = std::filesystem::exists(imu_file);
+  const SourcePath mav0 = folder.parent_path();
+  out.rig.name = (mav0.name() == "mav0" ? mav0.parent_path() : mav0).name();
+  const SourcePath imu_file = mav0 / "imu0" / "sensor.yaml";
+  out.has_imu_noise = imu_file.is_file();
   if (out.has_imu_noise) {
     const YamlReader imu(imu_file);
     out.imu = read_kalibr_noise(imu);
@@ -196,7 +196,7 @@ Calibration read_euroc(const std::filesystem::path& file) {
   return out;
 }
 
-Calibration read_ecd_calib(const std::filesystem::path& file) {
+Calibration read_ecd_calib(const SourcePath& file) {
   std::vector<double> v;
   std::size_t line_number = 1;
   LineReader lines(file);

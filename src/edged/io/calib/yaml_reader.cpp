@@ -5,7 +5,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <fstream>
 
 #include "edged/core/check.hpp"
 #include "edged/io/text.hpp"
@@ -14,20 +13,21 @@ namespace edged {
 namespace {
 
 constexpr double kRotationTolerance = 1e-3;
+constexpr std::size_t kMostBytes = 1 << 24;
 
-YAML::Node parse_file(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw InputError::format("{}: cannot be opened", file.string());
+YAML::Node parse_file(const SourcePath& file) {
   try {
-    return YAML::Load(in);
+    return YAML::Load(std::string(as_text(file.read(kMostBytes))));
   } catch (const YAML::Exception& e) {
     throw InputError::format("{}:{}: not readable as yaml: {}", file.string(), e.mark.line + 1, e.msg);
+  } catch (const Damage& damage) {
+    throw InputError::format("{}: {}", file.string(), damage.what());
   }
 }
 
 }  // namespace
 
-YamlReader::YamlReader(const std::filesystem::path& file) : YamlReader(file.string(), "", parse_file(file)) {}
+YamlReader::YamlReader(const SourcePath& file) : YamlReader(file.string(), "", parse_file(file)) {}
 
 void YamlReader::fail(const std::string& what) const {
   const int line = node_.Mark().line;

@@ -5,7 +5,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -13,13 +12,14 @@
 #include <vector>
 
 #include "edged/core/lie.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
 class YamlReader {
  public:
   /// The root of a file. Throws InputError when it is missing or no yaml.
-  explicit YamlReader(const std::filesystem::path& file);
+  explicit YamlReader(const SourcePath& file);
 
   bool is_map() const { return node_.IsMap(); }
   std::optional<YamlReader> find(const std::string& key) const;

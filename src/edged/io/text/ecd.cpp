@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
@@ -13,7 +12,6 @@
 #include "edged/io/trajectory_io.hpp"
 
 namespace edged {
-namespace fs = std::filesystem;
 namespace {
 
 /// `t ax ay az gx gy gz`: acceleration first.
@@ -25,7 +23,7 @@ std::optional<ImuSample> parse_ecd_imu(std::string_view line) {
   return ImuSample{*t, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
 }
 
-StampedLines<FrameEntry>::Spec ecd_images(const fs::path& folder) {
+StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder) {
   return {folder / "images.txt", "frames", "t path", LastLine::MayLackEnd,
           [folder](std::string_view line) -> std::optional<FrameEntry> {
             FieldReader fields(line);
@@ -35,7 +33,7 @@ StampedLines<FrameEntry>::Spec ecd_images(const fs::path& folder) {
           }};
 }
 
-std::optional<GroundTruth> read_ground_truth(const fs::path& file, const std::string& camera, Repairs& repairs) {
+std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const std::string& camera, Repairs& repairs) {
   LineDamage damage(file.string(), "groundtruth", repairs);
   const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
   GroundTruth truth{read_tum(file, count), camera};
@@ -43,7 +41,7 @@ std::optional<GroundTruth> read_ground_truth(const fs::path& file, const std::st
   return truth;
 }
 
-cv::Size sensor_size(const fs::path& folder, const Rig* rig, const std::optional<Calibration>& own) {
+cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::optional<Calibration>& own) {
   for (const Rig* r : {rig, own ? &own->rig : nullptr})
     if (r)
       if (const RigCamera* camera = r->find(Modality::Events)) return {camera->model.width(), camera->model.height()};
@@ -51,11 +49,11 @@ cv::Size sensor_size(const fs::path& folder, const Rig* rig, const std::optional
 }
 
 /// The lens of a sequence can differ from that of the rig: the data set used several.
-void warn_of_other_lens(const fs::path& folder, const Rig& rig) {
+void warn_of_other_lens(const SourcePath& folder, const Rig& rig) {
   constexpr double kTolerance = 0.02;
-  const fs::path file = folder / "calib.txt";
+  const SourcePath file = folder / "calib.txt";
   const RigCamera* camera = rig.find(Modality::Events);
-  if (!camera || !fs::exists(file)) return;
+  if (!camera || !file.is_file()) return;
   const double focal = load_calibration(file).rig.cameras.front().model.mean_focal();
   if (std::abs(focal / camera->model.mean_focal() - 1.0) <= kTolerance) return;
   spdlog::warn("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file.string(), focal,
@@ -64,46 +62,46 @@ void warn_of_other_lens(const fs::path& folder, const Rig& rig) {
 
 }  // namespace
 
-bool is_ecd_folder(const fs::path& folder) {
-  return fs::exists(folder / "events.txt") || fs::exists(folder / "images.txt") || fs::exists(folder / "imu.txt");
+bool is_ecd_folder(const SourcePath& folder) {
+  return (folder / "events.txt").is_file() || (folder / "images.txt").is_file() || (folder / "imu.txt").is_file();
 }
 
-std::optional<cv::Size> ecd_image_size(const fs::path& folder) {
+std::optional<cv::Size> ecd_image_size(const SourcePath& folder) {
   constexpr int kTries = 20;
-  if (!fs::exists(folder / "images.txt")) return std::nullopt;
+  if (!(folder / "images.txt").is_file()) return std::nullopt;
   const auto spec = ecd_images(folder);
   LineReader lines(spec.file);
   for (int i = 0; i < kTries; ++i) {
     const auto line = lines.next();
     if (!line) break;
     const auto entry = spec.parse(line->text);
-    if (!entry || !fs::is_regular_file(entry->image)) continue;
-    const cv::Mat image = cv::imread(entry->image.string(), cv::IMREAD_GRAYSCALE);
+    if (!entry || !entry->image.is_file()) continue;
+    const cv::Mat image = read_gray_image(entry->image);
     if (!image.empty()) return image.size();
   }
   return std::nullopt;
 }
 
-Recording open_ecd(const fs::path& folder, const Rig* rig) {
+Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   Recording recording;
-  if (fs::exists(folder / "calibration.yaml")) recording.calibration = load_calibration(folder / "calibration.yaml");
+  if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = load_calibration(own);
   if (rig) warn_of_other_lens(folder, *rig);
 
   TextLayout layout;
-  layout.info.name = fs::absolute(folder / ".").parent_path().filename().string();
+  layout.info.name = folder.name();
   layout.info.format = "ecd";
   const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
   layout.info.pose_frame = no_event_camera ? "frames" : "events";
   layout.parse_stamp = parse_seconds;
-  if (fs::exists(folder / "events.txt")) {
+  if (const SourcePath events = folder / "events.txt"; events.is_file()) {
     const cv::Size size = sensor_size(folder, rig, recording.calibration);
     layout.info.event_sensor = size;
-    layout.events = EventFile{folder / "events.txt", "events", size.width, size.height};
+    layout.events = EventFile{events, "events", size.width, size.height};
   }
-  if (fs::exists(folder / "images.txt")) layout.frames = FrameFile{"frames", ecd_images(folder)};
-  if (fs::exists(folder / "imu.txt"))
-    layout.imu = {folder / "imu.txt", "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
-  if (const fs::path truth = folder / "groundtruth.txt"; fs::exists(truth))
+  if ((folder / "images.txt").is_file()) layout.frames = FrameFile{"frames", ecd_images(folder)};
+  if (const SourcePath imu = folder / "imu.txt"; imu.is_file())
+    layout.imu = {imu, "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
+  if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file())
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
       return read_ground_truth(truth, camera, repairs);
     };

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The ASL folders of the EuRoC data set (Burri et al., IJRR 2016).
+// The ASL folders of the EuRoC data set (Burri et al., IJRR 2016), which TUM-VI (Schubert et al., IROS 2018) uses too.
+#include <spdlog/spdlog.h>
+
 #include <array>
 
 #include "edged/core/check.hpp"
@@ -9,10 +11,12 @@
 #include "edged/io/trajectory_io.hpp"
 
 namespace edged {
-namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kTruthFolder = "state_groundtruth_estimate0";
+/// Folders with poses of the body: EuRoC's, TUM-VI's.
+constexpr const char* kTruthFolders[] = {"state_groundtruth_estimate0", "mocap0"};
+/// Folders of what EuRoC's truth was made from: positions alone, poses of a marker.
+constexpr const char* kRawTruthFolders[] = {"leica0", "vicon0"};
 
 /// `ns, wx, wy, wz, ax, ay, az`: angular velocity first.
 std::optional<ImuSample> parse_euroc_imu(std::string_view line) {
@@ -23,7 +27,7 @@ std::optional<ImuSample> parse_euroc_imu(std::string_view line) {
   return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
-StampedLines<FrameEntry>::Spec euroc_images(const fs::path& cam0) {
+StampedLines<FrameEntry>::Spec euroc_images(const SourcePath& cam0) {
   return {cam0 / "data.csv", "frames", "ns, file name", LastLine::MayLackEnd,
           [cam0](std::string_view line) -> std::optional<FrameEntry> {
             FieldReader fields(line);
@@ -33,7 +37,7 @@ StampedLines<FrameEntry>::Spec euroc_images(const fs::path& cam0) {
           }};
 }
 
-std::optional<GroundTruth> read_ground_truth(const fs::path& file, Repairs& repairs) {
+std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& repairs) {
   LineDamage damage(file.string(), "groundtruth", repairs);
   const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
   GroundTruth truth{read_euroc_csv(file, count), "body"};
@@ -41,33 +45,57 @@ std::optional<GroundTruth> read_ground_truth(const fs::path& file, Repairs& repa
   return truth;
 }
 
-bool holds_sensors(const fs::path& folder) {
-  return fs::exists(folder / "cam0" / "data.csv") || fs::exists(folder / "imu0" / "data.csv");
+/// The file with poses of the body. Says so where there is truth of another kind only.
+std::optional<SourcePath> find_truth(const SourcePath& mav0) {
+  for (const char* folder : kTruthFolders)
+    if (const SourcePath file = mav0 / folder / "data.csv"; file.is_file()) return file;
+  for (const char* folder : kRawTruthFolders)
+    if ((mav0 / folder / "data.csv").is_file())
+      spdlog::warn("{}: holds no poses of the body and is not read as ground truth", (mav0 / folder).string());
+  return std::nullopt;
+}
+
+/// TUM-VI's lens sees more than a half space, which the camera model refuses: the recording is read all the same.
+std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
+  const SourcePath dso = mav0.parent_path() / "dso";
+  return (dso / "camchain.yaml").is_file() ? std::optional(load_calibration(dso)) : std::nullopt;
+} catch (const InputError& error) {
+  spdlog::warn("{}; opened without this calibration", error.what());
+  return std::nullopt;
+}
+
+bool holds_sensors(const SourcePath& folder) {
+  return (folder / "cam0" / "data.csv").is_file() || (folder / "imu0" / "data.csv").is_file();
 }
 
 }  // namespace
 
-std::optional<fs::path> find_mav0(const fs::path& folder) {
+std::optional<SourcePath> find_mav0(const SourcePath& folder) {
   if (holds_sensors(folder)) return folder;
   if (holds_sensors(folder / "mav0")) return folder / "mav0";
+  // TUM-VI's dso folder lists the images of the mav0 beside it.
+  if (folder.name() == "dso" && holds_sensors(folder.parent_path() / "mav0")) return folder.parent_path() / "mav0";
   return std::nullopt;
 }
 
-Recording open_euroc(const fs::path& mav0) {
-  const fs::path full = fs::absolute(mav0 / ".").parent_path();
+Recording open_euroc(const SourcePath& mav0) {
   TextLayout layout;
-  layout.info.name = (full.filename() == "mav0" ? full.parent_path() : full).filename().string();
+  layout.info.name = (mav0.name() == "mav0" ? mav0.parent_path() : mav0).name();
   layout.info.format = "euroc";
   layout.info.pose_frame = "body";
   layout.parse_stamp = parse_nanoseconds;
-  if (fs::exists(mav0 / "cam0" / "data.csv")) layout.frames = FrameFile{"cam0", euroc_images(mav0 / "cam0")};
-  if (fs::exists(mav0 / "imu0" / "data.csv"))
-    layout.imu = {mav0 / "imu0" / "data.csv", "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_euroc_imu};
-  if (const fs::path truth = mav0 / kTruthFolder / "data.csv"; fs::exists(truth))
-    layout.ground_truth = [truth](Repairs& repairs) { return read_ground_truth(truth, repairs); };
+  if ((mav0 / "cam0" / "data.csv").is_file()) layout.frames = FrameFile{"cam0", euroc_images(mav0 / "cam0")};
+  if (const SourcePath imu = mav0 / "imu0" / "data.csv"; imu.is_file())
+    layout.imu = {imu, "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_euroc_imu};
+  if (const auto truth = find_truth(mav0))
+    layout.ground_truth = [file = *truth](Repairs& repairs) { return read_ground_truth(file, repairs); };
 
   Recording recording;
-  if (fs::exists(mav0 / "cam0" / "sensor.yaml")) recording.calibration = load_calibration(mav0);
+  if ((mav0 / "cam0" / "sensor.yaml").is_file()) {
+    recording.calibration = load_calibration(mav0);
+  } else {
+    recording.calibration = tum_vi_calibration(mav0);
+  }
   recording.dataset = std::make_unique<TextDataset>(std::move(layout));
   return recording;
 }

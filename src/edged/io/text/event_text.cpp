@@ -75,7 +75,7 @@ bool parse_event_fields(std::string_view line, Event& event) {
   return true;
 }
 
-EventTextStream::EventTextStream(const std::filesystem::path& file, int width, int height, Repairs& repairs)
+EventTextStream::EventTextStream(const SourcePath& file, int width, int height, Repairs& repairs)
     : blocks_(file), damage_(file.string(), "events", repairs), width_(width), height_(height) {
   EDGED_CHECK(width > 0 && height > 0, "sensor {} x {}", width, height);
 }
@@ -108,6 +108,7 @@ bool EventTextStream::refill() {
   at_end_ = block.empty();
   parse_block(block);
   ready_ = events_.size();
+  if (at_end_ && !blocks_.damage().empty()) damage_.mended(line_, "file cut by damage", blocks_.damage());
   if (at_end_) return true;
   while (ready_ > 0 && events_[ready_ - 1].t >= newest_ - kLateness) --ready_;
   if (events_.size() - ready_ > kMaxHeld) ready_ = events_.size() - 1;  // stamps that stand still must not fill memory

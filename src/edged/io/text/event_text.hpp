@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <vector>
 
 #include "edged/core/types.hpp"
@@ -25,7 +24,7 @@ bool parse_event_fields(std::string_view line, Event& event);
 /// counted.
 class EventTextStream {
  public:
-  EventTextStream(const std::filesystem::path& file, int width, int height, Repairs& repairs);
+  EventTextStream(const SourcePath& file, int width, int height, Repairs& repairs);
 
   /// The next event, or null at the end.
   const Event* peek();

@@ -3,7 +3,6 @@
 // Items with a stamp, one a line, in strictly rising time order whatever the file holds.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,7 +23,7 @@ template <typename T>
 class StampedLines {
  public:
   struct Spec {
-    std::filesystem::path file;
+    SourcePath file;
     std::string subject;  ///< "imu", "frames": begins the kinds of repairs
     std::string layout;   ///< what a line should be, for messages
     LastLine last_line = LastLine::MustEnd;
@@ -80,6 +79,8 @@ class StampedLines {
         damage_.bad(line_, "unreadable line", "not `" + spec_.layout + "` in finite numbers");
       }
     }
+    if (!lines_.damage().empty() && !std::exchange(damage_counted_, true))
+      damage_.mended(line_, "file cut by damage", lines_.damage());
     return std::nullopt;
   }
 
@@ -87,6 +88,7 @@ class StampedLines {
   LineReader lines_;
   LineDamage damage_;
   std::size_t line_ = 0;
+  bool damage_counted_ = false;
   std::optional<T> next_, held_;
   std::optional<Timestamp> taken_;
 };

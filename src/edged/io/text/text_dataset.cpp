@@ -21,18 +21,28 @@ Timestamp next_stamp(std::optional<Stream>& stream) {
 
 }  // namespace
 
+cv::Mat read_gray_image(const SourcePath& file) try {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 28U;
+  const Bytes bytes = file.read(kMostBytes);
+  return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+} catch (const Damage&) {
+  return {};
+} catch (const cv::Exception&) {
+  return {};
+}
+
 TextDataset::TextDataset(TextLayout layout) : layout_(std::move(layout)) {
   open_streams();
   find_ends();
 }
 
 void TextDataset::open_streams() {
-  const auto note_empty = [&](const std::string& subject, const std::filesystem::path& file) {
+  const auto note_empty = [&](const std::string& subject, const SourcePath& file) {
     repairs_.add(subject + ": empty file", file.string() + ": holds nothing readable");
   };
   std::string files;
-  const auto opened = [&](auto& stream, const std::string& subject, const std::filesystem::path& file) {
-    files += (files.empty() ? "" : ", ") + file.filename().string();
+  const auto opened = [&](auto& stream, const std::string& subject, const SourcePath& file) {
+    files += (files.empty() ? "" : ", ") + file.name();
     if (stream->peek()) return true;
     note_empty(subject, file);
     stream.reset();
@@ -82,14 +92,8 @@ std::optional<Frame> TextDataset::load(const FrameEntry& entry) {
     repairs_.add("frames: " + kind, entry.image.string() + ": " + kind);
     return std::nullopt;
   };
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(entry.image, ignored)) return skip("image missing");
-  cv::Mat image;
-  try {
-    image = cv::imread(entry.image.string(), cv::IMREAD_GRAYSCALE);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
+  if (!entry.image.is_file()) return skip("image missing");
+  cv::Mat image = read_gray_image(entry.image);
   if (image.empty()) return skip("image unreadable");
   if (image_width_ == 0) image_width_ = image.cols, image_height_ = image.rows;
   if (image.cols != image_width_ || image.rows != image_height_) return skip("image of another size");

@@ -3,7 +3,6 @@
 // A recording whose sensors are separate text files: merges them by stamp. The formats only differ in its TextLayout.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -15,14 +14,18 @@
 
 namespace edged {
 
+/// 8 bits of grey: colours by their luminance, of 16 bits the upper 8 (TUM-VI). Empty where the file is no image or
+/// damaged. Throws InputError where it cannot be read at all.
+cv::Mat read_gray_image(const SourcePath& file);
+
 /// One line of a list of images.
 struct FrameEntry {
   Timestamp t;
-  std::filesystem::path image;
+  SourcePath image;
 };
 
 struct EventFile {
-  std::filesystem::path file;
+  SourcePath file;
   std::string camera;
   int width = 0, height = 0;
 };

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Files on disk; those of an archive are passed on to it.
+#include "edged/io/source_path.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+
+#include "edged/core/check.hpp"
+#include "edged/io/zip_archive.hpp"
+
+namespace edged {
+namespace fs = std::filesystem;
+namespace {
+
+class DiskSource final : public ByteSource {
+ public:
+  explicit DiskSource(const fs::path& file) : name_(file.string()), file_(std::fopen(name_.c_str(), "rb")) {
+    if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+  }
+
+  std::size_t read(std::span<char> to) override {
+    const std::size_t got = std::fread(to.data(), 1, to.size(), file_.get());
+    if (std::ferror(file_.get())) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
+    return got;
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+
+  std::string name_;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace
+
+SourcePath SourcePath::in_archive(const fs::path& zip) { return {fs::path(), std::make_shared<ZipArchive>(zip)}; }
+
+SourcePath SourcePath::parent_path() const {
+  return {(archive_ ? path_ : fs::absolute(path_)).parent_path(), archive_};
+}
+
+bool SourcePath::is_file() const {
+  std::error_code ignored;
+  return archive_ ? archive_->is_file(path_) : fs::exists(path_, ignored) && !fs::is_directory(path_, ignored);
+}
+
+bool SourcePath::is_folder() const {
+  std::error_code ignored;
+  return archive_ ? archive_->is_folder(path_) : fs::is_directory(path_, ignored);
+}
+
+std::vector<std::string> SourcePath::names() const {
+  if (archive_) return archive_->names(path_);
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string SourcePath::string() const {
+  if (!archive_) return path_.string();
+  return path_.empty() ? archive_->file().string() : (archive_->file() / path_).string();
+}
+
+std::string SourcePath::name() const {
+  if (archive_) return path_.empty() ? archive_->file().stem().string() : path_.filename().string();
+  return fs::absolute(path_ / ".").parent_path().filename().string();  // of ".", too
+}
+
+std::unique_ptr<ByteSource> SourcePath::open() const {
+  return archive_ ? archive_->open(path_) : std::make_unique<DiskSource>(path_);
+}
+
+Bytes SourcePath::read(std::size_t max_bytes) const {
+  constexpr std::size_t kFirstStep = 1 << 16;
+  const std::unique_ptr<ByteSource> source = open();
+  Bytes bytes(kFirstStep);
+  std::size_t filled = 0;
+  while (const std::size_t got = source->read({reinterpret_cast<char*>(bytes.data()) + filled, bytes.size() - filled})) {
+    filled += got;
+    if (filled > max_bytes) throw Damage("is larger than any such file should be");
+    if (filled == bytes.size()) bytes.resize(2 * filled);
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+}  // namespace edged

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// EuRoC folders as other data sets fill them (the real one is in recording_test.cpp).
+#include <gmock/gmock.h>
+
+#include "edged/io/recording.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+constexpr const char* kCamchain = R"(cam0:
+  camera_model: pinhole
+  distortion_model: equidistant
+  distortion_coeffs: [0.0034, 0.0007, -0.0020, 0.0002]
+  intrinsics: [290.97, 290.97, 254.93, 256.89]
+  resolution: [512, 512]
+  T_cam_imu:
+  - [-0.99952504, 0.00750192, -0.02989013, 0.04557484]
+  - [0.02961534, -0.03439736, -0.99896935, -0.07116180]
+  - [-0.00852233, -0.99938008, 0.03415885, -0.04468125]
+  - [0.0, 0.0, 0.0, 1.0]
+)";
+
+/// What TUM-VI has in a folder: no sensor.yaml, truth in mocap0, calibration in dso.
+void write_tum_vi(const TempFolder& folder) {
+  folder.write("mav0/cam0/data.csv",
+               "#timestamp [ns],filename\n1520530308199447626,1520530308199447626.png\n"
+               "1520530308249448626,1520530308249448626.png\n");
+  for (const char* name : {"1520530308199447626", "1520530308249448626"}) {
+    cv::Mat image(512, 512, CV_16UC1, cv::Scalar(0xab12));
+    std::filesystem::create_directories(folder.path() / "mav0/cam0/data");
+    cv::imwrite((folder.path() / "mav0/cam0/data" / (std::string(name) + ".png")).string(), image);
+  }
+  folder.write("mav0/imu0/data.csv",
+               "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y,w_RS_S_z,a_RS_S_x [m s^-2],a_RS_S_y,a_RS_S_z\n"
+               "1520530308198447626,0.1,0.2,0.3,9.5,-1.5,-2\n1520530308203447626,0.1,0.2,0.3,9.5,-1.5,-2\n");
+  folder.write("mav0/mocap0/data.csv",
+               "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+               "1520530308190447626,1,2,3,1,0,0,0\n1520530308210447626,1,2,3.5,0.6,0.8,0,0\n");
+  folder.write("dso/camchain.yaml", kCamchain);
+  folder.write("dso/imu_config.yaml",
+               "accelerometer_noise_density: 0.0028\naccelerometer_random_walk: 0.00086\n"
+               "gyroscope_noise_density: 0.00016\ngyroscope_random_walk: 0.000022\nupdate_rate: 200.0\n");
+}
+
+TEST(TumVi, OpensWithTruthCalibrationAndSixteenBitImages) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  for (const char* given : {"", "mav0", "dso"}) {
+    const Recording recording = open_recording(folder.path() / given);
+    ASSERT_TRUE(recording.calibration) << given;
+    EXPECT_EQ(recording.calibration->rig.cameras.at(0).model.width(), 512);
+    EXPECT_TRUE(recording.calibration->has_imu_noise);
+    const Contents c = read_all(*recording.dataset);
+    ASSERT_EQ(c.frames.size(), 2u);
+    EXPECT_EQ(c.frames[0].image.type(), CV_8UC1);
+    EXPECT_EQ(c.frames[0].image.at<std::uint8_t>(100, 100), 0xab);  // the upper half of 16 bits
+    ASSERT_EQ(c.imu.size(), 2u);
+    EXPECT_EQ(c.imu[0].gyro_B, Eigen::Vector3d(0.1, 0.2, 0.3));
+    const auto truth = recording.dataset->ground_truth();
+    ASSERT_TRUE(truth);
+    EXPECT_EQ(truth->frame, "body");
+    ASSERT_EQ(truth->trajectory.size(), 2u);
+    EXPECT_NEAR(truth->trajectory[1].T.rotation().x(), 0.8, 1e-12);
+    EXPECT_TRUE(recording.dataset->repairs().empty());
+  }
+}
+
+TEST(TumVi, ACalibrationThatIsRefusedDoesNotCloseTheRecording) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  std::string wide = kCamchain;
+  wide.replace(wide.find("290.97, 290.97"), 14, "190.97, 190.97");  // TUM-VI's own: the corners lie beyond 90 degrees
+  folder.write("dso/camchain.yaml", wide);
+  const Recording recording = open_recording(folder.path());
+  EXPECT_FALSE(recording.calibration);
+  EXPECT_EQ(read_all(*recording.dataset).frames.size(), 2u);
+}
+
+TEST(TumVi, PositionsAloneAreNoGroundTruth) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  std::filesystem::rename(folder.path() / "mav0/mocap0", folder.path() / "mav0/leica0");
+  EXPECT_FALSE(open_recording(folder.path()).dataset->ground_truth());
+}
+
+}  // namespace
+}  // namespace edged
