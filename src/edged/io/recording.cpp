@@ -55,8 +55,8 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   if (is_zip(head)) return open_archive(file, rig);
   if (is_aedat4(head)) return open_aedat4(file, rig, options.geometry);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT and AEDAT4. Of a recording "
-      "in several files give the folder (unpack an archive first)",
+      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4 and zip. Of a "
+      "recording in several files give the folder (unpack an archive other than zip first)",
       file.string());
 }
 

@@ -34,7 +34,8 @@ std::optional<cv::Size> parse_geometry(std::string_view text);
 /// Opens a folder or a file, its format found by content:
 /// - Event-Camera Dataset text (events.txt, images.txt, imu.txt, groundtruth.txt, calib.txt; one sensor is enough).
 ///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours there counts.
-/// - EuRoC ASL (mav0 or its parent): camera "cam0", ground truth of "body".
+/// - EuRoC ASL and TUM-VI (mav0 or its parent): camera "cam0", ground truth of "body".
+/// - A zip archive of one of these.
 /// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
 /// - AEDAT4: cameras "events" and "frames".
 /// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body".
