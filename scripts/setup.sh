@@ -9,6 +9,7 @@ packages=(
   libopencv-dev libeigen3-dev libceres-dev libopengv-dev
   zlib1g-dev libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
+  libhdf5-dev libblosc-dev liblzf-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 

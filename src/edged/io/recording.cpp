@@ -7,6 +7,8 @@
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/formats.hpp"
+#include "edged/io/hdf5/h5.hpp"
+#include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
 #include "edged/io/zip_archive.hpp"
@@ -21,11 +23,13 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig) {
   return std::nullopt;
 }
 
-Recording open_folder(const std::filesystem::path& folder, const Rig* rig) {
+Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
   if (auto recording = try_folder(folder, rig)) return std::move(*recording);
+  if (const auto file = find_hdf5_events(folder)) return open_hdf5(*file, rig, options.geometry);
   throw InputError::format(
       "{}: no recording found; looked for events.txt, images.txt or imu.txt (Event-Camera Dataset), for "
-      "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC) and for .db3 or .mcap files (ROS 2)",
+      "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC), for .h5 or .hdf5 files, and for .db3 "
+      "or .mcap files (ROS 2)",
       folder.string());
 }
 
@@ -53,9 +57,10 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   const Bytes head = BinaryFile(file).read(0, kHeadBytes);
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
   if (is_zip(head)) return open_archive(file, rig);
+  if (is_hdf5(head)) return open_hdf5(file, rig, options.geometry);
   if (is_aedat4(head)) return open_aedat4(file, rig, options.geometry);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4 and zip. Of a "
+      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5 and zip. Of a "
       "recording in several files give the folder (unpack an archive other than zip first)",
       file.string());
 }
@@ -67,7 +72,7 @@ Recording open_recording(const std::filesystem::path& path, const Rig* rig, cons
   if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
   if (is_bag(path))
     return {std::make_unique<RosDataset>(path, options.topics, rig, options.geometry), std::nullopt};
-  return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig) : open_file(path, rig, options);
+  return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig, options) : open_file(path, rig, options);
 }
 
 }  // namespace edged

@@ -62,6 +62,25 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
   return d;
 }
 
+/// decimals: of the unit, down to the nanosecond.
+std::optional<Timestamp> parse_stamp(std::string_view field, long decimals) {
+  const std::optional<Decimal> d = parse_decimal(field);
+  if (!d) return std::nullopt;
+  const long whole = d->point + decimals;  // digits of the number of nanoseconds
+  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
+  if (whole > 19) return std::nullopt;
+  std::uint64_t ns = 0;
+  for (long i = 0; i < whole; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
+  }
+  const auto next = static_cast<std::size_t>(whole);
+  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
+  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
+  const auto value = static_cast<std::int64_t>(ns);
+  return Timestamp(Duration(d->negative ? -value : value));
+}
+
 }  // namespace
 
 BlockReader::BlockReader(const SourcePath& file, std::size_t block_bytes)
@@ -111,6 +130,11 @@ std::optional<TextLine> LineReader::next() {
   }
 }
 
+bool is_heading(std::string_view line) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return !line.empty() && (letter(line[0]) || line[0] == '"');
+}
+
 std::string_view FieldReader::next() {
   rest_ = rest();
   const std::size_t end = rest_.find_first_of(" \t\r,");
@@ -131,23 +155,8 @@ std::optional<double> parse_number(std::string_view field) {
   return value;
 }
 
-std::optional<Timestamp> parse_seconds(std::string_view field) {
-  const std::optional<Decimal> d = parse_decimal(field);
-  if (!d) return std::nullopt;
-  const long whole = d->point + 9;  // digits of the number of nanoseconds
-  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
-  if (whole > 19) return std::nullopt;
-  std::uint64_t ns = 0;
-  for (long i = 0; i < whole; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
-  }
-  const auto next = static_cast<std::size_t>(whole);
-  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
-  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
-  const auto value = static_cast<std::int64_t>(ns);
-  return Timestamp(Duration(d->negative ? -value : value));
-}
+std::optional<Timestamp> parse_seconds(std::string_view field) { return parse_stamp(field, 9); }
+std::optional<Timestamp> parse_microseconds(std::string_view field) { return parse_stamp(field, 3); }
 
 std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
   std::int64_t ns = 0;

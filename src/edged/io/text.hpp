@@ -64,6 +64,9 @@ class LineReader {
   std::size_t number_ = 0;
 };
 
+/// Words where numbers are wanted: the names of the columns of a csv.
+bool is_heading(std::string_view line);
+
 /// Fields of a line, separated by blanks, tabs, carriage returns or single commas.
 class FieldReader {
  public:
@@ -97,6 +100,9 @@ bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
 /// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a
 /// number or does not fit.
 std::optional<Timestamp> parse_seconds(std::string_view field);
+
+/// Decimal microseconds, likewise.
+std::optional<Timestamp> parse_microseconds(std::string_view field);
 
 /// Whole nanoseconds.
 std::optional<Timestamp> parse_nanoseconds(std::string_view field);

@@ -32,9 +32,10 @@ ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quatern
   return {StampedPose{t, SE3(q, p)}, ""};
 }
 
+template <auto parse_stamp>
 ParsedLine parse_tum(std::string_view line, std::size_t) {
   FieldReader fields(line);
-  const auto t = parse_seconds(fields.next());
+  const auto t = parse_stamp(fields.next());
   std::array<double, 7> v;
   if (!t || !read_numbers(fields, v) || !fields.rest().empty())
     return {std::nullopt, "not `t tx ty tz qx qy qz qw` in finite numbers"};
@@ -88,7 +89,11 @@ Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandl
 }  // namespace
 
 Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_tum, on_damage);
+  return read_poses(file, parse_tum<parse_seconds>, on_damage);
+}
+
+Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage) {
+  return read_poses(file, parse_tum<parse_microseconds>, on_damage);
 }
 
 Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage) {

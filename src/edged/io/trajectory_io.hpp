@@ -23,6 +23,9 @@ using DamageHandler = std::function<void(std::size_t line, const std::string& de
 /// (logged).
 Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage = {});
 
+/// The same with stamps in microseconds (TUM-VIE).
+Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage = {});
+
 /// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Damage as read_tum.
 Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage = {});
 

@@ -72,6 +72,8 @@ class StampedLines {
     while (const auto line = lines_.next()) {
       line_ = line->number;
       auto item = spec_.parse(line->text);
+      if (!item && !parsed_ && is_heading(line->text)) continue;
+      parsed_ = parsed_ || item;
       if (item && (line->terminated || spec_.last_line == LastLine::MayLackEnd)) return item;
       if (!line->terminated) {
         damage_.mended(line_, "last line cut", "the file ends within a line, which is left out");
@@ -89,6 +91,7 @@ class StampedLines {
   LineDamage damage_;
   std::size_t line_ = 0;
   bool damage_counted_ = false;
+  bool parsed_ = false;  ///< a line so far
   std::optional<T> next_, held_;
   std::optional<Timestamp> taken_;
 };

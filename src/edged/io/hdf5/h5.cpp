@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Rows by hyperslabs, with the sizes checked that a damaged file could state.
+#include "edged/io/hdf5/h5.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "edged/core/check.hpp"
+#include "edged/io/hdf5/h5_filters.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;
+constexpr std::size_t kUsualCacheBytes = std::size_t{1} << 20U;  // of the library, for each data set
+constexpr std::uint64_t kMostRatio = 20'000;                     // no data are packed better than that
+
+/// Bytes of a chunk as it was before it was packed; 0 where there are no chunks.
+std::size_t chunk_bytes_of(hid_t data) {
+  const H5Handle creation(H5Dget_create_plist(data), H5Pclose);
+  std::array<hsize_t, H5S_MAX_RANK> sides;
+  if (!creation || H5Pget_layout(creation.get()) != H5D_CHUNKED) return 0;
+  const int rank = H5Pget_chunk(creation.get(), static_cast<int>(sides.size()), sides.data());
+  const H5Handle type(H5Dget_type(data), H5Tclose);
+  if (rank < 0 || !type) throw Damage("a data set without a layout");
+  std::uint64_t bytes = H5Tget_size(type.get());
+  for (int i = 0; i < rank; ++i) {
+    if (sides[i] > kMostChunkBytes / std::max<std::uint64_t>(bytes, 1)) throw Damage("chunks beyond all bounds");
+    bytes *= sides[i];
+  }
+  return bytes;
+}
+
+/// Opens for reading, past the check of the end if need be: then `cut` becomes true.
+H5Handle open_for_reading(const std::filesystem::path& file, bool& cut) {
+  const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access.get(), false, true);  // others may have it open, or the disk may be read-only
+  H5Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (opened) return opened;
+  // What the library's own tool h5clear sets to mend files.
+  const hbool_t skip = true;
+  if (H5Pset(access.get(), "skip_eof_check", &skip) < 0) return opened;
+  cut = true;
+  return H5Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+}
+
+}  // namespace
+
+void prepare_h5() {
+  static const bool prepared = [] {
+    H5open();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    register_h5_filters();
+    return true;
+  }();
+  std::ignore = prepared;
+}
+
+H5Array::H5Array(H5Handle data, std::string path) : data_(std::move(data)), path_(std::move(path)) {
+  const H5Handle type(H5Dget_type(data_.get()), H5Tclose), space(H5Dget_space(data_.get()), H5Sclose);
+  const int rank = space ? H5Sget_simple_extent_ndims(space.get()) : -1;
+  if (!type || rank < 0) throw Damage("a data set without type or shape");
+  type_ = H5Tget_class(type.get());
+  shape_.resize(static_cast<std::size_t>(rank));
+  static_assert(sizeof(hsize_t) == sizeof(std::uint64_t));
+  std::vector<hsize_t> sides(shape_.size());
+  H5Sget_simple_extent_dims(space.get(), sides.data(), nullptr);
+  std::copy(sides.begin(), sides.end(), shape_.begin());
+  const std::size_t value_bytes = std::max<std::size_t>(H5Tget_size(type.get()), 1);
+  for (std::size_t i = 1; i < shape_.size(); ++i) {
+    if (shape_[i] > kMostChunkBytes / value_bytes / std::max<std::size_t>(columns_, 1))
+      throw Damage("rows beyond all bounds");
+    columns_ *= shape_[i];
+  }
+  const std::uint64_t held = H5Dget_storage_size(data_.get());
+  if (rows() / kMostRatio > (held + kMostChunkBytes) / std::max<std::size_t>(columns_ * value_bytes, 1))
+    throw Damage("says to hold far more than there is");
+  chunk_bytes_ = chunk_bytes_of(data_.get());
+}
+
+bool H5Array::has_fields(std::initializer_list<const char*> names) const {
+  const H5Handle type(H5Dget_type(data_.get()), H5Tclose);
+  return std::ranges::all_of(names, [&](const char* name) { return H5Tget_member_index(type.get(), name) >= 0; });
+}
+
+std::size_t H5Array::checked_size(std::uint64_t first, std::uint64_t count) const {
+  if (first > rows() || count > rows() - first) throw Damage(path_ + " ends too early");
+  if (columns_ > 0 && count > kMostChunkBytes / columns_) throw Damage(path_ + " has rows beyond all bounds");
+  return count * columns_;
+}
+
+void H5Array::read_as(hid_t memory_type, std::uint64_t first, std::uint64_t count, void* to) const {
+  const std::size_t size = checked_size(first, count);
+  if (size == 0) return;
+  if (type_ != H5T_INTEGER && type_ != H5T_FLOAT && type_ != H5T_ENUM && type_ != H5T_COMPOUND)
+    throw Damage(path_ + " holds no numbers");
+  const H5ChunkScope scope(chunk_bytes_);
+  const H5Handle space(H5Dget_space(data_.get()), H5Sclose);
+  const hsize_t values = size;
+  const H5Handle memory(H5Screate_simple(1, &values, nullptr), H5Sclose);
+  if (!shape_.empty()) {
+    std::vector<hsize_t> start(shape_.size(), 0), extent(shape_.begin(), shape_.end());
+    start.front() = first;
+    extent.front() = count;
+    H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+  }
+  if (H5Dread(data_.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, to) < 0)
+    throw Damage(fmt::format("{} cannot be read at rows {} to {}", path_, first, first + count));
+}
+
+H5File::H5File(const std::filesystem::path& file) : path_(file) {
+  prepare_h5();
+  file_ = open_for_reading(file, cut_);
+  if (!file_)
+    throw InputError::format("{}: the HDF5 file cannot be opened: it is damaged or was not closed; copy it again, or try "
+                             "`h5clear -s -i` of hdf5-tools on a copy",
+                             file.string());
+}
+
+H5Handle H5File::open_data(const std::string& path, std::size_t cache_bytes) const {
+  constexpr std::size_t kSlots = 521;
+  const H5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access.get(), kSlots, cache_bytes, 1.0);
+  return {H5Dopen2(file_.get(), path.c_str(), access.get()), H5Dclose};
+}
+
+std::optional<H5Array> H5File::find(const std::string& path) const try {
+  H5Handle data = open_data(path, kUsualCacheBytes);
+  if (!data) return std::nullopt;
+  // A chunk that does not fit is unpacked again for each block of it.
+  const std::size_t chunk_bytes = chunk_bytes_of(data.get());
+  if (chunk_bytes > kUsualCacheBytes) {
+    data = H5Handle();
+    data = open_data(path, chunk_bytes);
+  }
+  return H5Array(std::move(data), path);
+} catch (const Damage&) {
+  return std::nullopt;
+}
+
+bool H5File::has(const std::string& path) const {
+  return bool(H5Handle(H5Oopen(file_.get(), path.c_str(), H5P_DEFAULT), H5Oclose));
+}
+
+std::optional<std::string> H5File::text_attribute(const std::string& object, const std::string& name) const {
+  const H5Handle attribute(
+      H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const H5Handle type(attribute ? H5Aget_type(attribute.get()) : H5I_INVALID_HID, H5Tclose);
+  if (!type || H5Tget_class(type.get()) != H5T_STRING) return std::nullopt;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* text = nullptr;
+    if (H5Aread(attribute.get(), type.get(), &text) < 0 || !text) return std::nullopt;
+    std::string copy = text;
+    H5free_memory(text);
+    return copy;
+  }
+  constexpr std::size_t kMost = 65536;
+  const std::size_t bytes = H5Aget_storage_size(attribute.get());
+  if (bytes == 0 || bytes > kMost) return std::nullopt;
+  std::string text(bytes, '\0');
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) return std::nullopt;
+  return std::string(text.c_str());
+}
+
+std::optional<std::int64_t> H5File::number_attribute(const std::string& object, const std::string& name) const {
+  const H5Handle attribute(
+      H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const H5Handle space(attribute ? H5Aget_space(attribute.get()) : H5I_INVALID_HID, H5Sclose);
+  std::int64_t number = 0;
+  if (!space || H5Sget_simple_extent_npoints(space.get()) != 1) return std::nullopt;
+  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &number) < 0) return std::nullopt;
+  return number;
+}
+
+std::vector<std::string> H5File::list(std::size_t most) const {
+  struct Visit {
+    const H5File& file;
+    std::size_t most;
+    std::vector<std::string> found;
+  } visit{*this, most, {}};
+  const auto note = [](hid_t, const char* name, const H5L_info_t*, void* context) -> herr_t {
+    auto& v = *static_cast<Visit*>(context);
+    const auto array = v.file.find(std::string("/") + name);
+    if (!array) return 0;
+    v.found.push_back(fmt::format("{} ({})", array->path(), fmt::join(array->shape(), ", ")));
+    return v.found.size() == v.most ? 1 : 0;
+  };
+  H5Lvisit(file_.get(), H5_INDEX_NAME, H5_ITER_INC, note, &visit);
+  return visit.found;
+}
+
+bool is_hdf5(ByteSpan head) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  // Behind a block of the user's, if any, whose size is a power of two from 512 on.
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  if (text.starts_with(kSignature)) return true;
+  for (std::size_t at = 512; at < text.size(); at *= 2)
+    if (text.substr(at).starts_with(kSignature)) return true;
+  return false;
+}
+
+}  // namespace edged

@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One reader for all layouts: sources of events, frames and IMU samples, of which the one that lags is read on.
+#include "edged/io/hdf5/hdf5_dataset.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <opencv2/imgproc.hpp>
+
+#include "edged/core/check.hpp"
+#include "edged/io/formats.hpp"
+#include "edged/io/hdf5/h5_truth.hpp"
+#include "edged/io/hdf5/layouts.hpp"
+#include "edged/io/hdf5/side_files.hpp"
+#include "edged/io/streamed_dataset.hpp"
+
+namespace edged {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kEventsAtOnce = 65536, kSamplesAtOnce = 1024;
+
+/// Images of a file with their stamps.
+struct H5Images {
+  H5Array pixels;
+  H5Stamps stamps;
+};
+
+/// IMU samples of a file: angular velocity and specific force, both in the first where there is no second.
+struct H5Imu {
+  H5Array first;
+  std::optional<H5Array> second;
+  H5Stamps stamps;
+};
+
+std::optional<H5Array> find(const H5File& file, std::string_view path) {
+  return path.empty() ? std::nullopt : file.find(std::string(path));
+}
+
+std::optional<H5Images> find_images(const H5File& file, const Hdf5Layout& layout) {
+  auto pixels = find(file, layout.images), stamps = find(file, layout.image_stamps);
+  if (!pixels || !stamps || pixels->shape().size() < 3 || pixels->shape().size() > 4) return std::nullopt;
+  return H5Images{std::move(*pixels), H5Stamps(std::move(*stamps))};
+}
+
+std::optional<H5Imu> find_imu(const H5File& file, const Hdf5Layout& layout) {
+  auto gyro = find(file, layout.gyro), accel = find(file, layout.accel), stamps = find(file, layout.imu_stamps);
+  if (!gyro || !stamps || gyro->columns() != (accel ? 3U : 6U) || (accel && accel->columns() != 3)) return std::nullopt;
+  return H5Imu{std::move(*gyro), std::move(accel), H5Stamps(std::move(*stamps))};
+}
+
+cv::Mat h5_image(const H5Array& pixels, std::uint64_t row, bool cut) {
+  const auto& shape = pixels.shape();
+  const int channels = shape.size() == 4 ? static_cast<int>(shape[3]) : 1;
+  if (shape[1] > 16384 || shape[2] > 16384 || (channels != 1 && channels != 3)) throw Damage("images that cannot be");
+  auto bytes = pixels.read<std::uint8_t>(row, 1);
+  if (cut && std::ranges::all_of(bytes, [](std::uint8_t b) { return b == 0; }))
+    throw Damage("nothing behind the end of a cut file");
+  const cv::Mat image(static_cast<int>(shape[1]), static_cast<int>(shape[2]), CV_8UC(channels), bytes.data());
+  cv::Mat grey;
+  if (channels == 1) return image.clone();
+  cv::cvtColor(image, grey, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+/// Width and height as the file says them.
+std::optional<cv::Size> stated_sensor(const H5File& file, const Hdf5Layout& layout) {
+  const auto pair = [](double width, double height) -> std::optional<cv::Size> {
+    if (!(width >= 1 && width <= 16384 && height >= 1 && height <= 16384)) return std::nullopt;
+    return cv::Size(static_cast<int>(width), static_cast<int>(height));
+  };
+  for (const std::string& object : {std::string(layout.events), std::string("/")}) {
+    if (object.empty()) continue;
+    const auto width = file.number_attribute(object, "width"), height = file.number_attribute(object, "height");
+    if (width && height) return pair(static_cast<double>(*width), static_cast<double>(*height));
+    if (const auto text = file.text_attribute(object, "geometry")) return parse_geometry(*text);
+  }
+  const auto sensor = find(file, layout.sensor);
+  if (!sensor || sensor->rows() != 2 || sensor->columns() != 1) return std::nullopt;
+  try {
+    const auto size = sensor->read<double>(0, 2);
+    return pair(size[0], size[1]);
+  } catch (const Damage&) {
+    return std::nullopt;
+  }
+}
+
+class Hdf5Dataset final : public StreamedDataset {
+ public:
+  Hdf5Dataset(const H5File& file, const Hdf5Layout& layout, H5Events events, SideFiles side, cv::Size sensor)
+      : StreamedDataset(file.path(), side.set.empty() ? std::string(layout.name) : side.set), side_(std::move(side)) {
+    info_.end = events.last();
+    if (!side_.ground_truth) side_.ground_truth = find_h5_truth(file, layout);
+    set_sensor(sensor);
+    if (events.ragged())
+      repairs_.add("events: arrays of different lengths", name_ + ": x, y, t and p differ in length; the shortest counts");
+    if (file.cut()) repairs_.add("file: cut", name_ + ": the file ends too early; what it has is read");
+    Merger::Streams streams{.events = true};
+    add_events(std::move(events));
+    if (auto images = find_images(file, layout)) {
+      streams.frames = true;
+      add_images(std::move(*images), file.cut());
+    } else if (side_.frames) {
+      streams.frames = true;
+      add_image_files(*side_.frames);
+    }
+    if (auto imu = find_imu(file, layout)) {
+      streams.imu = true;
+      add_imu(std::move(*imu));
+    } else if (side_.imu) {
+      streams.imu = true;
+      add_imu_lines(*side_.imu);
+    }
+    begin(streams);
+  }
+
+  std::optional<GroundTruth> ground_truth() const override {
+    Repairs logged;
+    return side_.ground_truth ? side_.ground_truth(logged) : std::nullopt;
+  }
+
+ private:
+  /// Reads a part of one sensor's stream, sets the stamp it has come to; false at its end.
+  struct Source {
+    std::function<bool(Timestamp&)> read;
+    Timestamp reached = Timestamp::min();
+  };
+
+  bool read_on() override {
+    const auto lagging = std::ranges::min_element(sources_, {}, &Source::reached);
+    if (lagging == sources_.end()) return false;
+    if (!lagging->read(lagging->reached)) sources_.erase(lagging);
+    return true;
+  }
+
+  /// Calls read(first, count); where that throws Damage, again with both halves, so that no more than `smallest` rows
+  /// are left out around what is damaged.
+  template <typename Read>
+  void read_parts(std::uint64_t first, std::uint64_t count, std::uint64_t smallest, const char* subject,
+                  const Read& read) {
+    try {
+      read(first, count);
+    } catch (const Damage& damage) {
+      if (count > smallest) {
+        read_parts(first, count / 2, smallest, subject, read);
+        read_parts(first + count / 2, count - count / 2, smallest, subject, read);
+      } else {
+        repairs_.add(std::string(subject) + ": part unreadable", fmt::format("{}: {}", name_, damage.what()));
+      }
+    }
+  }
+
+  void no_stamp(const char* subject) {
+    repairs_.add(std::string(subject) + ": stamp that cannot be", fmt::format("{}: a stamp of the {}", name_, subject));
+  }
+
+  void add_events(H5Events events) {
+    constexpr std::uint64_t kSmallestPart = 1024;
+    const auto shared = std::make_shared<H5Events>(std::move(events));
+    sources_.push_back({[this, shared, at = std::uint64_t{0}](Timestamp& reached) mutable {
+      if (at == shared->rows()) return false;
+      const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
+      read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
+        std::vector<Event> read = shared->read(first, n);
+        for (std::size_t bad = std::erase_if(read, [](const Event& e) { return e.t == Timestamp::min(); }); bad > 0; --bad)
+          no_stamp("events");
+        if (!read.empty()) reached = std::max(reached, read.back().t);
+        push_events(std::move(read));
+      });
+      at += count;
+      return true;
+    }});
+  }
+
+  void add_images(H5Images images, bool cut) {
+    const auto shared = std::make_shared<H5Images>(std::move(images));
+    const std::uint64_t rows = std::min(shared->pixels.rows(), shared->stamps.rows());
+    sources_.push_back({[this, shared, rows, cut, at = std::uint64_t{0}](Timestamp& reached) mutable {
+      if (at == rows) return false;
+      read_parts(at++, 1, 1, "frames", [&](std::uint64_t row, std::uint64_t) {
+        const Timestamp t = shared->stamps.read(row, 1).front();
+        if (t == Timestamp::min()) return no_stamp("frames");
+        reached = std::max(reached, t);
+        push_frame(t, h5_image(shared->pixels, row, cut));
+      });
+      return true;
+    }});
+  }
+
+  void add_image_files(const StampedLines<FrameEntry>::Spec& spec) {
+    const auto lines = std::make_shared<StampedLines<FrameEntry>>(spec, repairs_);
+    sources_.push_back({[this, lines](Timestamp& reached) {
+      if (!lines->peek()) return false;
+      const FrameEntry entry = lines->pop();
+      reached = entry.t;
+      try {
+        if (!entry.image.is_file()) throw Damage("image missing");
+        cv::Mat image = read_gray_image(entry.image);
+        if (image.empty()) throw Damage("image unreadable");
+        push_frame(entry.t, std::move(image));
+      } catch (const Damage& damage) {
+        repairs_.add(fmt::format("frames: {}", damage.what()), entry.image.string() + ": " + damage.what());
+      }
+      return true;
+    }});
+  }
+
+  void add_imu(H5Imu imu) {
+    constexpr std::uint64_t kSmallestPart = 16;
+    const auto shared = std::make_shared<H5Imu>(std::move(imu));
+    std::uint64_t rows = std::min(shared->first.rows(), shared->stamps.rows());
+    if (shared->second) rows = std::min(rows, shared->second->rows());
+    const bool accel_first = !shared->second && is_accel_first(shared->first);
+    sources_.push_back({[this, shared, rows, accel_first, at = std::uint64_t{0}](Timestamp& reached) mutable {
+      if (at == rows) return false;
+      const std::uint64_t count = std::min(kSamplesAtOnce, rows - at);
+      read_parts(at, count, kSmallestPart, "imu", [&](std::uint64_t first, std::uint64_t n) {
+        for (const ImuSample& sample : read_samples(*shared, accel_first, first, n)) {
+          if (sample.t == Timestamp::min() || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) {
+            no_stamp("imu");
+            continue;
+          }
+          reached = std::max(reached, sample.t);
+          push_imu(sample);
+        }
+      });
+      at += count;
+      return true;
+    }});
+  }
+
+  /// Of rows with both, whose order no document states: gravity tells which three are the specific force.
+  static bool is_accel_first(const H5Array& rows) try {
+    constexpr double kGravity = 9.81;
+    const std::uint64_t count = std::min(kSamplesAtOnce, rows.rows());
+    const auto values = rows.read<double>(0, count);
+    double first = 0, second = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      first += Eigen::Vector3d(&values[6 * i]).norm();
+      second += Eigen::Vector3d(&values[6 * i + 3]).norm();
+    }
+    const auto n = static_cast<double>(std::max<std::uint64_t>(count, 1));
+    return std::abs(first / n - kGravity) < std::abs(second / n - kGravity);
+  } catch (const Damage&) {
+    return true;
+  }
+
+  static std::vector<ImuSample> read_samples(const H5Imu& imu, bool accel_first, std::uint64_t first, std::uint64_t n) {
+    const auto stamps = imu.stamps.read(first, n);
+    const auto a = imu.first.read<double>(first, n);
+    const auto b = imu.second ? imu.second->read<double>(first, n) : std::vector<double>();
+    std::vector<ImuSample> samples(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector3d one(imu.second ? &a[3 * i] : &a[6 * i]), other(imu.second ? &b[3 * i] : &a[6 * i + 3]);
+      samples[i] = accel_first ? ImuSample{stamps[i], other, one} : ImuSample{stamps[i], one, other};
+    }
+    return samples;
+  }
+
+  void add_imu_lines(const StampedLines<ImuSample>::Spec& spec) {
+    const auto lines = std::make_shared<StampedLines<ImuSample>>(spec, repairs_);
+    sources_.push_back({[this, lines](Timestamp& reached) {
+      if (!lines->peek()) return false;
+      for (std::uint64_t i = 0; i < 64 && lines->peek(); ++i) {
+        const ImuSample sample = lines->pop();
+        reached = sample.t;
+        push_imu(sample);
+      }
+      return true;
+    }});
+  }
+
+  SideFiles side_;
+  std::vector<Source> sources_;
+};
+
+[[noreturn]] void refuse_layout(const H5File& file) {
+  constexpr std::size_t kMostListed = 20;
+  std::string known;
+  for (const Hdf5Layout& layout : hdf5_layouts())
+    known += fmt::format("{}{}{} ({})", known.empty() ? "" : ", ", layout.events, layout.events.empty() ? "/x, y, t, p" : "",
+                         layout.name);
+  const auto arrays = file.list(kMostListed + 1);
+  std::string held;
+  for (std::size_t i = 0; i < std::min(arrays.size(), kMostListed); ++i) held += (i > 0 ? ", " : "") + arrays[i];
+  throw InputError::format("{}: no events in a layout that is known; looked for {}; the file holds {}{}",
+                           file.path().string(), known, held.empty() ? "no data sets" : held,
+                           arrays.size() > kMostListed ? " and more" : "");
+}
+
+bool holds_events(const fs::path& file) try {
+  const H5File h5(file);
+  return std::ranges::any_of(hdf5_layouts(), [&](const Hdf5Layout& l) { return H5Events::find(h5, l).has_value(); });
+} catch (const InputError&) {
+  return false;
+}
+
+}  // namespace
+
+std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
+  constexpr int kDeepest = 3;
+  std::vector<fs::path> all, with_events;
+  std::error_code ignored;
+  for (auto it = fs::recursive_directory_iterator(folder, ignored); it != fs::recursive_directory_iterator();
+       it.increment(ignored)) {
+    if (it.depth() >= kDeepest) it.disable_recursion_pending();
+    const std::string extension = it->path().extension().string();
+    if ((extension == ".h5" || extension == ".hdf5") && it->is_regular_file(ignored)) all.push_back(it->path());
+  }
+  if (all.empty()) return std::nullopt;
+  std::ranges::sort(all);
+  std::ranges::copy_if(all, std::back_inserter(with_events), holds_events);
+  const auto not_left = [&](const fs::path& p) { return fs::relative(p, folder).string().find("left") == std::string::npos; };
+  if (with_events.size() > 1) {
+    std::vector<fs::path> left = with_events;
+    std::erase_if(left, not_left);
+    if (left.size() == 1) return left.front();
+    std::string names;
+    for (const fs::path& p : with_events) names += (names.empty() ? "" : ", ") + p.string();
+    throw InputError::format("{}: events in several files: give one of {}", folder.string(), names);
+  }
+  // A file without events is refused where it is opened, with what it holds.
+  return with_events.empty() ? all.front() : with_events.front();
+}
+
+Recording open_hdf5(const fs::path& path, const Rig* rig, std::optional<cv::Size> geometry) {
+  const H5File file(path);
+  for (const Hdf5Layout& layout : hdf5_layouts()) {
+    auto events = H5Events::find(file, layout);
+    if (!events) continue;
+    SideFiles side = find_side_files(path, layout.name);
+    std::optional<cv::Size> said = geometry ? geometry : stated_sensor(file, layout);
+    if (!said) said = side.sensor;
+    if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);
+    const cv::Size sensor = event_sensor_size(path, said, rig);
+    return {std::make_unique<Hdf5Dataset>(file, layout, std::move(*events), std::move(side), sensor), std::nullopt};
+  }
+  refuse_layout(file);
+}
+
+}  // namespace edged

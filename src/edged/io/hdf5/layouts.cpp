@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The table of layouts, and events from each kind of them.
+#include "edged/io/hdf5/layouts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "edged/io/hdf5/ecf.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::array kLayouts = {
+    Hdf5Layout{.name = "m3ed",
+               .events = "/prophesee/left",
+               .images = "/ovc/left/data",
+               .image_stamps = "/ovc/ts",
+               .gyro = "/ovc/imu/omega",
+               .accel = "/ovc/imu/accel",
+               .imu_stamps = "/ovc/imu/ts",
+               .sensor = "/prophesee/left/calib/resolution",
+               .width = 1280,
+               .height = 720},
+    Hdf5Layout{.name = "mvsec",
+               .events = "/davis/left/events",
+               .images = "/davis/left/image_raw",
+               .image_stamps = "/davis/left/image_raw_ts",
+               .gyro = "/davis/left/imu",
+               .imu_stamps = "/davis/left/imu_ts",
+               .width = 346,
+               .height = 260},
+    Hdf5Layout{.name = "metavision", .events = "/CD/events"},
+    // DSEC, VECtor and TUM-VIE, which differ in the files beside; frames, IMU and truth are what our writer adds.
+    Hdf5Layout{.name = "dsec",
+               .events = "/events",
+               .offset = "/t_offset",
+               .images = "/frames/images",
+               .image_stamps = "/frames/t_ns",
+               .gyro = "/imu/gyro",
+               .accel = "/imu/accel",
+               .imu_stamps = "/imu/t_ns",
+               .poses = "/truth/poses",
+               .pose_stamps = "/truth/t_ns"},
+    Hdf5Layout{.name = "raw_events", .events = "/raw_events"},
+    Hdf5Layout{.name = "eds", .events = "", .offset = "/t_offset"},
+};
+
+constexpr Timestamp kNoStamp = Timestamp::min();
+
+Timestamp stamp_of(std::int64_t value, std::int64_t unit_ns) {
+  const std::int64_t most = kMaxStampNs / unit_ns;
+  return value < -most || value > most ? kNoStamp : timestamp_from_ns(value * unit_ns);
+}
+
+Timestamp stamp_of(double value, std::int64_t unit_ns) {
+  const double ns = std::round(value * static_cast<double>(unit_ns));
+  return !(std::abs(ns) <= static_cast<double>(kMaxStampNs)) ? kNoStamp : timestamp_from_ns(static_cast<std::int64_t>(ns));
+}
+
+Timestamp shifted(Timestamp t, Duration offset) {
+  if (t == kNoStamp) return t;
+  const std::int64_t ns = to_ns(t + offset);  // both are far from overflowing
+  return ns < -kMaxStampNs || ns > kMaxStampNs ? kNoStamp : t + offset;
+}
+
+/// Of an array of stamps by its name and type; of the last stamp where floating numbers may be either.
+std::int64_t unit_of(const H5Array& array) {
+  constexpr std::int64_t kMicroseconds = 1000, kSeconds = 1'000'000'000;
+  if (array.path().ends_with("_ns")) return 1;
+  if (!array.floating()) return kMicroseconds;
+  if (array.rows() == 0 || array.columns() != 1) return kSeconds;
+  try {
+    const double last = array.read<double>(array.rows() - 1, 1).front();
+    return std::abs(last) * static_cast<double>(kSeconds) > static_cast<double>(kMaxStampNs) ? kMicroseconds : kSeconds;
+  } catch (const Damage&) {
+    return kSeconds;
+  }
+}
+
+std::uint16_t pixel(double v) { return v >= 0 && v < 65535 ? static_cast<std::uint16_t>(v) : 65535; }
+std::uint16_t pixel(std::int32_t v) { return v >= 0 && v < 65535 ? static_cast<std::uint16_t>(v) : 65535; }
+
+/// EcfEvent as a type of the library.
+H5Handle fields_type() {
+  H5Handle type(H5Tcreate(H5T_COMPOUND, sizeof(EcfEvent)), H5Tclose);
+  H5Tinsert(type.get(), "x", offsetof(EcfEvent, x), H5T_NATIVE_UINT16);
+  H5Tinsert(type.get(), "y", offsetof(EcfEvent, y), H5T_NATIVE_UINT16);
+  H5Tinsert(type.get(), "p", offsetof(EcfEvent, p), H5T_NATIVE_INT16);
+  H5Tinsert(type.get(), "t", offsetof(EcfEvent, t), H5T_NATIVE_INT64);
+  return type;
+}
+
+Duration offset_of(const H5File& file, std::string_view path) try {
+  const auto array = path.empty() ? std::nullopt : file.find(std::string(path));
+  if (!array || array->rows() == 0) return Duration(0);
+  const Timestamp offset = array->floating() ? stamp_of(array->read<double>(0, 1).front(), 1000)
+                                             : stamp_of(array->read<std::int64_t>(0, 1).front(), 1000);
+  return offset == kNoStamp ? Duration(0) : offset.time_since_epoch();
+} catch (const Damage&) {
+  return Duration(0);
+}
+
+}  // namespace
+
+std::span<const Hdf5Layout> hdf5_layouts() { return kLayouts; }
+
+H5Stamps::H5Stamps(H5Array array) : array_(std::move(array)), unit_ns_(unit_of(array_)) {}
+
+std::vector<Timestamp> H5Stamps::read(std::uint64_t first, std::uint64_t count) const {
+  if (array_.columns() != 1) throw Damage(array_.path() + " has several stamps a row");
+  std::vector<Timestamp> stamps;
+  stamps.reserve(count);
+  if (array_.floating())
+    for (const double v : array_.read<double>(first, count)) stamps.push_back(stamp_of(v, unit_ns_));
+  else
+    for (const std::int64_t v : array_.read<std::int64_t>(first, count)) stamps.push_back(stamp_of(v, unit_ns_));
+  return stamps;
+}
+
+std::optional<Timestamp> H5Stamps::last() const try {
+  if (rows() == 0) return std::nullopt;
+  const Timestamp t = read(rows() - 1, 1).front();
+  return t == kNoStamp ? std::nullopt : std::optional(t);
+} catch (const Damage&) {
+  return std::nullopt;
+}
+
+H5Events::H5Events(Kind kind, std::vector<H5Array> arrays, Duration offset, bool cut)
+    : kind_(kind), arrays_(std::move(arrays)), offset_(offset), cut_(cut), rows_(arrays_.front().rows()) {
+  for (const H5Array& array : arrays_) {
+    ragged_ = ragged_ || array.rows() != arrays_.front().rows();
+    rows_ = std::min(rows_, array.rows());
+  }
+  if (kind_ != Kind::Columns) return;
+  stamps_.emplace(std::move(arrays_.back()));
+  arrays_.pop_back();
+}
+
+std::optional<H5Events> H5Events::find(const H5File& file, const Hdf5Layout& layout) {
+  const std::string root(layout.events);
+  const Duration offset = offset_of(file, layout.offset);
+  std::vector<H5Array> arrays;
+  if (auto one = root.empty() ? std::nullopt : file.find(root)) {
+    const Kind kind = one->compound() ? Kind::Fields : Kind::Rows;
+    if (kind == Kind::Rows && (one->shape().size() != 2 || one->columns() != 4)) return std::nullopt;
+    if (kind == Kind::Fields && !(one->has_fields({"x", "y", "p", "t"}) && one->columns() == 1)) return std::nullopt;
+    arrays.push_back(std::move(*one));
+    return H5Events(kind, std::move(arrays), offset, file.cut());
+  }
+  for (const char* column : {"/x", "/y", "/p", "/t"}) {
+    auto array = file.find(root + column);
+    if (!array || array->columns() != 1 || array->shape().size() != 1) return std::nullopt;
+    arrays.push_back(std::move(*array));
+  }
+  return H5Events(Kind::Columns, std::move(arrays), offset, file.cut());
+}
+
+std::vector<Event> H5Events::read(std::uint64_t first, std::uint64_t count) const {
+  std::vector<Event> events = kind_ == Kind::Columns ? read_columns(first, count)
+                              : kind_ == Kind::Rows  ? read_rows(first, count)
+                                                     : read_fields(first, count);
+  if (cut_ && std::ranges::all_of(events, [](const Event& e) { return e.x == 0 && e.y == 0; }))
+    throw Damage("nothing behind the end of a cut file");
+  for (Event& event : events) event.t = shifted(event.t, offset_);
+  return events;
+}
+
+std::vector<Event> H5Events::read_columns(std::uint64_t first, std::uint64_t count) const {
+  const auto x = arrays_[0].read<std::int32_t>(first, count), y = arrays_[1].read<std::int32_t>(first, count);
+  const auto p = arrays_[2].read<std::int8_t>(first, count);
+  const auto t = stamps_->read(first, count);
+  std::vector<Event> events(count);
+  for (std::size_t i = 0; i < count; ++i) events[i] = {t[i], pixel(x[i]), pixel(y[i]), p[i] > 0};
+  return events;
+}
+
+std::vector<Event> H5Events::read_rows(std::uint64_t first, std::uint64_t count) const {
+  const std::int64_t unit = unit_of(arrays_[0]);
+  const auto values = arrays_[0].read<double>(first, count);
+  std::vector<Event> events(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* v = &values[4 * i];
+    events[i] = {stamp_of(v[2], unit), pixel(v[0]), pixel(v[1]), v[3] > 0};
+  }
+  return events;
+}
+
+std::vector<Event> H5Events::read_fields(std::uint64_t first, std::uint64_t count) const {
+  static const H5Handle type = fields_type();
+  std::vector<EcfEvent> rows(count);
+  arrays_[0].read_as(type.get(), first, count, rows.data());
+  std::vector<Event> events(count);
+  for (std::size_t i = 0; i < count; ++i)
+    events[i] = {stamp_of(rows[i].t, std::int64_t{1000}), rows[i].x, rows[i].y, rows[i].p > 0};
+  return events;
+}
+
+std::optional<Timestamp> H5Events::last() const try {
+  if (rows_ == 0) return std::nullopt;
+  const Timestamp t = read(rows_ - 1, 1).front().t;
+  return t == kNoStamp ? std::nullopt : std::optional(t);
+} catch (const Damage&) {
+  return std::nullopt;
+}
+
+}  // namespace edged

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the data sets that come as HDF5 keep what, and their events whatever the layout.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/io/hdf5/h5.hpp"
+
+namespace edged {
+
+/// Paths within a file; "" for what a layout has not. Stamps are whole microseconds, or seconds where they have
+/// fractions, or nanoseconds where the name ends with _ns.
+struct Hdf5Layout {
+  std::string_view name;
+  std::string_view events;  ///< a group with x, y, t, p, or one data set: rows of (x, y, t, p) or with fields of these names
+  std::string_view offset = "";  ///< one stamp, added to those of the events
+  std::string_view images = "", image_stamps = "";  ///< (n, height, width[, channels])
+  std::string_view gyro = "", accel = "";  ///< (n, 3) each [rad/s, m/s^2]; no accel: both in one of (n, 6)
+  std::string_view imu_stamps = "";
+  std::string_view poses = "", pose_stamps = "";  ///< (n, 7): x y z [m] qx qy qz qw
+  std::string_view sensor = "";                   ///< width and height of the event sensor
+  int width = 0, height = 0;                      ///< of the event sensor in all recordings of the set; 0: it differs
+};
+
+std::span<const Hdf5Layout> hdf5_layouts();
+
+/// Stamps as a file counts them, made nanoseconds: exactly where they are whole numbers.
+class H5Stamps {
+ public:
+  explicit H5Stamps(H5Array array);
+
+  std::uint64_t rows() const { return array_.rows(); }
+  /// Timestamp::min() for what cannot be a stamp. Throws Damage.
+  std::vector<Timestamp> read(std::uint64_t first, std::uint64_t count) const;
+  std::optional<Timestamp> last() const;
+
+ private:
+  H5Array array_;
+  std::int64_t unit_ns_;
+};
+
+/// The events of a file in one of the layouts.
+class H5Events {
+ public:
+  /// Nothing where the file has no such events.
+  static std::optional<H5Events> find(const H5File& file, const Hdf5Layout& layout);
+
+  std::uint64_t rows() const { return rows_; }
+  /// The arrays of x, y, t and p are not of one length.
+  bool ragged() const { return ragged_; }
+  /// As they are in the file: stamps that cannot be are Timestamp::min(), pixels that cannot be lie at 65535. Throws
+  /// Damage.
+  std::vector<Event> read(std::uint64_t first, std::uint64_t count) const;
+  std::optional<Timestamp> last() const;
+
+ private:
+  enum class Kind { Columns, Rows, Fields };
+  H5Events(Kind kind, std::vector<H5Array> arrays, Duration offset, bool cut);
+
+  std::vector<Event> read_columns(std::uint64_t first, std::uint64_t count) const;
+  std::vector<Event> read_rows(std::uint64_t first, std::uint64_t count) const;
+  std::vector<Event> read_fields(std::uint64_t first, std::uint64_t count) const;
+
+  Kind kind_;
+  std::vector<H5Array> arrays_;  ///< x, y, p, or the one
+  std::optional<H5Stamps> stamps_;
+  Duration offset_;
+  bool cut_, ragged_ = false;
+  std::uint64_t rows_ = 0;
+};
+
+}  // namespace edged

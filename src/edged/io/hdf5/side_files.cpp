@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The names of each data set, and how its lines read. Images are those of a folder in the order of their names, one
+// for each line of the stamps.
+#include "edged/io/hdf5/side_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "edged/io/trajectory_io.hpp"
+
+namespace edged {
+namespace fs = std::filesystem;
+namespace {
+
+using ParseStamp = std::optional<Timestamp> (*)(std::string_view);
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::optional<fs::path> first_file(const std::vector<fs::path>& candidates) {
+  const auto found = std::ranges::find_if(candidates, is_file);
+  return found == candidates.end() ? std::nullopt : std::optional(*found);
+}
+
+/// The images of the first folder that has any, by name.
+std::vector<fs::path> images_in(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> images;
+  for (const fs::path& folder : folders) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") images.push_back(entry.path());
+    }
+    if (!images.empty()) break;
+  }
+  std::ranges::sort(images);
+  return images;
+}
+
+/// Line k of `stamps` is of image k; parse gives its stamp.
+StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::string layout, std::vector<fs::path> images,
+                                              std::function<std::optional<Timestamp>(std::string_view)> parse) {
+  const auto parse_entry = [images = std::move(images), parse = std::move(parse),
+                            line = std::size_t{0}](std::string_view text) mutable -> std::optional<FrameEntry> {
+    if (is_heading(text)) return std::nullopt;
+    const std::size_t k = line++;
+    const auto t = parse(text);
+    if (!t) return std::nullopt;
+    return FrameEntry{*t, k < images.size() ? images[k] : fs::path("(no image for this stamp)")};
+  };
+  return {stamps, "frames", std::move(layout), LastLine::MayLackEnd, parse_entry};
+}
+
+std::optional<Timestamp> single_microseconds(std::string_view line) { return parse_microseconds(FieldReader(line).next()); }
+
+/// Start and end of the exposure in seconds.
+std::optional<Timestamp> middle_of_exposure(std::string_view line) {
+  FieldReader fields(line);
+  const auto start = parse_seconds(fields.next()), end = parse_seconds(fields.next());
+  if (!start || !end) return std::nullopt;
+  return *start + (*end - *start) / 2;
+}
+
+/// `t gx gy gz ax ay az ...`: angular velocity first, as all these sets have it.
+StampedLines<ImuSample>::Spec imu_lines(const fs::path& file, ParseStamp parse) {
+  const auto parse_sample = [parse](std::string_view line) -> std::optional<ImuSample> {
+    FieldReader fields(line);
+    const auto t = parse(fields.next());
+    std::array<double, 6> v;
+    if (!t || !read_numbers(fields, v)) return std::nullopt;
+    return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  };
+  return {file, "imu", "t gx gy gz ax ay az", LastLine::MustEnd, parse_sample};
+}
+
+using ReadTrajectory = Trajectory (*)(const SourcePath&, const DamageHandler&);
+
+std::function<std::optional<GroundTruth>(Repairs&)> truth_lines(const fs::path& file, ReadTrajectory read,
+                                                                std::string frame) {
+  return [file, read, frame = std::move(frame)](Repairs& repairs) -> std::optional<GroundTruth> {
+    LineDamage damage(file.string(), "groundtruth", repairs);
+    GroundTruth truth{
+        read(file, [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); }), frame};
+    if (truth.trajectory.empty()) return std::nullopt;
+    return truth;
+  };
+}
+
+/// SEQUENCE/events/left/events.h5, SEQUENCE/images/timestamps.txt: the middle of the exposure of each left image.
+SideFiles dsec_files(const fs::path& events) {
+  SideFiles files;
+  const fs::path folder = fs::absolute(events).parent_path();
+  for (const fs::path& root : {folder, folder.parent_path(), folder.parent_path().parent_path()}) {
+    const auto stamps =
+        first_file({root / "images/timestamps.txt", root / "image_timestamps.txt", root / "images_timestamps.txt"});
+    if (!stamps) continue;
+    auto images = images_in({root / "images/left/distorted", root / "images/left/rectified",
+                             root / "images_left/distorted", root / "images_left/rectified"});
+    if (images.empty()) continue;
+    files.set = "dsec";
+    files.frames = images_by_line(*stamps, "t [us]", std::move(images), single_microseconds);
+    break;
+  }
+  if (is_file(folder / "rectify_map.h5")) files.set = "dsec";
+  if (!files.set.empty()) files.sensor = cv::Size(640, 480);
+  return files;
+}
+
+/// NAME.synced.left_event.hdf5 beside NAME.synced.imu.txt, NAME.synced.left_camera and NAME.synced.gt.txt.
+SideFiles vector_files(const fs::path& events, const std::string& prefix) {
+  SideFiles files{.set = "vector", .sensor = cv::Size(640, 480)};
+  const fs::path folder = fs::absolute(events).parent_path();
+  const fs::path camera = folder / (prefix + "left_camera");
+  if (is_file(camera / "timestamp.txt"))
+    files.frames = images_by_line(camera / "timestamp.txt", "start end [s]", images_in({camera}), middle_of_exposure);
+  if (const auto imu = first_file({folder / (prefix + "imu.txt"), folder / (prefix + "imu.csv")}))
+    files.imu = imu_lines(*imu, parse_seconds);
+  if (const fs::path truth = folder / (prefix + "gt.txt"); is_file(truth))
+    files.ground_truth = truth_lines(truth, read_tum, "body");
+  return files;
+}
+
+/// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images are
+/// those of the start of the exposure, whose length [us] is in a list of its own.
+SideFiles tum_vie_files(const fs::path& events, const std::string& prefix) {
+  SideFiles files{.set = "tum-vie", .sensor = cv::Size(1280, 720)};
+  const fs::path folder = fs::absolute(events).parent_path();
+  for (const fs::path& root : {folder, folder / (prefix + "-vi_gt_data"), folder / "data"}) {
+    const fs::path imu = root / "imu_data.txt", truth = root / "mocap_data.txt";
+    if (!files.imu && is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
+    if (!files.ground_truth && is_file(truth)) files.ground_truth = truth_lines(truth, read_tum_microseconds, "body");
+    for (const fs::path& list : {root / "left_images", root}) {
+      const fs::path stamps = list / "image_timestamps_left.txt", lengths = list / "image_exposures_left.txt";
+      if (files.frames || !is_file(stamps)) continue;
+      const auto exposures = is_file(lengths) ? std::make_shared<LineReader>(lengths) : nullptr;
+      const auto middle = [exposures](std::string_view line) {
+        const auto exposure = exposures ? exposures->next() : std::nullopt;
+        const auto length = exposure ? single_microseconds(exposure->text) : std::nullopt;
+        auto t = single_microseconds(line);
+        if (t && length) *t += length->time_since_epoch() / 2;
+        return t;
+      };
+      files.frames = images_by_line(stamps, "t [us]", images_in({root / "left_images"}), middle);
+    }
+  }
+  return files;
+}
+
+/// events.h5 beside images_timestamps.txt, images, imu.csv and stamped_groundtruth.txt.
+SideFiles eds_files(const fs::path& events) {
+  SideFiles files;
+  const fs::path folder = fs::absolute(events).parent_path();
+  if (const fs::path stamps = folder / "images_timestamps.txt"; is_file(stamps))
+    files.frames = images_by_line(stamps, "t [us]", images_in({folder / "images"}), single_microseconds);
+  if (const fs::path imu = folder / "imu.csv"; is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
+  if (const fs::path truth = folder / "stamped_groundtruth.txt"; is_file(truth))
+    files.ground_truth = truth_lines(truth, read_tum, "frames");
+  if (files.frames || files.imu || files.ground_truth) {
+    files.set = "eds";
+    files.sensor = cv::Size(640, 480);
+  }
+  return files;
+}
+
+/// What of a file's name comes before one of these, if it has any.
+std::optional<std::string> name_before(const fs::path& file, std::initializer_list<std::string_view> marks) {
+  const std::string name = file.filename().string();
+  for (const std::string_view mark : marks)
+    if (const std::size_t at = name.find(mark); at != std::string::npos) return name.substr(0, at);
+  return std::nullopt;
+}
+
+}  // namespace
+
+SideFiles find_side_files(const fs::path& events_file, std::string_view layout) {
+  if (layout == "eds") return eds_files(events_file);
+  if (layout != "dsec") return {};
+  if (const auto prefix = name_before(events_file, {"left_event.", "right_event."}))
+    return vector_files(events_file, *prefix);
+  if (const auto prefix = name_before(events_file, {"-events_left.", "-events_right."}))
+    return tum_vie_files(events_file, *prefix);
+  return dsec_files(events_file);
+}
+
+}  // namespace edged
