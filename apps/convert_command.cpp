@@ -27,13 +27,6 @@ struct ConvertOptions {
   bool round = false, quiet = false, json = false;
 };
 
-/// "12.3 s", of how much where that is known.
-std::string progress_text(Timestamp t, const DatasetInfo& info) {
-  const Timestamp begin = info.begin.value_or(Timestamp());
-  const std::string done = fmt::format("{:.1f}", to_seconds(t - begin));
-  return info.end ? fmt::format("{} / {:.1f} s converted", done, to_seconds(*info.end - begin)) : done + " s converted";
-}
-
 std::string left_out_text(const WriteCounts& counts, std::string_view format) {
   std::vector<std::string> parts;
   const auto add = [&parts](std::size_t count, const char* what) {
@@ -74,7 +67,7 @@ int run_convert(const ConvertOptions& options) {
   StatusLine status(options.quiet);
   WriteOptions write{.round = options.round};
   write.progress = [&](Timestamp t) {
-    if (status.due()) status.show(progress_text(t, recording.dataset->info()));
+    if (status.due()) status.show(progress_text(t, recording.dataset->info(), "converted"));
   };
   InterruptibleDataset dataset(*recording.dataset);
   const WriteCounts counts = write_recording(dataset, format, options.target, recording.calibration, write);

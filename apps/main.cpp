@@ -12,10 +12,12 @@
 #include "config_command.hpp"
 #include "convert_command.hpp"
 #include "depth_command.hpp"
+#include "doctor_command.hpp"
 #include "edged/core/check.hpp"
 #include "enhance_command.hpp"
 #include "eval_command.hpp"
 #include "exit_code.hpp"
+#include "info_command.hpp"
 #include "log.hpp"
 #include "run_command.hpp"
 #include "simulate_command.hpp"
@@ -43,6 +45,8 @@ int run_program(int argc, char** argv) {
   app.footer(kFooter);
   std::function<int()> chosen;
   add_run_command(app, chosen);
+  add_info_command(app, chosen);
+  add_doctor_command(app, chosen);
   add_convert_command(app, chosen);
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);

@@ -70,6 +70,12 @@ std::string si_number(double value) {
   return fmt::format("{:.0f} ", value);
 }
 
+std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what) {
+  const Timestamp begin = info.begin.value_or(Timestamp());
+  const std::string whole = info.end ? fmt::format(" / {:.1f}", to_seconds(*info.end - begin)) : "";
+  return fmt::format("{:.1f}{} s {}", to_seconds(t - begin), whole, what);
+}
+
 std::string fit_columns(const std::string& text, std::size_t columns) {
   const std::string line = text.substr(0, text.find('\n'));
   return line.size() <= columns ? line : line.substr(0, columns);

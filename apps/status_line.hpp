@@ -8,6 +8,9 @@
 #include <chrono>
 #include <mutex>
 #include <string>
+#include <string_view>
+
+#include "edged/core/dataset.hpp"
 
 namespace edged {
 
@@ -42,6 +45,9 @@ class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
 
 /// "1234567" -> "1.23 M", for rates and counts.
 std::string si_number(double value);
+
+/// "12.3 / 60.0 s read", of a job that has come to t; without the whole where it is not known.
+std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
 
 /// One line, cut to a number of columns.
 std::string fit_columns(const std::string& text, std::size_t columns);

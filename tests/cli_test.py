@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -38,7 +39,7 @@ class CommandLine(WithFolder):
         text = edged("--help").stdout
         for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
             self.assertIn(word, text)
-        for command in ("run", "simulate", "eval", "enhance", "depth"):
+        for command in ("run", "info", "doctor", "convert", "simulate", "eval", "enhance", "depth"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
     def test_a_wrong_command_line_is_code_2(self):
@@ -146,6 +147,86 @@ class Depth(WithFolder):
         file.write_bytes(b"")
         file.chmod(0)
         self.assert_refused(edged("depth", file), "secret.onnx")
+
+
+class Recordings(WithFolder):
+    """info, doctor and convert on one generated recording."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="edged_cli_"))
+        cls.addClassCleanup(shutil.rmtree, cls.shared)
+        cls.flight = cls.shared / "flight"
+        made = edged("simulate", "--preset", "handheld-fast", "--duration", 5, "--out", cls.flight, "--quiet")
+        assert made.returncode == 0, made.stderr
+
+    def changed(self, name, change):
+        """The recording with one of its files changed."""
+        copy = self.folder / "changed"
+        shutil.copytree(self.flight, copy)
+        (copy / name).write_text(change((copy / name).read_text()))
+        return copy
+
+    def test_info_counts_what_is_there(self):
+        found = json.loads(edged("info", self.flight, "--json").stdout)
+        self.assertEqual(found["events"]["count"], len((self.flight / "events.txt").read_text().splitlines()))
+        self.assertEqual(found["frames"]["count"], len((self.flight / "images.txt").read_text().splitlines()))
+        self.assertEqual((found["events"]["width"], found["events"]["height"]), (240, 180))
+        self.assertAlmostEqual(found["imu"]["mean_accel"], 10.5, delta=1.0)
+        text = edged("info", self.flight).stdout
+        for word in ("events", "no gaps", "highest rate", "hot pixels", "noise", "ground truth"):
+            self.assertIn(word, text)
+
+    def test_the_doctor_finds_a_healthy_recording_healthy(self):
+        result = edged("doctor", self.flight)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("0 errors, 0 warnings", result.stdout)
+        for camera in ("events", "frames"):
+            self.assertRegex(result.stdout, rf"camera {camera}: t_imu = t_cam .* by its turning")
+            self.assertRegex(result.stdout, rf"camera {camera}: its rotation agrees with the gyro to [0-3]\.")
+
+    def test_the_doctor_names_wrong_units_with_the_remedy(self):
+        def in_degrees_and_g(text):
+            lines = []
+            for line in text.splitlines():
+                t, *v = line.split()
+                lines.append(" ".join([t] + [str(float(x) / 9.80665) for x in v[:3]] +
+                                      [str(float(x) * 57.29578) for x in v[3:]]))
+            return "\n".join(lines) + "\n"
+        result = edged("doctor", self.changed("imu.txt", in_degrees_and_g))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +accelerometer in g.*\n.*9.80665")
+        self.assertRegex(result.stdout, r"error +gyro in deg/s.*\n.*pi / 180")
+
+    def test_the_doctor_names_a_calibration_that_contradicts_the_gyro(self):
+        rig = self.folder / "turned.yaml"
+        text = (self.flight / "calibration.yaml").read_text()
+
+        def quarter_turn(match):  # about the body's x: y' = -z, z' = y
+            x, y, z, last = match.group(0).splitlines()
+            minus_z = ", ".join(str(-float(v)) for v in z[z.index("[") + 1:-1].split(","))
+            return "\n".join([x, f"      - [{minus_z}]", y, last])
+
+        text = re.sub(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]", quarter_turn, text)
+        rig.write_text(text.replace("time_offset: 0.002400000", "time_offset: 0.030"))
+        result = edged("doctor", self.flight, "--calib", rig)
+        self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
+        self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5]) deg")
+        self.assertRegex(result.stdout, r"warning +camera frames: t_imu = t_cam .*\n.*set time_offset")
+
+    def test_convert_there_and_back_keeps_every_event(self):
+        for name in ("out.raw", "out.dat"):
+            target = self.folder / name
+            result = edged("convert", self.flight, target, "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("left out", result.stdout)
+            back = self.folder / (name + "_back")
+            self.assertEqual(edged("convert", target, back, "--format", "ecd", "--quiet").returncode, 0)
+            self.assertEqual((back / "events.txt").read_text(), (self.flight / "events.txt").read_text())
+            self.assert_refused(edged("convert", self.flight, target, "--quiet"), "is there already")
+
+    def test_convert_lists_the_formats_where_it_does_not_know_one(self):
+        self.assert_refused(edged("convert", self.flight, self.folder / "a.xyz"), "`.xyz`", "raw (.raw)")
 
 
 class Config(WithFolder):

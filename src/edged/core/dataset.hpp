@@ -19,6 +19,14 @@ struct GroundTruth {
   std::string frame = "body"; ///< X: "body" or the name of the camera whose pose it is; stamps are on that sensor's clock
 };
 
+/// One of the streams that lie in a recording, read or not.
+struct StreamInfo {
+  std::string name;       ///< topic, or name in the file
+  std::string type;       ///< of its messages
+  std::size_t count = 0;  ///< of messages; 0 where it is not known
+  std::string role;       ///< "events", "frames", "imu", "truth"; "" where it is not read
+};
+
 /// What is known of a recording before it is read through.
 struct DatasetInfo {
   std::string name;                       ///< folder name or simulator preset
@@ -27,6 +35,7 @@ struct DatasetInfo {
   std::optional<Timestamp> begin;         ///< first stamp of any sensor, if known cheaply
   std::optional<Timestamp> end;           ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
+  std::vector<StreamInfo> streams;        ///< of formats that name them
   cv::Size event_sensor;                  ///< size of the event camera [px]; empty where it is not known
 };
 

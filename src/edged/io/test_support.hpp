@@ -79,7 +79,7 @@ class ListedDataset : public Dataset {
   std::optional<GroundTruth> truth;
 
  private:
-  DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, cv::Size(240, 180)};
+  DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, {}, cv::Size(240, 180)};
   std::size_t next_ = 0;
 };
 

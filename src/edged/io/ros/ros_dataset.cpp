@@ -18,6 +18,9 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
       geometry_(geometry) {
   if (rig) rig_ = *rig;
   info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
+  for (const Topic& topic : source_->topics()) info_.streams.push_back({topic.name, topic.type, topic.count, ""});
+  for (std::size_t role = 0; role < kRoleNames.size(); ++role)
+    if (const auto topic = choice_.topics[role]) info_.streams[*topic].role = kRoleNames[role];
   begin(
       {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "info_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <memory>
+#include <string>
+
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "survey_run.hpp"
+#include "survey_text.hpp"
+
+namespace edged {
+namespace {
+
+struct InfoOptions {
+  SourceOptions source;
+  bool quiet = false, json = false;
+};
+
+int run_info(const InfoOptions& options) {
+  catch_interrupts();
+  const Recording recording = open_uncalibrated(options.source);
+  const Survey survey = survey_recording(*recording.dataset, options.quiet, {});
+  fmt::print("{}", options.json ? to_json(survey).dump(2) + "\n" : to_text(survey));
+  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* info = app.add_subcommand("info", "What a recording holds: streams, rates, gaps, hot pixels, IMU noise");
+  add_source_options(*info, options->source);
+  info->add_flag("--quiet", options->quiet, "No status line");
+  info->add_flag("--json", options->json, "Print json instead of text");
+  info->footer("Example:\n  edged info flight.bag");
+  info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
+}
+
+}  // namespace edged

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One function a subject; the limits stand where they are used.
+#include "edged/survey/diagnosis.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace edged {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kSigmas = 6.0;  // errors of corners are not independent, so sigmas are too small
+
+class Findings {
+ public:
+  void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }
+  void note(std::string text, std::string remedy = "") { add(Severity::Note, std::move(text), std::move(remedy)); }
+  void warn(std::string text, std::string remedy) { add(Severity::Warning, std::move(text), std::move(remedy)); }
+  void error(std::string text, std::string remedy) { add(Severity::Error, std::move(text), std::move(remedy)); }
+
+  std::vector<Finding> list;
+
+ private:
+  void add(Severity severity, std::string text, std::string remedy) {
+    list.push_back({severity, std::move(text), std::move(remedy)});
+  }
+};
+
+double degrees_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return Eigen::AngleAxisd(a.transpose() * b).angle() * kDegPerRad;
+}
+
+bool sure(const GyroAgreement& found) { return found.unexplained < 0.5; }
+
+bool in_degrees(const CameraCheck& check) {
+  return check.agreement && sure(*check.agreement) && std::abs(check.agreement->gyro_scale / kDegPerRad - 1) < 0.3;
+}
+
+std::string interval(const char* name, const StreamSurvey& stream) {
+  return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
+}
+
+void judge_clocks(const Survey& s, Findings& out) {
+  if (s.imu.count == 0)
+    return out.error("no IMU samples", "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
+  std::string all = interval("IMU", s.imu);
+  Duration shortest = s.imu.length();
+  for (const auto& [name, stream] : {std::pair("events", &s.events), std::pair("frames", &s.frames)}) {
+    if (stream->count == 0) continue;
+    all += ", " + interval(name, *stream);
+    shortest = std::min(shortest, stream->length());
+  }
+  const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
+  if (common <= 0.0)
+    out.error("the clocks of the sensors do not overlap: " + all,
+              "stamp all sensors on one clock, or set time_offset in the calibration to the difference");
+  else if (common < 0.9 * least)
+    out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
+             "what only some of them cover is left out; check that all were recorded");
+  else
+    out.good(fmt::format("all sensors cover {:.1f} s together", common));
+}
+
+void judge_imu_rate(const Survey& s, Findings& out) {
+  if (s.imu.count == 0) return;
+  const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
+  if (rate < 100.0)
+    out.warn(fmt::format("IMU at {:.0f} Hz", rate), "record it at 200 Hz or more: between samples the motion is guessed");
+  else
+    out.good(fmt::format("IMU at {:.0f} Hz", rate));
+  if (s.imu.gaps == 0) return;
+  const Gap& longest = s.imu.longest.front();
+  const std::string text =
+      fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", s.imu.gaps,
+                  to_seconds(s.imu.missing), to_seconds(longest.length), to_seconds(longest.after));
+  const std::string remedy = "gaps are bridged by interpolation and trusted less; look for an overloaded USB bus or a full disk";
+  to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
+}
+
+void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
+  if (s.imu.count == 0) return;
+  const ImuSurvey& imu = s.imu_details;
+  const double g = imu.mean_accel;
+  if (g > 0.8 && g < 1.25)
+    out.error(fmt::format("accelerometer in g: its mean is {:.2f}, not about 9.8 m/s^2", g), "multiply it by 9.80665");
+  else if (g > 8000 && g < 12000)
+    out.error(fmt::format("accelerometer in mm/s^2: its mean is {:.0f}", g), "divide it by 1000");
+  else if (g < 0.5)
+    out.error(fmt::format("accelerometer without gravity: its mean is {:.2f} m/s^2", g),
+              "record the raw specific force, not the linear acceleration");
+  else if (g < 8.0 || g > 13.0)
+    out.warn(fmt::format("accelerometer with a mean of {:.2f} m/s^2, not about 9.8", g), "check its scale and unit");
+  else
+    out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
+
+  constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
+  if (std::ranges::any_of(cameras, in_degrees))
+    out.error("gyro in deg/s: it turns 57 times as fast as the camera", "multiply it by pi / 180");
+  else if (imu.mean_gyro > kFastest)
+    out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
+  else
+    out.good(fmt::format("gyro in rad/s (mean {:.2f}, highest {:.2f})", imu.mean_gyro, imu.max_gyro));
+}
+
+void judge_events(const Survey& s, Findings& out) {
+  if (s.events.count == 0) return;
+  const EventSurvey& e = s.event_details;
+  if (s.events.gaps > 0)
+    out.note(fmt::format("{} silences of the events of {:.2f} s together, the longest {:.2f} s at {:.3f} s", s.events.gaps,
+                         to_seconds(s.events.missing), to_seconds(s.events.longest.front().length),
+                         to_seconds(s.events.longest.front().after)),
+             "a still scene, or lost data: compare with the motion");
+  if (e.hot_share > 0.02)
+    out.warn(fmt::format("{} hot pixels send {:.1f} % of all events, most at ({}, {})", e.hot_pixels, 100 * e.hot_share,
+                         e.hottest.front().x, e.hottest.front().y),
+             "mask them in the camera, or raise its thresholds");
+  if (e.positive_share < 0.05 || e.positive_share > 0.95)
+    out.warn(fmt::format("{:.1f} % of the events are positive", 100 * e.positive_share),
+             "check that both polarities are recorded and told apart");
+  if (e.hot_share <= 0.02) out.good(fmt::format("events: {} hot pixels, {:.0f} % positive", e.hot_pixels, 100 * e.positive_share));
+}
+
+void judge_frames(const Survey& s, Findings& out) {
+  if (s.frames.count == 0) return;
+  if (s.frames.gaps > 0)
+    out.warn(fmt::format("{} gaps of the frames, {:.2f} s together, the longest {:.2f} s at {:.3f} s", s.frames.gaps,
+                         to_seconds(s.frames.missing), to_seconds(s.frames.longest.front().length),
+                         to_seconds(s.frames.longest.front().after)),
+             "corners are lost over long ones; look for an overloaded bus");
+  if (s.mean_brightness < 15.0)
+    out.note(fmt::format("frames are dark: mean brightness {:.0f} of 255", s.mean_brightness),
+             "expose longer, or rely on --mode events or fused");
+  else if (s.frames.gaps == 0)
+    out.good(fmt::format("frames at {:.1f} Hz, mean brightness {:.0f} of 255", s.frames.rate_hz(), s.mean_brightness));
+}
+
+void judge_shift(const CameraCheck& check, Findings& out) {
+  constexpr double kLeast_ms = 5.0;
+  const GyroAgreement& found = *check.agreement;
+  const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
+  const double sigma = 1e3 * found.time_sigma_s;
+  const std::string text = fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
+                                       check.camera.name, shift, sigma, given);
+  if (std::abs(shift - given) > std::max(kLeast_ms, kSigmas * sigma))
+    out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
+  else
+    out.good(text);
+}
+
+void judge_rotation(const CameraCheck& check, Findings& out) {
+  constexpr double kLeastDegrees = 8.0;
+  const GyroAgreement& found = *check.agreement;
+  const double sigma = found.rotation_sigma * kDegPerRad, most = std::max(kLeastDegrees, kSigmas * sigma);
+  const std::string& name = check.camera.name;
+  if (sigma > 10.0)
+    return out.note(fmt::format("camera {}: turned about one axis only, so its rotation is not checked", name));
+  const Eigen::Matrix3d given = check.camera.T_B_C.rotation().toRotationMatrix();
+  const double off = degrees_between(given, found.R_B_C), inverse = degrees_between(given.transpose(), found.R_B_C);
+  if (off <= most)
+    return out.good(fmt::format("camera {}: its rotation agrees with the gyro to {:.1f} deg +- {:.1f} deg", name, off, sigma));
+  if (inverse <= most)
+    return out.error(fmt::format("camera {}: its rotation to the IMU contradicts the gyro by {:.0f} deg, the inverse fits",
+                                 name, off),
+                     "the transform points the other way: `edged calib` shows both directions");
+  const Eigen::AngleAxisd turn(given.transpose() * found.R_B_C);
+  out.error(fmt::format("camera {}: its rotation to the IMU contradicts the gyro by {:.0f} deg", name, off),
+            fmt::format("what fits is the calibration's times {:.0f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
+                        turn.angle() * kDegPerRad, turn.axis().x(), turn.axis().y(), turn.axis().z()));
+}
+
+void judge_scale(const CameraCheck& check, Findings& out) {
+  const double ratio = check.agreement->gyro_scale;
+  if (ratio > 0.7 && (ratio < 1.4 || in_degrees(check))) return;
+  out.warn(fmt::format("camera {}: the gyro turns {:.2f} times as fast as its image", check.camera.name, ratio),
+           "check the focal length, and the unit of the gyro");
+}
+
+void judge_camera(const CameraCheck& check, Findings& out) {
+  const std::string& name = check.camera.name;
+  if (!check.agreement)
+    return out.note(fmt::format("camera {}: cannot be compared with the gyro: too few corners to follow", name));
+  if (!sure(*check.agreement))
+    return out.note(fmt::format("camera {}: turns too little, or too unlike the gyro, to judge its calibration ({:.0f} % of "
+                                "its turning unexplained)",
+                                name, 100 * check.agreement->unexplained));
+  judge_shift(check, out);
+  if (check.has_extrinsics) judge_rotation(check, out);
+  judge_scale(check, out);
+}
+
+void judge_truth(const Survey& s, Findings& out) {
+  if (!s.truth || s.truth->stream.count == 0 || s.imu.count == 0) return;
+  const StreamSurvey& truth = s.truth->stream;
+  if (*truth.begin > *s.imu.end || *truth.end < *s.imu.begin)
+    out.warn("ground truth does not overlap: " + interval("truth", truth) + ", " + interval("IMU", s.imu),
+             "its clock is another one: shift it before evaluating");
+  else
+    out.good(fmt::format("ground truth: {} poses, path {:.1f} m", truth.count, s.truth->path_m));
+}
+
+}  // namespace
+
+std::vector<Finding> diagnose(const Survey& survey, const std::vector<CameraCheck>& cameras) {
+  Findings out;
+  judge_clocks(survey, out);
+  judge_imu_rate(survey, out);
+  judge_imu_units(survey, cameras, out);
+  judge_events(survey, out);
+  judge_frames(survey, out);
+  for (const CameraCheck& check : cameras) judge_camera(check, out);
+  if (cameras.empty())
+    out.note("no calibration, so none is checked", "give --rig NAME or --calib FILE");
+  judge_truth(survey, out);
+  for (const auto& [kind, count] : survey.repairs)
+    out.note(fmt::format("repaired while reading: {} ({})", kind, count));
+  return out.list;
+}
+
+}  // namespace edged

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a recording or its calibration, and what to do about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/survey/gyro_agreement.hpp"
+#include "edged/survey/survey.hpp"
+
+namespace edged {
+
+enum class Severity {
+  Good,     ///< looked at and found in order
+  Note,     ///< worth knowing
+  Warning,  ///< costs accuracy
+  Error     ///< a run fails or is wrong
+};
+
+struct Finding {
+  Severity severity = Severity::Good;
+  std::string text;    ///< one line with numbers
+  std::string remedy;  ///< what to do; empty where nothing is
+};
+
+/// What a camera and the gyro say of each other.
+struct CameraCheck {
+  RigCamera camera;  ///< as calibrated
+  bool has_extrinsics = true;
+  std::optional<GyroAgreement> agreement;  ///< nothing where there was too little to compare
+};
+
+/// In the order of their subjects: streams, IMU, events, frames, calibration, ground truth, repairs.
+std::vector<Finding> diagnose(const Survey& survey, const std::vector<CameraCheck>& cameras);
+
+}  // namespace edged

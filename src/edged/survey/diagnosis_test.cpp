@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Each ill is named with its remedy, and a healthy recording has none.
+#include "edged/survey/diagnosis.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+StreamSurvey stream(std::size_t count, double begin_s, double end_s) {
+  StreamSurvey s;
+  s.count = count;
+  s.begin = timestamp_from_seconds(begin_s), s.end = timestamp_from_seconds(end_s);
+  s.typical_step = (*s.end - *s.begin) / static_cast<Duration::rep>(count);
+  return s;
+}
+
+Survey healthy() {
+  Survey s;
+  s.events = stream(1'000'000, 0, 10);
+  s.frames = stream(200, 0, 10);
+  s.imu = stream(2000, 0, 10);
+  s.event_details.positive_share = 0.5;
+  s.imu_details.mean_accel = 9.8, s.imu_details.mean_gyro = 0.3, s.imu_details.max_gyro = 1.0;
+  s.mean_brightness = 100;
+  return s;
+}
+
+CameraCheck agreeing() {
+  GyroAgreement found;
+  found.turns = 200, found.unexplained = 0.1, found.time_sigma_s = 1e-4, found.rotation_sigma = 1e-3;
+  return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
+}
+
+/// The worst finding that has this text: its remedy.
+std::string remedy_of(const std::vector<Finding>& findings, Severity severity, const std::string& text) {
+  for (const Finding& f : findings)
+    if (f.severity == severity && f.text.find(text) != std::string::npos) return f.remedy;
+  return "NO SUCH FINDING";
+}
+
+TEST(Diagnosis, OfAHealthyRecordingIsGoodAllOver) {
+  for (const Finding& f : diagnose(healthy(), {agreeing()})) EXPECT_EQ(f.severity, Severity::Good) << f.text;
+}
+
+TEST(Diagnosis, NamesClocksThatDoNotOverlap) {
+  Survey s = healthy();
+  s.imu = stream(2000, 1000, 1010);
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "IMU 1000.000 to 1010.000 s"), HasSubstr("time_offset"));
+  s.imu = stream(2000, 5, 15);
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Warning, "cover 5.0 s only"), HasSubstr("left out"));
+}
+
+TEST(Diagnosis, NamesAMissingSlowOrHolyImu) {
+  Survey s = healthy();
+  s.imu = {};
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "no IMU samples"), HasSubstr("--topic imu"));
+  s = healthy();
+  s.imu = stream(300, 0, 10);
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Warning, "IMU at 30 Hz"), HasSubstr("200 Hz"));
+  s = healthy();
+  s.imu.gaps = 2, s.imu.missing = std::chrono::milliseconds(700);
+  s.imu.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(600)}};
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
+}
+
+TEST(Diagnosis, NamesWrongUnits) {
+  Survey s = healthy();
+  s.imu_details.mean_accel = 1.0;
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "accelerometer in g"), HasSubstr("9.80665"));
+  s.imu_details.mean_accel = 9806;
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "mm/s^2"), HasSubstr("1000"));
+  s.imu_details.mean_accel = 0.2;
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "without gravity"), HasSubstr("specific force"));
+  s = healthy();
+  CameraCheck check = agreeing();
+  check.agreement->gyro_scale = 57.0;
+  EXPECT_THAT(remedy_of(diagnose(s, {check}), Severity::Error, "gyro in deg/s"), HasSubstr("pi / 180"));
+  s.imu_details.mean_gyro = 20;
+  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "probably in deg/s"), HasSubstr("pi / 180"));
+}
+
+TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
+  CameraCheck check = agreeing();
+  check.agreement->time_offset = std::chrono::milliseconds(12);
+  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Warning, "+12.0 ms"), HasSubstr("0.0120"));
+  check = agreeing();
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Error, "contradicts the gyro by 86 deg"),
+              HasSubstr("86 deg about the camera's axis (0.00, 0.00, 1.00)"));
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Error, "the inverse fits"), HasSubstr("other way"));
+  check = agreeing();
+  check.agreement->gyro_scale = 0.5;
+  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Warning, "0.50 times"), HasSubstr("focal length"));
+}
+
+TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
+  CameraCheck check = agreeing();
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  check.agreement->unexplained = 0.8;
+  EXPECT_EQ(remedy_of(diagnose(healthy(), {check}), Severity::Note, "80 % of its turning unexplained"), "");
+  check = agreeing();
+  check.agreement->rotation_sigma = 0.5;
+  EXPECT_EQ(remedy_of(diagnose(healthy(), {check}), Severity::Note, "about one axis only"), "");
+}
+
+TEST(Diagnosis, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {
+  Survey s = healthy();
+  s.event_details.hot_share = 0.2, s.event_details.hottest = {{3, 4, 1000}};
+  s.event_details.positive_share = 1.0;
+  s.mean_brightness = 4;
+  s.truth = TruthSurvey{stream(100, 500, 510), "body", 3.0};
+  const std::vector<Finding> findings = diagnose(s, {});
+  EXPECT_THAT(remedy_of(findings, Severity::Warning, "most at (3, 4)"), HasSubstr("mask"));
+  EXPECT_THAT(remedy_of(findings, Severity::Warning, "100.0 % of the events are positive"), HasSubstr("polarities"));
+  EXPECT_THAT(remedy_of(findings, Severity::Note, "frames are dark"), HasSubstr("expose"));
+  EXPECT_THAT(remedy_of(findings, Severity::Warning, "ground truth does not overlap"), HasSubstr("clock"));
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/gyro_agreement.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "edged/core/statistics.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kFewestTurns = 30;
+constexpr std::size_t kMostSamples = 300'000;  // of the gyro: five minutes of 1 kHz
+constexpr Duration kMostShift = std::chrono::milliseconds(100);
+constexpr Duration kShiftStep = std::chrono::milliseconds(4);   // then refined
+constexpr Duration kLongestStep = std::chrono::milliseconds(50);  // between samples; a longer one is a gap
+
+/// The same turns, seen by the camera and by the gyro at one shift [rad/s].
+struct Pairs {
+  std::vector<Eigen::Vector3d> camera, gyro;
+  std::vector<Eigen::Vector3d> gyro_slope;  ///< d gyro / d shift [rad/s^2]
+};
+
+Pairs pairs_at(std::span<const Turn> turns, const GyroIntegral& integral, Duration shift) {
+  constexpr Duration kStep = std::chrono::milliseconds(1);
+  Pairs pairs;
+  for (const Turn& turn : turns) {
+    const auto phi = [&](Duration by) { return integral.between(turn.begin + by, turn.end + by); };
+    const auto now = phi(shift), before = phi(shift - kStep), after = phi(shift + kStep);
+    if (!now || !before || !after) continue;
+    const double dt = to_seconds(turn.end - turn.begin);
+    pairs.camera.push_back(turn.phi_C / dt);
+    pairs.gyro.push_back(*now / dt);
+    pairs.gyro_slope.push_back((*after - *before) / dt / (2 * to_seconds(kStep)));
+  }
+  return pairs;
+}
+
+/// Rotation and scale with gyro ~ scale * R * camera.
+struct Fit {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  double scale = 1.0;
+  std::vector<double> weights;  ///< Cauchy
+  double median_error = 0.0;    ///< [rad/s of the camera]
+};
+
+Eigen::Vector3d error_of(const Pairs& pairs, const Fit& fit, std::size_t i) {
+  return pairs.gyro[i] / fit.scale - fit.R * pairs.camera[i];
+}
+
+/// Least squares with Cauchy weights (Arun et al. 1987; the scale by projection).
+Fit fit_turns(const Pairs& pairs) {
+  constexpr int kRounds = 6;
+  const std::size_t n = pairs.camera.size();
+  Fit fit;
+  std::vector<double> errors(n), speeds(n);
+  for (std::size_t i = 0; i < n; ++i) speeds[i] = pairs.camera[i].norm();
+  const double usual = std::max(median(speeds), 1e-9);
+  for (const double speed : speeds) fit.weights.push_back(std::min(1.0, std::pow(2 * usual / speed, 2)));
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    double camera = 0.0, both = 0.0;
+    for (std::size_t i = 0; i < n; ++i) sum += fit.weights[i] * pairs.gyro[i] * pairs.camera[i].transpose();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1.0 : 1.0;
+    fit.R = svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+    for (std::size_t i = 0; i < n; ++i) {
+      both += fit.weights[i] * pairs.gyro[i].dot(fit.R * pairs.camera[i]);
+      camera += fit.weights[i] * pairs.camera[i].squaredNorm();
+    }
+    fit.scale = std::max(both / std::max(camera, 1e-12), 1e-3);
+    for (std::size_t i = 0; i < n; ++i) errors[i] = error_of(pairs, fit, i).norm();
+    fit.median_error = median(errors);
+    const double spread = std::max(fit.median_error, 1e-9);
+    for (std::size_t i = 0; i < n; ++i) fit.weights[i] = 1.0 / (1.0 + std::pow(errors[i] / spread, 2));
+  }
+  return fit;
+}
+
+/// A step of Gauss-Newton in the shift [s], and what is known of it afterwards. Turns overlap: `overlap` of them count
+/// for one.
+double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgreement& agreement) {
+  double slopes = 0.0, product = 0.0, squares = 0.0, weight = 0.0;
+  Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < pairs.camera.size(); ++i) {
+    const double w = fit.weights[i];
+    const Eigen::Vector3d error = error_of(pairs, fit, i), slope = pairs.gyro_slope[i] / fit.scale;
+    slopes += w * slope.squaredNorm();
+    product += w * slope.dot(error);
+    squares += w * error.squaredNorm() / 3;
+    weight += w;
+    turning += w * pairs.camera[i] * pairs.camera[i].transpose();
+  }
+  const double variance = squares / weight * overlap;
+  agreement.time_sigma_s = std::sqrt(variance / std::max(slopes, 1e-12));
+  const Eigen::Vector3d axes = turning.selfadjointView<Eigen::Lower>().eigenvalues();
+  agreement.rotation_sigma = std::sqrt(variance / std::max(axes[0] + axes[1], 1e-12));
+  return -product / std::max(slopes, 1e-12);
+}
+
+/// How many turns share an instant.
+double overlap_of(std::span<const Turn> turns) {
+  double covered = 0.0;
+  for (const Turn& turn : turns) covered += to_seconds(turn.end - turn.begin);
+  return std::max(1.0, covered / std::max(to_seconds(turns.back().end - turns.front().begin), 1e-3));
+}
+
+/// The shift of the grid where rotation and scale fit best.
+std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro) {
+  std::optional<Duration> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Duration shift = -kMostShift; shift <= kMostShift; shift += kShiftStep) {
+    const Pairs pairs = pairs_at(turns, gyro, shift);
+    if (pairs.camera.size() < kFewestTurns) continue;
+    const double error = fit_turns(pairs).median_error;
+    if (error < least) least = error, best = shift;
+  }
+  return best;
+}
+
+}  // namespace
+
+void GyroIntegral::add(const ImuSample& sample) {
+  if (stamps_.size() >= kMostSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
+  if (!sample.gyro_B.allFinite()) return;
+  const Eigen::Vector3d step = stamps_.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                               : Eigen::Vector3d((gyro_.back() + sample.gyro_B) / 2 *
+                                                                 to_seconds(sample.t - stamps_.back()));
+  sum_.push_back(sum_.empty() ? step : Eigen::Vector3d(sum_.back() + step));
+  stamps_.push_back(sample.t);
+  gyro_.push_back(sample.gyro_B);
+}
+
+std::optional<Eigen::Vector3d> GyroIntegral::between(Timestamp begin, Timestamp end) const {
+  const auto place = [this](Timestamp t) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(stamps_, t) - stamps_.begin());
+  };
+  const std::size_t first = place(begin), last = place(end);
+  if (first == 0 || last == stamps_.size()) return std::nullopt;
+  for (std::size_t i = first; i <= last; ++i)
+    if (stamps_[i] - stamps_[i - 1] > kLongestStep) return std::nullopt;
+  return up_to(last, end) - up_to(first, begin);
+}
+
+/// From the first sample to t, which lies between the samples `after` - 1 and `after`.
+Eigen::Vector3d GyroIntegral::up_to(std::size_t after, Timestamp t) const {
+  const double step = to_seconds(stamps_[after] - stamps_[after - 1]), part = to_seconds(t - stamps_[after - 1]);
+  const Eigen::Vector3d now = gyro_[after - 1] + (gyro_[after] - gyro_[after - 1]) * (part / step);
+  return sum_[after - 1] + (gyro_[after - 1] + now) / 2 * part;
+}
+
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro) {
+  constexpr int kRefinements = 5;
+  if (turns.size() < kFewestTurns) return std::nullopt;
+  const auto coarse = best_shift(turns, gyro);
+  if (!coarse) return std::nullopt;
+  GyroAgreement agreement;
+  agreement.time_offset = *coarse;
+  for (int i = 0; i < kRefinements; ++i) {
+    const Pairs pairs = pairs_at(turns, gyro, agreement.time_offset);
+    if (pairs.camera.size() < kFewestTurns) return std::nullopt;
+    const Fit fit = fit_turns(pairs);
+    const double step_s = refine_shift(pairs, fit, overlap_of(turns), agreement);
+    agreement.time_offset =
+        std::clamp(agreement.time_offset + duration_from_seconds(std::clamp(step_s, -0.02, 0.02)), -kMostShift, kMostShift);
+    agreement.turns = pairs.camera.size();
+    agreement.R_B_C = fit.R;
+    agreement.gyro_scale = fit.scale;
+    std::vector<double> speeds;
+    for (const Eigen::Vector3d& turn : pairs.camera) speeds.push_back(turn.norm());
+    agreement.unexplained = fit.median_error / std::max(median(speeds), 1e-9);
+  }
+  return agreement;
+}
+
+}  // namespace edged

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Whether a camera turned as the gyro says: time shift, rotation and scale between the two.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/survey/visual_turns.hpp"
+
+namespace edged {
+
+struct GyroAgreement {
+  std::size_t turns = 0;       ///< compared
+  double unexplained = 1.0;    ///< median difference over median angular speed; above about 0.5 the rest means little
+  Duration time_offset{0};     ///< t_imu = t_cam + time_offset
+  double time_sigma_s = 0.0;
+  Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
+  double rotation_sigma = 0.0;  ///< of the least known axis [rad]; large where it turned about one axis only
+  double gyro_scale = 1.0;      ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+};
+
+/// Integrated gyro: the rotation vector of the body between two stamps, for turns small enough to be added.
+class GyroIntegral {
+ public:
+  void add(const ImuSample& sample);
+  /// Nothing where samples are missing.
+  std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
+
+ private:
+  Eigen::Vector3d up_to(std::size_t after, Timestamp t) const;
+  std::vector<Timestamp> stamps_;
+  std::vector<Eigen::Vector3d> gyro_, sum_;
+};
+
+/// Shifts within 100 ms of zero are tried. Nothing where there are too few turns to compare.
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro);
+
+}  // namespace edged

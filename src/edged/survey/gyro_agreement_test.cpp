@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Camera against gyro: analytic turns (tests/cli_test.py has generated images).
+#include "edged/survey/gyro_agreement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace edged {
+namespace {
+
+/// Angular velocity of a body that shakes about all axes [rad/s].
+Eigen::Vector3d shaking(double t) {
+  return {0.8 * std::sin(3 * t), 0.6 * std::sin(4.1 * t + 1), 0.5 * std::cos(2.3 * t)};
+}
+
+GyroIntegral gyro_of(double seconds, double factor = 1.0) {
+  GyroIntegral gyro;
+  for (int i = 0; i < seconds * 500; ++i)
+    gyro.add({timestamp_from_seconds(i / 500.0), factor * shaking(i / 500.0), {0, 0, 9.81}});
+  return gyro;
+}
+
+/// What a camera, turned by R_B_C and with its clock behind by `offset_s`, sees of it at 25 Hz.
+std::vector<Turn> turns_of(double seconds, const Eigen::Matrix3d& R_B_C, double offset_s) {
+  std::vector<Turn> turns;
+  for (double t = 0.5; t < seconds - 0.5; t += 0.04) {
+    Eigen::Vector3d phi = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 80; ++i) phi += shaking(t + (i + 0.5) * 0.001) * 0.001;
+    turns.push_back({timestamp_from_seconds(t - offset_s), timestamp_from_seconds(t - offset_s + 0.08),
+                     R_B_C.transpose() * phi});
+  }
+  return turns;
+}
+
+const Eigen::Matrix3d kTurned = so3::exp({0.3, -1.2, 2.0}).toRotationMatrix();
+
+TEST(GyroAgreement, FindsShiftAndRotationOfAnAnalyticMotion) {
+  for (const double offset_s : {0.0, 0.023, -0.061}) {
+    const auto found = compare_with_gyro(turns_of(8, kTurned, offset_s), gyro_of(8));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(to_seconds(found->time_offset), offset_s, 2e-4);
+    EXPECT_LT((found->R_B_C - kTurned).norm(), 2e-3);
+    EXPECT_NEAR(found->gyro_scale, 1.0, 2e-3);
+    EXPECT_LT(found->unexplained, 0.01);
+  }
+}
+
+TEST(GyroAgreement, OneWrongTurnInTenDecidesNothing) {
+  std::vector<Turn> turns = turns_of(8, kTurned, 0.01);
+  for (std::size_t i = 0; i < turns.size(); i += 10) turns[i].phi_C = Eigen::Vector3d(0.5, -0.5, 0.5);
+  const auto found = compare_with_gyro(turns, gyro_of(8));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(to_seconds(found->time_offset), 0.01, 1e-3);
+  EXPECT_LT((found->R_B_C - kTurned).norm(), 1e-2);
+}
+
+TEST(GyroAgreement, TellsAGyroInDegrees) {
+  const auto found = compare_with_gyro(turns_of(8, kTurned, 0.0), gyro_of(8, 180 / M_PI));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->gyro_scale, 180 / M_PI, 0.5);
+}
+
+TEST(GyroAgreement, SaysNothingOfTooFewTurnsOrOtherTimes) {
+  const std::vector<Turn> turns = turns_of(8, kTurned, 0.0);
+  EXPECT_FALSE(compare_with_gyro(std::span(turns).first(10), gyro_of(8)));
+  EXPECT_FALSE(compare_with_gyro(turns, GyroIntegral()));
+  EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 100.0), gyro_of(8)));
+}
+
+TEST(GyroIntegral, HasNothingAcrossAGapOrBeyondItsEnds) {
+  GyroIntegral gyro;
+  for (const double t : {0.0, 0.01, 0.02, 0.5, 0.51}) gyro.add({.t = timestamp_from_seconds(t), .gyro_B = {1, 0, 0}});
+  const auto between = [&](double a, double b) {
+    return gyro.between(timestamp_from_seconds(a), timestamp_from_seconds(b));
+  };
+  EXPECT_NEAR(between(0.005, 0.015)->x(), 0.01, 1e-12);
+  EXPECT_FALSE(between(0.015, 0.505));
+  EXPECT_FALSE(between(-0.1, 0.01));
+  EXPECT_FALSE(between(0.5, 0.6));
+}
+
+}  // namespace
+}  // namespace edged

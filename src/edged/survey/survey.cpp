@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/survey.hpp"
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+
+namespace edged {
+namespace {
+
+constexpr Duration kEventSilence = std::chrono::milliseconds(100);
+
+TruthSurvey survey_truth(const GroundTruth& truth) {
+  TruthSurvey survey;
+  survey.frame = truth.frame;
+  StreamSurveyor stream;
+  for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
+    const StampedPose& pose = truth.trajectory[i];
+    stream.add(pose.t, pose.t);
+    if (i > 0) survey.path_m += (pose.T.translation() - truth.trajectory[i - 1].T.translation()).norm();
+  }
+  survey.stream = stream.result();
+  return survey;
+}
+
+}  // namespace
+
+Duration Survey::overlap() const {
+  Timestamp begin = Timestamp::min(), end = Timestamp::max();
+  for (const StreamSurvey* stream : {&events, &frames, &imu}) {
+    if (stream->count == 0) continue;
+    begin = std::max(begin, *stream->begin);
+    end = std::min(end, *stream->end);
+  }
+  return begin == Timestamp::min() ? Duration(0) : std::max(end - begin, Duration(0));
+}
+
+Surveyor::Surveyor(const DatasetInfo& info) : events_(kEventSilence), event_details_(info.event_sensor) {}
+
+void Surveyor::add(const Measurement& measurement) {
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
+    if (batch->events.empty()) return;
+    events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
+    event_details_.add(batch->events);
+  } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
+    frames_.add(frame->t, frame->t);
+    if (image_size_.empty()) image_size_ = frame->image.size();
+    brightness_sum_ += cv::mean(frame->image)[0];
+  } else {
+    const auto& sample = std::get<ImuSample>(measurement);
+    imu_.add(sample.t, sample.t);
+    imu_details_.add(sample);
+  }
+}
+
+Survey Surveyor::result(const Dataset& dataset) const {
+  Survey survey;
+  survey.info = dataset.info();
+  survey.events = events_.result();
+  survey.frames = frames_.result();
+  survey.imu = imu_.result();
+  survey.event_details = event_details_.result();
+  survey.imu_details = imu_details_.result();
+  survey.image_size = image_size_;
+  if (survey.frames.count > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(survey.frames.count);
+  if (const auto truth = dataset.ground_truth()) survey.truth = survey_truth(*truth);
+  survey.repairs = dataset.repairs();
+  return survey;
+}
+
+}  // namespace edged

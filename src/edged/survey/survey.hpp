@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What a recording holds, from one pass through it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "edged/core/dataset.hpp"
+#include "edged/survey/event_survey.hpp"
+#include "edged/survey/imu_survey.hpp"
+#include "edged/survey/stream_survey.hpp"
+
+namespace edged {
+
+struct TruthSurvey {
+  StreamSurvey stream;
+  std::string frame;      ///< whose pose it is
+  double path_m = 0.0;  ///< length of the path
+};
+
+struct Survey {
+  DatasetInfo info;
+  StreamSurvey events, frames, imu;
+  EventSurvey event_details;
+  ImuSurvey imu_details;
+  cv::Size image_size;          ///< of the first image
+  double mean_brightness = 0.0;  ///< of all images, 0 to 255
+  std::optional<TruthSurvey> truth;
+  std::map<std::string, std::size_t> repairs;
+
+  /// Time that all sensors there cover, if any.
+  Duration overlap() const;
+};
+
+/// Takes a recording as it comes, in bounded memory.
+class Surveyor {
+ public:
+  explicit Surveyor(const DatasetInfo& info);
+
+  void add(const Measurement& measurement);
+  /// After the last measurement.
+  Survey result(const Dataset& dataset) const;
+
+ private:
+  StreamSurveyor events_, frames_, imu_;
+  EventSurveyor event_details_;
+  ImuSurveyor imu_details_;
+  cv::Size image_size_;
+  double brightness_sum_ = 0.0;
+};
+
+}  // namespace edged

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/visual_turns.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
+#include <opengv/relative_pose/methods.hpp>
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kFewestPairs = 12;
+constexpr std::size_t kMostTurns = 3000;                       // bounds time and memory
+constexpr double kEventsPerPixel = 0.3;                        // of a picture
+constexpr Duration kShortest = std::chrono::milliseconds(10);  // between pictures of events
+constexpr Duration kBaseline = std::chrono::milliseconds(80);  // of a turn, at least: over less, noise rules
+constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is no turn, but a gap
+
+}  // namespace
+
+std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
+                                                std::span<const Eigen::Vector2d> end) {
+  if (begin.size() < kFewestPairs) return std::nullopt;
+  opengv::bearingVectors_t from, to;
+  for (std::size_t i = 0; i < begin.size(); ++i) {
+    from.push_back(begin[i].homogeneous().normalized());
+    to.push_back(end[i].homogeneous().normalized());
+  }
+  const opengv::relative_pose::CentralRelativeAdapter adapter(from, to, Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d R = opengv::relative_pose::eigensolver(adapter);
+  return R.allFinite() ? std::optional(R) : std::nullopt;
+}
+
+VisualTurns::VisualTurns(const RigCamera& camera)
+    : modality_(camera.modality),
+      tracker_(camera.name, camera.model, TrackerConfig()),
+      picture_(camera.model.height(), camera.model.width(), CV_8UC1, cv::Scalar(0)),
+      events_per_picture_(static_cast<std::size_t>(kEventsPerPixel * static_cast<double>(picture_.total()))) {}
+
+void VisualTurns::add(const Measurement& measurement) {
+  if (turns_.size() >= kMostTurns) return;
+  if (const auto* batch = std::get_if<EventBatch>(&measurement); batch && modality_ == Modality::Events)
+    add_events(batch->events);
+  if (const auto* frame = std::get_if<Frame>(&measurement); frame && modality_ == Modality::Frames)
+    if (frame->image.size() == picture_.size()) add_image(frame->image, frame->t);
+}
+
+void VisualTurns::add_events(std::span<const Event> events) {
+  constexpr int kGrey = 60;  // of one event; a few make white
+  for (const Event& event : events) {
+    if (event.x < picture_.cols && event.y < picture_.rows) {
+      auto& pixel = picture_.at<std::uint8_t>(event.y, event.x);
+      pixel = cv::saturate_cast<std::uint8_t>(pixel + kGrey);
+    }
+    ++events_;
+  }
+  if (events.empty()) return;
+  if (!picture_begin_) picture_begin_ = events.front().t;
+  if (events_ < events_per_picture_) return;
+  const Timestamp t = *picture_begin_ + (events.back().t - *picture_begin_) / 2;
+  if (!views_.empty() && t - views_.back().t < kShortest) return;
+  cv::Mat smooth;
+  cv::GaussianBlur(picture_, smooth, cv::Size(), 1.0);
+  add_image(smooth, t);
+  picture_.setTo(0);
+  picture_begin_.reset();
+  events_ = 0;
+}
+
+void VisualTurns::add_image(const cv::Mat& image, Timestamp t) {
+  if (!views_.empty() && t <= views_.back().t) return;
+  tracker_.track(image, t, std::nullopt);
+  tracker_.reject_outliers(FeatureTracker::Reference::Previous, std::nullopt);
+  while (views_.size() > 1 && t - views_[1].t >= kBaseline) views_.pop_front();
+  View view{t, {}};
+  for (const Track& track : tracker_.tracks()) view.points[track.id] = track.point;
+  if (!views_.empty() && t - views_.front().t >= kBaseline && t - views_.front().t <= kLongest) add_turn(view);
+  if (tracker_.needs_corners()) tracker_.detect(image, next_id_);
+  for (const Track& track : tracker_.tracks()) view.points[track.id] = track.point;
+  views_.push_back(std::move(view));
+}
+
+/// From the oldest view to this one.
+void VisualTurns::add_turn(const View& view) {
+  std::vector<Eigen::Vector2d> begin, end;
+  for (const auto& [id, point] : view.points) {
+    const auto before = views_.front().points.find(id);
+    if (before == views_.front().points.end()) continue;
+    begin.push_back(before->second);
+    end.push_back(point);
+  }
+  if (const auto R = rotation_between(begin, end))
+    turns_.push_back({views_.front().t, view.t, so3::log(Eigen::Quaterniond(*R))});
+}
+
+}  // namespace edged

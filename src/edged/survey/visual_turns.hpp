@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How a camera turned, from its images alone.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/types.hpp"
+#include "edged/frontend/tracker.hpp"
+
+namespace edged {
+
+/// Rotation vector of a camera between two instants of its clock.
+struct Turn {
+  Timestamp begin, end;
+  Eigen::Vector3d phi_C = Eigen::Vector3d::Zero();  ///< R_W_C(end) = R_W_C(begin) * Exp(phi_C) [rad]
+};
+
+/// Rotation between two views of the same points, whatever the camera's translation: p_begin ~ R * (p_end - t). Points lie
+/// on the unit plane. Nothing where there are too few of them. (Kneip and Lynen, Direct Optimization of Frame-to-Frame
+/// Rotation, ICCV 2013; as in OpenGV.)
+std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
+                                                std::span<const Eigen::Vector2d> end);
+
+/// Follows corners through standard frames, or through pictures of the newest events.
+class VisualTurns {
+ public:
+  explicit VisualTurns(const RigCamera& camera);
+
+  /// Measurements of this camera; others are passed over.
+  void add(const Measurement& measurement);
+  const std::vector<Turn>& turns() const { return turns_; }
+
+ private:
+  /// The corners of one image, by id.
+  struct View {
+    Timestamp t;
+    std::map<FeatureId, Eigen::Vector2d> points;
+  };
+
+  void add_events(std::span<const Event> events);
+  void add_image(const cv::Mat& image, Timestamp t);
+  void add_turn(const View& view);
+
+  Modality modality_;
+  FeatureTracker tracker_;
+  FeatureId next_id_ = 1;
+  std::deque<View> views_;  ///< the newest ones
+  std::vector<Turn> turns_;
+  cv::Mat picture_;  ///< of the events since the last one; its stamp is the middle of theirs
+  std::optional<Timestamp> picture_begin_;
+  std::size_t events_ = 0, events_per_picture_;
+};
+
+}  // namespace edged
