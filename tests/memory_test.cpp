@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long runs: what the program holds in memory does not grow with the time it runs.
 #include <gtest/gtest.h>
-#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "edged/core/check.hpp"
@@ -18,6 +16,7 @@
 #include "edged/live/test_storm.hpp"
 #include "edged/sim/simulator.hpp"
 #include "end_to_end.hpp"
+#include "memory_use.hpp"
 #include "run_folder.hpp"
 
 namespace edged {
@@ -77,14 +76,6 @@ Flight small_flight(double duration_s, const Disturbance& disturbance = {}) {
   config.imu.gyro_bias = config.imu.accel_bias = 0.0;
   Simulator simulator(config);
   return read_flight(simulator, simulator.calibration());
-}
-
-double resident_mb() {
-  malloc_trim(0);
-  std::ifstream statm("/proc/self/statm");
-  double total = 0, resident = 0;
-  statm >> total >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
 double seconds_of_test() {

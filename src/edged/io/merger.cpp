@@ -51,6 +51,33 @@ void ArrivalQueue<T>::push(T item, Timestamp floor) {
 }
 
 template <typename T>
+void ArrivalQueue<T>::push(std::span<const T> items, Timestamp floor) {
+  while (!items.empty()) {
+    const std::size_t count = count_in_order(items, floor);
+    if (count > 0) {
+      sorted_.insert(sorted_.end(), items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count));
+      last_ = newest_ = items[count - 1].t;
+    } else {
+      push(items.front(), floor);
+    }
+    items = items.subspan(std::max<std::size_t>(count, 1));
+  }
+}
+
+/// How many of the first items continue the stream, so that nothing has to be judged.
+template <typename T>
+std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items, Timestamp floor) const {
+  if (suspect_ || !last_ || !stamps_repeat_) return 0;
+  std::size_t count = 0;
+  for (Timestamp before = std::max(newest_, floor); count < items.size(); ++count) {
+    const Timestamp t = items[count].t;
+    if (t < before || t - newest_ > kJump) break;
+    before = t;
+  }
+  return count;
+}
+
+template <typename T>
 void ArrivalQueue<T>::finish(Timestamp floor) {
   if (suspect_) insert(std::move(*suspect_), floor);
   suspect_.reset();
@@ -61,6 +88,15 @@ T ArrivalQueue<T>::pop() {
   T item = std::move(sorted_.front());
   sorted_.pop_front();
   return item;
+}
+
+template <typename T>
+std::vector<T> ArrivalQueue<T>::pop_before(Timestamp end, std::size_t most) {
+  const auto last = sorted_.begin() + static_cast<std::ptrdiff_t>(std::min(most, sorted_.size()));
+  const auto cut = std::partition_point(sorted_.begin(), last, [end](const T& item) { return item.t < end; });
+  std::vector<T> items(sorted_.begin(), cut);
+  sorted_.erase(sorted_.begin(), cut);
+  return items;
 }
 
 template <typename T>
@@ -89,9 +125,7 @@ Merger::Merger(Repairs& repairs)
       frames_("frames", false, 300, repairs),
       imu_("imu", false, 100'000, repairs) {}
 
-void Merger::push(std::span<const Event> events) {
-  for (const Event& event : events) events_.push(event, floor_);
-}
+void Merger::push(std::span<const Event> events) { events_.push(events, floor_); }
 
 void Merger::push(Frame frame) { frames_.push(std::move(frame), floor_); }
 
@@ -140,8 +174,7 @@ std::optional<Measurement> Merger::pop() {
 }
 
 EventBatch Merger::take_events(Timestamp end) {
-  EventBatch batch{expected_.event_camera, {}};
-  while (batch.events.size() < kMostInBatch && events_.next_stamp() < end) batch.events.push_back(events_.pop());
+  EventBatch batch{expected_.event_camera, events_.pop_before(end, kMostInBatch)};
   floor_ = batch.events.back().t;
   return batch;
 }

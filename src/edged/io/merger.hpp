@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "edged/core/types.hpp"
 #include "edged/io/repairs.hpp"
@@ -33,12 +34,16 @@ class ArrivalQueue {
 
   /// floor: stamp of what has been handed out; earlier items come too late.
   void push(T item, Timestamp floor);
+  /// Many; those that simply follow each other go in at once.
+  void push(std::span<const T> items, Timestamp floor);
   /// Nothing more will come.
   void finish(Timestamp floor);
 
   const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
   Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : sorted_.front().t; }
   T pop();
+  /// Those before `end`, at most so many.
+  std::vector<T> pop_before(Timestamp end, std::size_t most);
 
   /// Stamp of the last arrival.
   std::optional<Timestamp> last() const { return last_; }
@@ -50,6 +55,7 @@ class ArrivalQueue {
  private:
   static constexpr Duration kJump = std::chrono::seconds(10);
   void insert(T item, Timestamp floor);
+  std::size_t count_in_order(std::span<const T> items, Timestamp floor) const;
 
   std::string subject_;
   bool stamps_repeat_;

@@ -22,6 +22,7 @@ class EventStorm : public Dataset {
         duration_ms_(duration_ms) {
     info_.name = "storm";
     info_.has_events = info_.has_frames = info_.has_imu = true;
+    info_.event_sensor = size;
   }
 
   const DatasetInfo& info() const override { return info_; }
@@ -49,7 +50,7 @@ class EventStorm : public Dataset {
     EventBatch result{event_camera_, std::vector<Event>(batch_)};
     for (std::size_t i = 0; i < batch_; ++i) {
       Event& event = result.events[i];
-      event.t = begin + std::chrono::nanoseconds(998'000 * i / batch_);
+      event.t = begin + std::chrono::microseconds(998 * i / batch_);
       random_ = random_ * 6364136223846793005U + 1442695040888963407U;
       event.x = static_cast<std::uint16_t>((random_ >> 33U) % static_cast<std::uint64_t>(size_.width));
       event.y = static_cast<std::uint16_t>((random_ >> 48U) % static_cast<std::uint64_t>(size_.height));
