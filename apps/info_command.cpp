@@ -20,11 +20,21 @@ struct InfoOptions {
   bool quiet = false, json = false;
 };
 
+std::string calibration_text(const Recording& recording) {
+  if (!recording.calibration) return "none: give --rig or --calib";
+  std::string cameras;
+  for (const RigCamera& camera : recording.calibration->rig.cameras) cameras += " " + camera.name;
+  return (recording.calibration->has_extrinsics ? "cameras and IMU:" : "intrinsics only:") + cameras;
+}
+
 int run_info(const InfoOptions& options) {
   catch_interrupts();
   const Recording recording = open_uncalibrated(options.source);
   const Survey survey = survey_recording(*recording.dataset, options.quiet, {});
-  fmt::print("{}", options.json ? to_json(survey).dump(2) + "\n" : to_text(survey));
+  if (options.json)
+    fmt::print("{}\n", to_json(survey).dump(2));
+  else
+    fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }
 

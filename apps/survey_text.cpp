@@ -25,9 +25,9 @@ std::string gap_text(const StreamSurvey& stream) {
   return text;
 }
 
-std::string stream_text(const StreamSurvey& stream) {
-  return fmt::format("{} in {:.3f} s ({:.3f} to {:.3f} s), {}Hz", stream.count, to_seconds(stream.length()),
-                     to_seconds(*stream.begin), to_seconds(*stream.end), si_number(stream.rate_hz()));
+std::string stream_text(const StreamSurvey& stream, std::string_view unit = "Hz") {
+  return fmt::format("{} in {:.3f} s ({:.3f} to {:.3f} s), {}{}", stream.count, to_seconds(stream.length()),
+                     to_seconds(*stream.begin), to_seconds(*stream.end), si_number(stream.rate_hz()), unit);
 }
 
 /// "below 1 k", "1 k to 10 k", ..., "above 10 M", each with a bar.
@@ -47,7 +47,7 @@ std::string histogram(const EventSurvey& events) {
 
 std::string events_text(const Survey& s) {
   const EventSurvey& e = s.event_details;
-  std::string text = line("events", stream_text(s.events));
+  std::string text = line("events", stream_text(s.events, "ev/s"));
   text += line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
                                size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
                                100 * e.positive_share, 100 * e.active_share));

@@ -173,6 +173,16 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
                         turn.angle() * kDegPerRad, turn.axis().x(), turn.axis().y(), turn.axis().z()));
 }
 
+/// A first guess for those who have no calibration yet.
+void tell_rotation(const CameraCheck& check, Findings& out) {
+  const Eigen::Matrix3d& R = check.agreement->R_B_C;
+  out.note(fmt::format("camera {}: its rotation to the IMU is not calibrated; by its turning R_B_C is [{:.3f} {:.3f} {:.3f}; "
+                       "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
+                       check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2),
+                       check.agreement->rotation_sigma * kDegPerRad),
+           "a run needs it and the lever arm: calibrate camera and IMU together, for instance with Kalibr");
+}
+
 void judge_scale(const CameraCheck& check, Findings& out) {
   const double ratio = check.agreement->gyro_scale;
   if (ratio > 0.7 && (ratio < 1.4 || in_degrees(check))) return;
@@ -189,7 +199,7 @@ void judge_camera(const CameraCheck& check, Findings& out) {
                                 "its turning unexplained)",
                                 name, 100 * check.agreement->unexplained));
   judge_shift(check, out);
-  if (check.has_extrinsics) judge_rotation(check, out);
+  check.has_extrinsics ? judge_rotation(check, out) : tell_rotation(check, out);
   judge_scale(check, out);
 }
 

@@ -100,6 +100,13 @@ TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
   EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Warning, "0.50 times"), HasSubstr("focal length"));
 }
 
+TEST(Diagnosis, GuessesTheRotationOfACameraThatHasNone) {
+  CameraCheck check = agreeing();
+  check.has_extrinsics = false;
+  check.agreement->R_B_C << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+}
+
 TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
   CameraCheck check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
