@@ -225,6 +225,19 @@ class Recordings(WithFolder):
             self.assertEqual((back / "events.txt").read_text(), (self.flight / "events.txt").read_text())
             self.assert_refused(edged("convert", self.flight, target, "--quiet"), "is there already")
 
+    def test_a_converted_recording_gives_the_same_run_to_the_last_bit(self):
+        states = {}
+        for name in ("flight.bag", "flight.mcap", "flight"):
+            recording = self.flight if name == "flight" else self.folder / name
+            if name != "flight":
+                self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+            run = self.folder / ("run_" + name)
+            result = edged("run", recording, "--calib", self.flight / "calibration.yaml", "--out", run, "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            states[name] = (run / "states.csv").read_text()
+        self.assertEqual(states["flight.bag"], states["flight"])
+        self.assertEqual(states["flight.mcap"], states["flight"])
+
     def test_convert_lists_the_formats_where_it_does_not_know_one(self):
         self.assert_refused(edged("convert", self.flight, self.folder / "a.xyz"), "`.xyz`", "raw (.raw)")
 
