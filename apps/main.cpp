@@ -9,6 +9,7 @@
 #include <functional>
 #include <opencv2/core/utility.hpp>
 
+#include "calib_command.hpp"
 #include "config_command.hpp"
 #include "convert_command.hpp"
 #include "depth_command.hpp"
@@ -48,6 +49,7 @@ int run_program(int argc, char** argv) {
   add_info_command(app, chosen);
   add_doctor_command(app, chosen);
   add_convert_command(app, chosen);
+  add_calib_command(app, chosen);
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
   add_enhance_command(app, chosen);

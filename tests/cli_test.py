@@ -39,7 +39,7 @@ class CommandLine(WithFolder):
         text = edged("--help").stdout
         for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
             self.assertIn(word, text)
-        for command in ("run", "info", "doctor", "convert", "simulate", "eval", "enhance", "depth"):
+        for command in ("run", "info", "doctor", "calib", "convert", "simulate", "eval", "enhance", "depth"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
     def test_a_wrong_command_line_is_code_2(self):
@@ -111,6 +111,50 @@ class Eval(WithFolder):
         later = self.folder / "later.txt"
         later.write_text("".join(f"{5000 + i} 0 0 {i} 0 0 0 1\n" for i in range(9)))
         self.assert_refused(edged("eval", self.truth, later), "clock")
+
+
+class Calib(WithFolder):
+    KALIBR = """cam0:
+  T_cam_imu: [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, -0.1], [0, 0, 0, 1]]
+  camera_model: pinhole
+  distortion_model: none
+  intrinsics: [173.0, 173.0, 172.5, 129.5]
+  resolution: [346, 260]
+  timeshift_cam_imu: -0.003
+"""
+
+    def setUp(self):
+        super().setUp()
+        self.chain = self.folder / "camchain.yaml"
+        self.chain.write_text(self.KALIBR)
+
+    def test_a_rig_is_shown_with_both_directions_and_its_field_of_view(self):
+        text = edged("calib", "davis240c_ecd").stdout
+        for word in ("T_B_C", "T_C_B", "field of view", "t_imu = t_cam +2.400 ms", "gyro noise"):
+            self.assertIn(word, text)
+        shown = json.loads(edged("calib", "davis240c_ecd", "--json").stdout)
+        self.assertEqual([camera["name"] for camera in shown["cameras"]], ["events", "frames"])
+        self.assertEqual(shown["warnings"], [])
+
+    def test_any_format_becomes_a_rig(self):
+        self.assert_refused(edged("calib", self.chain), "cam0", "--camera cam0=events")
+        rig = self.folder / "head.yaml"
+        shown = edged("calib", self.chain, "--camera", "cam0=both", "--out", rig, "--json")
+        self.assertAlmostEqual(json.loads(shown.stdout)["cameras"][0]["field_of_view_deg"]["horizontal"], 89.8, 1)
+        again = json.loads(edged("calib", rig, "--json").stdout)
+        self.assertEqual(again["name"], "head")
+        self.assertEqual([camera["name"] for camera in again["cameras"]], ["events", "frames"])
+        self.assertAlmostEqual(again["cameras"][0]["T_B_C"][0][3], 0.1)
+        self.assertAlmostEqual(again["cameras"][0]["time_offset_s"], -0.003)
+        self.assert_refused(edged("calib", self.chain, "--camera", "cam0=both", "--out", rig), "exists")
+
+    def test_what_looks_wrong_is_said(self):
+        self.chain.write_text(self.KALIBR.replace("-0.1]", "-100]"))
+        result = edged("calib", self.chain, "--camera", "cam0=events")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("millimetres", result.stderr)
+        self.chain.write_text(self.KALIBR.replace("[0, -1, 0, 0]", "[0, 1, 0, 0]"))
+        self.assert_refused(edged("calib", self.chain, "--camera", "cam0=events"), "camchain.yaml:2", "mirrored")
 
 
 class Depth(WithFolder):

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/camera/rig.hpp"
@@ -17,20 +20,31 @@ namespace edged {
 struct Calibration {
   Rig rig;
   ImuNoise imu;
-  bool has_extrinsics = true;  ///< false: the file has intrinsics only, T_B_C and time_offset are placeholders
-  bool has_imu_noise = true;   ///< false: `imu` holds the defaults
+  bool has_extrinsics = true;         ///< false: the file has intrinsics only, T_B_C and time_offset are placeholders
+  bool has_imu_noise = true;          ///< false: `imu` holds the defaults
+  std::vector<std::string> warnings;  ///< what looks wrong, each one line
 };
 
-/// Reads a calibration, the format found by content:
-/// - our own yaml (docs/calibration.md, `edged_rig: 1`),
-/// - Event-Camera Dataset calib.txt (4 or 9 numbers: intrinsics only, cameras "events" and "frames"; the size is
-///   that of the first image beside it, else 240 x 180),
-/// - EuRoC: a mav0 folder or its parent, or one sensor.yaml of a camera (with imu0 beside it),
-/// - Kalibr camchain-imucam yaml, its IMU noise from imu_file.
-/// A folder is searched for calibration.yaml, mav0, camchain*.yaml with imu*.yaml, calib.txt, in that order.
-/// Throws InputError for unknown content, a rotation that is not orthonormal, or impossible intrinsics; logs a warning
-/// for a lever arm beyond 0.5 m.
-Calibration load_calibration(const SourcePath& path, const std::filesystem::path& imu_file = {});
+/// What the pixels behind a lens give: those of a DAVIS give both.
+enum class Sees { Events, Frames, Both };
+
+/// "events", "frames" or "both".
+std::optional<Sees> parse_sees(std::string_view text);
+
+struct CalibrationOptions {
+  std::filesystem::path imu_file = {};  ///< Kalibr imu yaml, instead of what the calibration says of the IMU
+  std::map<std::string, Sees> sees =
+      {};                              ///< by the camera's name in the file: where the file does not tell, or is wrong
+  std::optional<Sees> otherwise = {};  ///< where nothing tells; not given: an error that asks
+};
+
+/// Reads a calibration, the format found by content: ours, Kalibr, EuRoC, Event-Camera Dataset, VINS (ESVIO, HKU),
+/// USLAM, basalt, VECtor, ROS camera_info. docs/calibration.md has the table: how each is recognised, which way its
+/// transforms point, what a folder is searched for, and how a camera is found to see events, frames or both. A lens
+/// that gives both becomes two cameras, `events` and `frames`. Throws InputError for unknown content, a rotation that
+/// is not orthonormal to 1e-3 or mirrored, impossible intrinsics, and a camera of which nothing tells what it sees.
+/// Logs Calibration::warnings.
+Calibration load_calibration(const SourcePath& path, const CalibrationOptions& options = {});
 
 /// A rig by name (config/rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.
 Calibration load_rig(const std::string& name_or_path);
@@ -38,7 +52,8 @@ Calibration load_rig(const std::string& name_or_path);
 /// Names of the rigs that load_rig finds, sorted.
 std::vector<std::string> known_rigs();
 
-/// Each camera with both directions of its transform and its time offset; the noise of the IMU. Several lines.
+/// Each camera with its field of view, both directions of its transform and its time offset; the noise of the IMU.
+/// Several lines.
 std::string describe(const Calibration& calibration);
 
 /// Our own yaml; load_calibration gives back the same numbers to the last bit (rotations to rounding).

@@ -49,7 +49,7 @@ constexpr const char* kKalibr = R"(cam0:
   distortion_model: equidistant
   intrinsics: [226.0, 226.0, 173.0, 133.0]
   resolution: [346, 260]
-  rostopic: /davis/left/image_raw
+  rostopic: /camera/left/image_mono
   timeshift_cam_imu: -0.0031
 )";
 
@@ -88,7 +88,7 @@ TEST(Calibration, OwnYamlTakesEitherDirection) {
 TEST(Calibration, KalibrTransformIsTheInverseOfOurs) {
   TempFolder folder;
   const auto file = folder.write("camchain-imucam.yaml", kKalibr);
-  const Calibration c = load_calibration(file, folder.write("imu.yaml", kImu));
+  const Calibration c = load_calibration(file, {.imu_file = folder.write("imu.yaml", kImu)});
   const RigCamera& camera = c.rig.camera("cam0");
   EXPECT_TRUE(camera.T_B_C.translation().isApprox(Eigen::Vector3d(0.1, 0, 0)));
   EXPECT_TRUE((camera.T_B_C * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1.1, 0, 0)));

@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "edged/core/check.hpp"
 #include "edged/io/text.hpp"
@@ -12,34 +14,58 @@
 namespace edged {
 namespace {
 
-constexpr double kRotationTolerance = 1e-3;
-constexpr std::size_t kMostBytes = 1 << 24;
+constexpr double kRotationTolerance = 1e-3;  // beyond: refused
+constexpr double kRotationRounding = 1e-5;   // beyond: a warning; six digits are within it
+constexpr std::size_t kMaxFileBytes = 16 << 20;
+constexpr std::size_t kMaxNumbers = 64;  // no value of any format has more
+constexpr int kMaxNesting = 4;           // of lists; a list may hold itself by an anchor
+constexpr double kMaxOffset = 10.0;      // [s]
+
+std::string read_small_file(const SourcePath& file) try {
+  return std::string(as_text(file.read(kMaxFileBytes)));
+} catch (const Damage& damage) {
+  throw InputError::format("{}: {}", file.string(), damage.what());
+}
+
+/// A frequent mistake that yaml reports in words of its own: the rows of a matrix as lists without a list around them.
+std::string hint(const std::string& text, int line) {
+  std::size_t begin = 0;
+  for (int i = 0; i < line && begin != std::string::npos; ++i) begin = text.find('\n', begin + (i > 0));
+  begin = begin == std::string::npos ? begin : text.find_first_not_of(" \t\n", begin);
+  if (begin == std::string::npos || text[begin] != '[') return "";
+  return "; a list begins here where a key should: the rows of a matrix need one pair of brackets around them all";
+}
 
 YAML::Node parse_file(const SourcePath& file) {
+  const std::string text = read_small_file(file);
   try {
-    return YAML::Load(std::string(as_text(file.read(kMostBytes))));
+    return YAML::Load(text);
   } catch (const YAML::Exception& e) {
-    throw InputError::format("{}:{}: not readable as yaml: {}", file.string(), e.mark.line + 1, e.msg);
-  } catch (const Damage& damage) {
-    throw InputError::format("{}: {}", file.string(), damage.what());
+    throw InputError::format("{}:{}: not readable as yaml: {}{}", file.string(), e.mark.line + 1, e.msg,
+                             hint(text, e.mark.line));
   }
 }
 
 }  // namespace
 
-YamlReader::YamlReader(const SourcePath& file) : YamlReader(file.string(), "", parse_file(file)) {}
+YamlReader::YamlReader(const SourcePath& file)
+    : YamlReader(file, "", parse_file(file), std::make_shared<std::vector<std::string>>()) {}
 
-void YamlReader::fail(const std::string& what) const {
+YamlReader YamlReader::other_file(const SourcePath& file) const { return {file, "", parse_file(file), warnings_}; }
+
+std::string YamlReader::place() const {
   const int line = node_.Mark().line;
-  const std::string place = line >= 0 ? fmt::format("{}:{}", file_, line + 1) : file_;
-  throw InputError::format("{}: {}{}{}", place, path_, path_.empty() ? "" : ": ", what);
+  return fmt::format("{}{}: {}{}", file_.string(), line >= 0 ? fmt::format(":{}", line + 1) : "", path_,
+                     path_.empty() ? "" : ": ");
 }
+
+void YamlReader::fail(const std::string& what) const { throw InputError(place() + what); }
 
 std::optional<YamlReader> YamlReader::find(const std::string& key) const {
   if (!node_.IsMap()) return std::nullopt;
   const YAML::Node child = node_[key];
   if (!child) return std::nullopt;
-  return YamlReader(file_, path_.empty() ? key : path_ + "." + key, child);
+  return YamlReader(file_, path_.empty() ? key : path_ + "." + key, child, warnings_);
 }
 
 YamlReader YamlReader::at(const std::string& key) const {
@@ -50,7 +76,8 @@ YamlReader YamlReader::at(const std::string& key) const {
 std::vector<YamlReader> YamlReader::items() const {
   if (!node_.IsSequence()) fail("must be a list");
   std::vector<YamlReader> out;
-  for (std::size_t i = 0; i < node_.size(); ++i) out.push_back({file_, fmt::format("{}[{}]", path_, i), node_[i]});
+  for (std::size_t i = 0; i < node_.size(); ++i)
+    out.push_back({file_, fmt::format("{}[{}]", path_, i), node_[i], warnings_});
   return out;
 }
 
@@ -66,42 +93,75 @@ std::string YamlReader::text() const {
   return node_.Scalar();
 }
 
+std::string YamlReader::text_or(const std::string& key, const std::string& otherwise) const {
+  const auto child = find(key);
+  return child ? child->text() : otherwise;
+}
+
 double YamlReader::number() const {
   const auto value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
   if (!value) fail("must be a finite number");
   return *value;
 }
 
-void YamlReader::collect(const YAML::Node& node, std::vector<double>& out) const {
-  if (node.IsSequence()) {
-    for (const auto& item : node) collect(item, out);
+double YamlReader::positive() const {
+  const double x = number();
+  if (x <= 0) fail("must be above 0");
+  return x;
+}
+
+Duration YamlReader::time_offset() const {
+  const double seconds = number();
+  if (std::abs(seconds) > kMaxOffset)
+    fail(fmt::format("a clock off by {:g} s; at most {:g} s is believed: is it in seconds?", seconds, kMaxOffset));
+  return duration_from_seconds(seconds);
+}
+
+void YamlReader::collect(const YAML::Node& node, int depth, std::vector<double>& out) const {
+  if (node.IsSequence() && depth < kMaxNesting) {
+    for (const auto& item : node) collect(item, depth + 1, out);
     return;
   }
   const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
   if (!value) fail("must be a list of finite numbers");
+  if (out.size() == kMaxNumbers) fail(fmt::format("must have at most {} numbers", kMaxNumbers));
   out.push_back(*value);
 }
 
 std::vector<double> YamlReader::numbers() const {
-  if (!node_.IsSequence()) fail("must be a list of numbers");
+  const auto data = find("data");
+  if (!node_.IsSequence() && !data) fail("must be a list of numbers");
   std::vector<double> out;
-  collect(node_, out);
+  collect(data ? data->node_ : node_, 0, out);
+  if (!data) return out;
+  const auto rows = find("rows"), cols = find("cols");
+  // Rows of distortion coefficients are often counted one short of those that follow.
+  if (rows && cols && rows->number() * cols->number() > static_cast<double>(out.size()))
+    fail(fmt::format("{} rows of {} need more than the {} numbers of data", rows->text(), cols->text(), out.size()));
   return out;
 }
 
 SE3 YamlReader::transform() const {
-  const auto data = find("data");
-  std::vector<double> v = data ? data->numbers() : numbers();
+  const std::vector<double> v = numbers();
   if (v.size() != 12 && v.size() != 16) fail(fmt::format("must have 4 rows of 4 numbers, has {} numbers", v.size()));
   if (v.size() == 16 && (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1)) fail("the last row must be 0 0 0 1");
-  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> T(v.data());
-  const Eigen::Matrix3d R = T.leftCols<3>();
+  return rigid(std::array{v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10]}, std::array{v[3], v[7], v[11]});
+}
+
+SE3 YamlReader::rigid(std::span<const double> rotation, std::span<const double> translation) const {
+  if (rotation.size() != 9 || translation.size() != 3) fail("a rotation has 9 numbers and a translation 3");
+  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (deviation > kRotationTolerance)
+  if (!(deviation <= kRotationTolerance))
     fail(fmt::format("the rotation is not orthonormal: R^T R differs from 1 by {:.3g} (at most {:g})", deviation,
                      kRotationTolerance));
   if (R.determinant() < 0) fail("the rotation is mirrored (determinant -1): check the signs of its columns");
-  return SE3(R, T.col(3));
+  if (deviation > kRotationRounding)
+    warn(
+        fmt::format("the rotation is orthonormal only to {:.2g} (R^T R against 1); a rotation near it is used: "
+                    "give more digits",
+                    deviation));
+  return SE3(R, Eigen::Map<const Eigen::Vector3d>(translation.data()));
 }
 
 void YamlReader::allow_only(std::initializer_list<std::string_view> known) const {
@@ -109,7 +169,8 @@ void YamlReader::allow_only(std::initializer_list<std::string_view> known) const
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-    find(key)->fail("unknown key; known here: " + list);
+    const auto value = find(key);
+    (value ? *value : *this).fail("unknown key; known here: " + list);
   }
 }
 

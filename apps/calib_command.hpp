@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// `edged calib`: a calibration of any format shown, judged, and written in ours.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace edged {
+
+/// Adds the sub-command; `chosen` receives what to run when the user chose it.
+void add_calib_command(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace edged

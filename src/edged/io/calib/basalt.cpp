@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The json files of basalt, as TUM-VI and TUM-VIE publish them.
+#include <algorithm>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+#include "edged/io/calib/formats.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kUnitQuaternion = 1e-3;
+
+/// p_imu = T_imu_cam * p_cam: the same as ours.
+SE3 read_basalt_pose(const YamlReader& node) {
+  const auto number = [&node](const char* key) { return node.at(key).number(); };
+  const Eigen::Quaterniond q(number("qw"), number("qx"), number("qy"), number("qz"));
+  if (!(std::abs(q.norm() - 1.0) <= kUnitQuaternion))
+    node.fail(fmt::format("the quaternion has a norm of {:.4g}, must be 1", q.norm()));
+  return SE3(q, Eigen::Vector3d(number("px"), number("py"), number("pz")));
+}
+
+CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>& size) {
+  const std::string type = node.at("camera_type").text();
+  const YamlReader values = node.at("intrinsics");
+  const auto numbers = [&values](std::initializer_list<const char*> keys) {
+    std::vector<double> out;
+    for (const char* key : keys) out.push_back(values.at(key).number());
+    return out;
+  };
+  if (type != "pinhole" && type != "kb4")
+    node.at("camera_type").fail("camera type " + type + " is not supported; pinhole and kb4 are");
+  Intrinsics in{size[0], size[1], numbers({"fx", "fy", "cx", "cy"}), "none", {}};
+  if (type == "kb4") in.distortion = "equidistant", in.coefficients = numbers({"k1", "k2", "k3", "k4"});
+  return make_model(values, in);
+}
+
+/// The four cameras of TUM-VIE: left and right frames, left and right events. The file has no names.
+bool is_tum_vie(const std::vector<Lens>& lenses) {
+  const auto size_is = [&lenses](std::size_t i, int width, int height) {
+    return lenses[i].model.width() == width && lenses[i].model.height() == height;
+  };
+  return lenses.size() == 4 && size_is(0, 1024, 1024) && size_is(1, 1024, 1024) && size_is(2, 1280, 720) &&
+         size_is(3, 1280, 720);
+}
+
+/// Basalt's *_std are densities in continuous time, as ours (it multiplies by sqrt(imu_update_rate) itself): the
+/// largest of the three axes.
+std::optional<ImuNoise> read_basalt_noise(const YamlReader& value) {
+  if (!value.find("gyro_noise_std")) return std::nullopt;
+  const auto largest = [&value](const char* key) {
+    const std::vector<double> axes = value.at(key).numbers();
+    if (axes.empty() || *std::min_element(axes.begin(), axes.end()) <= 0) value.at(key).fail("must be above 0");
+    return *std::max_element(axes.begin(), axes.end());
+  };
+  ImuNoise noise;
+  noise.gyro_noise = largest("gyro_noise_std");
+  noise.accel_noise = largest("accel_noise_std");
+  noise.gyro_walk = largest("gyro_bias_std");
+  noise.accel_walk = largest("accel_bias_std");
+  return noise;
+}
+
+}  // namespace
+
+CalibrationFile read_basalt(const YamlReader& root) {
+  const YamlReader value = root.at("value0");
+  const std::vector<YamlReader> poses = value.at("T_imu_cam").items(), intrinsics = value.at("intrinsics").items(),
+                                resolutions = value.at("resolution").items();
+  if (poses.size() != intrinsics.size() || poses.size() != resolutions.size())
+    value.fail(fmt::format("{} of T_imu_cam, {} of intrinsics and {} of resolution do not make whole cameras",
+                           poses.size(), intrinsics.size(), resolutions.size()));
+  CalibrationFile out;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::vector<double> size = resolutions[i].numbers();
+    if (size.size() != 2) resolutions[i].fail("must be [width, height]");
+    Lens lens;
+    lens.name = "cam" + std::to_string(i);
+    lens.model = read_basalt_camera(intrinsics[i], size);
+    lens.T_B_C = read_basalt_pose(poses[i]);
+    // Added to the stamps of images: t_imu = t_cam + cam_time_offset_ns, the same sign as ours.
+    if (const auto offset = value.find("cam_time_offset_ns"))
+      lens.time_offset = Duration(static_cast<std::int64_t>(std::clamp(offset->number(), -1e10, 1e10)));
+    out.lenses.push_back(std::move(lens));
+  }
+  if (is_tum_vie(out.lenses)) {
+    const char* const names[] = {"frames", "frames_right", "events", "events_right"};
+    for (std::size_t i = 0; i < out.lenses.size(); ++i) {
+      out.lenses[i].name = names[i];
+      out.lenses[i].sees = i < 2 ? Sees::Frames : Sees::Events;
+    }
+  }
+  out.imu = read_basalt_noise(value);
+  return out;
+}
+
+}  // namespace edged

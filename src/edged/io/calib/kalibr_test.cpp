@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Kalibr's camchains: chains of cameras, a second IMU, models, and what its cameras see.
+#include <gmock/gmock.h>
+#include <spdlog/spdlog.h>
+
+#include "edged/io/calibration.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string edited(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::vector<std::string> camera_names(const Calibration& c) {
+  std::vector<std::string> out;
+  for (const RigCamera& camera : c.rig.cameras)
+    out.push_back(camera.name + (camera.modality == Modality::Events ? ":events" : ":frames"));
+  return out;
+}
+
+class Kalibr : public ::testing::Test {
+ protected:
+  void SetUp() override { spdlog::set_level(spdlog::level::off); }
+  void TearDown() override { spdlog::set_level(spdlog::level::info); }
+  Calibration load(const std::string& text, const CalibrationOptions& options = {}) {
+    return load_calibration(folder_.write("c.yaml", text), options);
+  }
+  std::string complaint(const std::string& text, const CalibrationOptions& options = {}) {
+    return input_error([&] { load(text, options); });
+  }
+  TempFolder folder_;
+};
+
+constexpr const char* kChain = R"(cam0:
+  T_cam_imu: [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, -0.1], [0, 0, 0, 1]]
+  camera_model: pinhole
+  distortion_coeffs: [-0.05, 0.01, 0.0, 0.0]
+  distortion_model: equidistant
+  intrinsics: [226.0, 226.0, 173.0, 133.0]
+  resolution: [346, 260]
+  rostopic: /davis/left/image_raw
+cam1:
+  T_cn_cnm1: [[1, 0, 0, -0.2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  camera_model: pinhole
+  distortion_model: none
+  intrinsics: [226.0, 226.0, 173.0, 133.0]
+  resolution: [346, 260]
+  rostopic: /davis/right/image_raw
+)";
+
+TEST_F(Kalibr, AKalibrChainLeadsFromCameraToCamera) {
+  const Calibration c = load(kChain);
+  EXPECT_THAT(camera_names(c),
+              ElementsAre("events:events", "frames:frames", "cam1_events:events", "cam1_frames:frames"));
+  EXPECT_TRUE((c.rig.cameras[0].T_B_C * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1.1, 0, 0)));
+  // 20 cm to the right in the image (camera x) is 20 cm to the right of the body (-y).
+  EXPECT_TRUE(c.rig.cameras[2].T_B_C.translation().isApprox(Eigen::Vector3d(0.1, -0.2, 0)));
+  const std::string both =
+      std::string(kChain) + "  T_cam_imu: [[0, -1, 0, -0.2], [0, 0, -1, 0], [1, 0, 0, -0.1], [0, 0, 0, 1]]\n";
+  EXPECT_TRUE(load(both).warnings.empty());
+  EXPECT_THAT(load(edited(both, "-0.2], [0, 1", "-0.3], [0, 1")).warnings, ElementsAre(HasSubstr("by 0.1 m")));
+}
+
+TEST_F(Kalibr, ASecondImuOfKalibrTakesItsPlaceAndClockIntoAccount) {
+  const auto imu = folder_.write("imu1.yaml", R"(imu0:
+  accelerometer_noise_density: 0.01
+  accelerometer_random_walk: 0.0002
+  gyroscope_noise_density: 0.0005
+  gyroscope_random_walk: 4.0e-06
+  T_i_b: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]]
+  time_offset: 0.001
+)");
+  const Calibration c = load(kChain, {.imu_file = imu});
+  EXPECT_TRUE(c.rig.cameras[0].T_B_C.translation().isApprox(Eigen::Vector3d(0.1, 0, 0.5)));
+  EXPECT_EQ(c.rig.cameras[0].time_offset, Duration(-1'000'000));
+}
+
+TEST_F(Kalibr, ModelsWithoutSupportAreRefusedByName) {
+  for (const char* model : {"omni", "ds", "eucm"})
+    EXPECT_THAT(complaint(edited(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
+                HasSubstr(std::string("camera model ") + model + " is not supported"));
+  EXPECT_THAT(complaint(edited(kChain, "distortion_model: equidistant", "distortion_model: fov")), HasSubstr("fov"));
+}
+
+TEST_F(Kalibr, WhatACameraSeesIsAskedForWhereNothingTells) {
+  const std::string mute =
+      edited(edited(kChain, "  rostopic: /davis/left/image_raw\n", ""), "  rostopic: /davis/right/image_raw\n", "");
+  EXPECT_THAT(complaint(mute), HasSubstr("camera cam0: nothing in its names tells"));
+  EXPECT_THAT(complaint(mute, {.sees = {{"cam7", Sees::Events}}}), HasSubstr("has no camera cam7; it has: cam0, cam1"));
+  EXPECT_THAT(camera_names(load(mute, {.sees = {{"cam0", Sees::Events}, {"cam1", Sees::Both}}})),
+              ElementsAre("cam0:events", "events:events", "frames:frames"));
+}
+
+}  // namespace
+}  // namespace edged

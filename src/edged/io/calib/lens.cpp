@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/io/calib/lens.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kMaxPixels = 65535;
+
+struct Distortion {
+  DistortionModel model = DistortionModel::None;
+  std::array<double, 5> k{};
+};
+
+bool only_zeros(const std::vector<double>& k, std::size_t from) {
+  return std::all_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(from, k.size())), k.end(),
+                     [](double x) { return x == 0.0; });
+}
+
+Distortion make_distortion(const YamlReader& place, const Intrinsics& in) {
+  const std::string& name = in.distortion;
+  const auto is_one_of = [&name](std::initializer_list<std::string_view> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  Distortion out;
+  std::size_t most = 0;
+  if (is_one_of({"none", "no", ""})) {
+  } else if (is_one_of({"radtan", "radial-tangential", "plumb_bob"})) {
+    out.model = DistortionModel::RadTan, most = 5;
+    if (in.coefficients.size() < 4) place.fail("radtan takes 4 or 5 numbers: k1 k2 p1 p2 [k3]");
+  } else if (is_one_of({"rational_polynomial", "rational"})) {
+    out.model = DistortionModel::RadTan, most = 5;
+    if (in.coefficients.size() < 5) place.fail("a rational polynomial takes 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
+    if (!only_zeros(in.coefficients, most))
+      place.fail("a rational polynomial with k4 to k6 is not supported: calibrate with plumb_bob or equidistant");
+  } else if (is_one_of({"equidistant", "fisheye", "kannala_brandt", "kb4"})) {
+    out.model = DistortionModel::Equidistant, most = 4;
+    if (in.coefficients.size() < 4) place.fail("equidistant takes 4 numbers: k1 k2 k3 k4");
+  } else {
+    place.fail("distortion " + name + " is not supported; radtan, equidistant and none are");
+  }
+  if (!only_zeros(in.coefficients, most))
+    place.fail(fmt::format("distortion {} has {} coefficients, here are {}", name.empty() ? "none" : name, most,
+                           in.coefficients.size()));
+  std::copy_n(in.coefficients.begin(), std::min(most, in.coefficients.size()), out.k.begin());
+  return out;
+}
+
+bool has_any(const std::string& text, std::initializer_list<std::string_view> words) {
+  return std::any_of(words.begin(), words.end(), [&text](auto w) { return text.find(w) != std::string::npos; });
+}
+
+std::string lens_list(const CalibrationFile& file) {
+  std::string list;
+  for (const Lens& lens : file.lenses) list += (list.empty() ? "" : ", ") + lens.name;
+  return list;
+}
+
+Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePath& path) {
+  if (const auto said = options.sees.find(lens.name); said != options.sees.end()) return said->second;
+  if (lens.sees) return *lens.sees;
+  const auto guess = guess_sees(lens.words, lens.model.width(), lens.model.height());
+  if (!guess && !options.otherwise)
+    throw InputError::format(
+        "{0}: camera {1}: nothing in its names tells whether it sees events or frames: say it with `edged calib {0} "
+        "--camera {1}=events --out rig.yaml` (or =frames, or =both for a DAVIS, one lens for the two)",
+        path.string(), lens.name);
+  return guess ? *guess : *options.otherwise;
+}
+
+/// `events` and `frames` for the first lens that sees both, cam1_events and cam1_frames for the next.
+void add_cameras(Rig& rig, const Lens& lens, Sees sees) {
+  RigCamera camera{lens.name, Modality::Events, lens.model, lens.T_B_C, lens.time_offset};
+  if (sees != Sees::Both) {
+    camera.modality = sees == Sees::Events ? Modality::Events : Modality::Frames;
+    rig.cameras.push_back(camera);
+    return;
+  }
+  const bool taken = std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                                 [](const RigCamera& c) { return c.name == "events" || c.name == "frames"; });
+  const std::string begin = taken ? lens.name + "_" : "";
+  camera.name = begin + "events";
+  rig.cameras.push_back(camera);
+  camera.name = begin + "frames";
+  camera.modality = Modality::Frames;
+  rig.cameras.push_back(camera);
+}
+
+}  // namespace
+
+CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
+  if (in.width != std::floor(in.width) || in.height != std::floor(in.height) || !(in.width <= kMaxPixels) ||
+      !(in.height <= kMaxPixels) || !(in.width >= 1) || !(in.height >= 1))
+    place.fail(fmt::format("image size {} x {}: must be whole pixels, from 1 to {}", in.width, in.height, kMaxPixels));
+  if (in.projection.size() != 4) place.fail("intrinsics must be [fx, fy, cx, cy]");
+  const Distortion distortion = make_distortion(place, in);
+  try {
+    const auto& f = in.projection;
+    return CameraModel(static_cast<int>(in.width), static_cast<int>(in.height), f[0], f[1], f[2], f[3],
+                       distortion.model, distortion.k);
+  } catch (const InputError& e) {
+    place.fail(e.what());
+  }
+}
+
+CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,
+                       const std::string& coefficients_key) {
+  if (const std::string model = camera.text_or("camera_model", "pinhole"); model != "pinhole")
+    camera.at("camera_model")
+        .fail("camera model " + model + " is not supported; pinhole is, with radtan or equidistant distortion");
+  const YamlReader resolution = camera.at("resolution"), intrinsics = camera.at("intrinsics");
+  const std::vector<double> size = resolution.numbers();
+  if (size.size() != 2) resolution.fail("must be [width, height]");
+  const std::string distortion = camera.text_or(distortion_key, "none");
+  return make_model(intrinsics, {size[0], size[1], intrinsics.numbers(), distortion,
+                                 distortion == "none" ? std::vector<double>{} : camera.at(coefficients_key).numbers()});
+}
+
+std::optional<Sees> parse_sees(std::string_view text) {
+  if (text == "events") return Sees::Events;
+  if (text == "frames") return Sees::Frames;
+  if (text == "both") return Sees::Both;
+  return std::nullopt;
+}
+
+std::optional<Sees> guess_sees(std::string_view words, int width, int height) {
+  std::string text(words);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool davis_size = (width == 240 && height == 180) || (width == 346 && height == 260);
+  const bool images = has_any(text, {"image", "frame", "standard", "regular", "rgb", "mono", "gray", "grey", "color"});
+  const bool davis = has_any(text, {"davis"});
+  if (davis || has_any(text, {"event", "dvs", "dvx", "prophesee", "metavision", "evk", "e2vid", "e2calib"}))
+    return davis_size && (davis || images) ? Sees::Both : Sees::Events;
+  if (images) return Sees::Frames;
+  return std::nullopt;
+}
+
+Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions& options, const SourcePath& path) {
+  for (const auto& [name, sees] : options.sees)
+    if (std::none_of(file.lenses.begin(), file.lenses.end(), [&](const Lens& lens) { return lens.name == name; }))
+      throw InputError::format("{}: has no camera {}; it has: {}", path.string(), name, lens_list(file));
+  Calibration out;
+  out.rig.name = file.name.empty() ? std::filesystem::path(path.name()).stem().string() : file.name;
+  out.has_extrinsics = file.has_extrinsics;
+  out.has_imu_noise = file.imu.has_value();
+  out.imu = file.imu.value_or(ImuNoise{});
+  out.warnings = file.warnings;
+  for (const Lens& lens : file.lenses) add_cameras(out.rig, lens, decide(lens, options, path));
+  if (out.rig.cameras.empty()) throw InputError::format("{}: holds no camera", path.string());
+  for (auto camera = out.rig.cameras.begin(); camera != out.rig.cameras.end(); ++camera)
+    if (std::any_of(out.rig.cameras.begin(), camera, [&](const RigCamera& c) { return c.name == camera->name; }))
+      throw InputError::format("{}: two cameras are called {}: give each a name of its own", path.string(),
+                               camera->name);
+  return out;
+}
+
+}  // namespace edged

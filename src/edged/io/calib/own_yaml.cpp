@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Our own format: docs/calibration.md.
+#include <algorithm>
+
+#include "edged/core/check.hpp"
+#include "edged/io/calib/formats.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+ImuNoise read_own_noise(const YamlReader& imu) {
+  imu.allow_only({"gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "gyro_saturation", "accel_saturation",
+                  "saturation_inflation"});
+  ImuNoise noise;
+  const auto take = [&imu](const char* key, double& field) {
+    if (const auto value = imu.find(key)) field = value->positive();
+  };
+  take("gyro_noise", noise.gyro_noise);
+  take("accel_noise", noise.accel_noise);
+  take("gyro_walk", noise.gyro_walk);
+  take("accel_walk", noise.accel_walk);
+  take("gyro_saturation", noise.gyro_saturation);
+  take("accel_saturation", noise.accel_saturation);
+  take("saturation_inflation", noise.saturation_inflation);
+  return noise;
+}
+
+Sees read_modality(const YamlReader& value) {
+  const auto sees = parse_sees(value.text());
+  if (!sees || *sees == Sees::Both) value.fail("must be events or frames");
+  return *sees;
+}
+
+/// The camera above that `same_as` names.
+Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
+  for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "T_B_C", "T_C_B", "time_offset"})
+    if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
+  const std::string name = same_as.text();
+  const auto base = std::find_if(above.begin(), above.end(), [&name](const Lens& lens) { return lens.name == name; });
+  if (base == above.end()) same_as.fail("must name a camera above; there is no " + name);
+  return *base;
+}
+
+Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
+  node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
+                   "coefficients", "T_B_C", "T_C_B", "time_offset"});
+  Lens lens;
+  const auto same_as = node.find("same_as");
+  if (same_as) lens = read_base(node, *same_as, above);
+  lens.name = node.at("name").text();
+  lens.sees = read_modality(node.at("modality"));
+  if (same_as) return lens;
+
+  lens.model = read_model(node, "distortion", "coefficients");
+  const auto T_B_C = node.find("T_B_C"), T_C_B = node.find("T_C_B");
+  if (T_B_C.has_value() == T_C_B.has_value())
+    node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
+  lens.T_B_C = T_B_C ? T_B_C->transform() : T_C_B->transform().inverse();
+  if (const auto offset = node.find("time_offset")) lens.time_offset = offset->time_offset();
+  return lens;
+}
+
+/// As a yaml string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return out + '"';
+}
+
+std::string camera_yaml(const RigCamera& camera) {
+  const CameraModel& m = camera.model;
+  std::string out =
+      fmt::format("  - name: {}\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
+                  quoted(camera.name), camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
+                  m.fx(), m.fy(), m.cx(), m.cy());
+  const auto& k = m.coefficients();
+  if (m.distortion() == DistortionModel::RadTan)
+    out +=
+        fmt::format("    distortion: radtan\n    coefficients: [{}, {}, {}, {}, {}]\n", k[0], k[1], k[2], k[3], k[4]);
+  if (m.distortion() == DistortionModel::Equidistant)
+    out += fmt::format("    distortion: equidistant\n    coefficients: [{}, {}, {}, {}]\n", k[0], k[1], k[2], k[3]);
+  out += "    T_B_C:  # camera to IMU: p_B = T_B_C * p_C\n";
+  const Eigen::Matrix4d T = camera.T_B_C.matrix();
+  for (int row = 0; row < 4; ++row)
+    out += fmt::format("      - [{}, {}, {}, {}]\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  return out + fmt::format("    time_offset: {}  # s: t_imu = t_cam + time_offset\n",
+                           format_seconds(Timestamp(camera.time_offset)));
+}
+
+}  // namespace
+
+CalibrationFile read_own_yaml(const YamlReader& root) {
+  root.allow_only({"edged_rig", "name", "imu", "cameras"});
+  if (root.at("edged_rig").text() != "1") root.at("edged_rig").fail("only version 1 of the format is known");
+  CalibrationFile out;
+  out.name = root.text_or("name", "");
+  if (const auto imu = root.find("imu")) out.imu = read_own_noise(*imu);
+  for (const YamlReader& node : root.at("cameras").items()) {
+    Lens lens = read_own_camera(node, out.lenses);
+    for (const Lens& other : out.lenses)
+      if (other.name == lens.name) node.at("name").fail("the name " + lens.name + " is taken by a camera above");
+    out.lenses.push_back(std::move(lens));
+  }
+  if (out.lenses.empty()) root.at("cameras").fail("must list a camera");
+  return out;
+}
+
+std::string to_yaml(const Calibration& calibration) {
+  const ImuNoise& n = calibration.imu;
+  std::string out = fmt::format("edged_rig: 1\nname: {}\n", quoted(calibration.rig.name));
+  if (calibration.has_imu_noise)
+    out += fmt::format(
+        "imu:\n  gyro_noise: {}  # rad/s/sqrt(Hz)\n  accel_noise: {}  # m/s^2/sqrt(Hz)\n  gyro_walk: {}  # "
+        "rad/s^2/sqrt(Hz)\n  accel_walk: {}  # m/s^3/sqrt(Hz)\n  gyro_saturation: {}  # rad/s\n  accel_saturation: {}  "
+        "# m/s^2\n  saturation_inflation: {}\n",
+        n.gyro_noise, n.accel_noise, n.gyro_walk, n.accel_walk, n.gyro_saturation, n.accel_saturation,
+        n.saturation_inflation);
+  out += "cameras:\n";
+  for (const RigCamera& camera : calibration.rig.cameras) out += camera_yaml(camera);
+  return out;
+}
+
+}  // namespace edged

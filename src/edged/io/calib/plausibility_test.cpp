@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Calibrations that are well-formed and still wrong.
+#include <gmock/gmock.h>
+#include <spdlog/spdlog.h>
+
+#include "edged/io/calibration.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A calibration in our format, whole but for what a test changes.
+struct Own {
+  std::string size = "[346, 260]", intrinsics = "[250, 250, 173, 130]", rotation_x = "1, 0, 0", at = "0.1";
+
+  std::string text() const {
+    return "edged_rig: 1\ncameras:\n  - name: events\n    modality: events\n    resolution: " + size +
+           "\n    intrinsics: " + intrinsics + "\n    T_B_C:\n      - [" + rotation_x + ", " + at +
+           "]\n      - [0, 1, 0, 0]\n      - [0, 0, 1, 0]\n      - [0, 0, 0, 1]\n";
+  }
+};
+
+class Plausibility : public ::testing::Test {
+ protected:
+  void SetUp() override { spdlog::set_level(spdlog::level::off); }
+  void TearDown() override { spdlog::set_level(spdlog::level::info); }
+  std::vector<std::string> warnings(const Own& own) {
+    return load_calibration(folder_.write("c.yaml", own.text())).warnings;
+  }
+  std::string complaint(const Own& own) {
+    return input_error([&] { load_calibration(folder_.write("c.yaml", own.text())); });
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Plausibility, AnOrdinaryHeadPassesWithoutAWord) { EXPECT_THAT(warnings({}), IsEmpty()); }
+
+TEST_F(Plausibility, LongLeverArmsAndMillimetresAreNamed) {
+  EXPECT_THAT(warnings({.at = "0.7"}), ElementsAre(HasSubstr("camera events: 0.70 m away from the IMU")));
+  EXPECT_THAT(warnings({.at = "-26.0"}),
+              ElementsAre(::testing::AllOf(HasSubstr("26 m away"), HasSubstr("in millimetres (0.026 m), divide"))));
+}
+
+TEST_F(Plausibility, RotationsAreMeasured) {
+  EXPECT_THAT(warnings({.rotation_x = "1.0000001, 0, 0"}), IsEmpty());
+  EXPECT_THAT(warnings({.rotation_x = "1.0001, 0, 0"}), ElementsAre(HasSubstr("orthonormal only to 0.0002")));
+  EXPECT_THAT(complaint({.rotation_x = "1.01, 0, 0"}), HasSubstr("differs from 1 by 0.0201"));
+  EXPECT_THAT(complaint({.rotation_x = "-1, 0, 0"}), HasSubstr("mirrored"));
+}
+
+TEST_F(Plausibility, FocalLengthsMustGiveAFieldOfViewThatLensesHave) {
+  EXPECT_THAT(complaint({.intrinsics = "[4.5, 4.5, 173, 130]"}), HasSubstr("must be in pixels"));
+  EXPECT_THAT(complaint({.intrinsics = "[250000, 250000, 173, 130]"}), HasSubstr("impossible"));
+  EXPECT_THAT(warnings({.intrinsics = "[3000, 3000, 173, 130]"}), ElementsAre(HasSubstr("field of view of 8.")));
+  EXPECT_THAT(warnings({.intrinsics = "[250, 300, 173, 130]"}), ElementsAre(HasSubstr("pixels are square")));
+}
+
+TEST_F(Plausibility, ThePrincipalPointMustFitTheImage) {
+  EXPECT_THAT(warnings({.size = "[260, 346]"}), ElementsAre(HasSubstr("width and height swapped")));
+  EXPECT_THAT(warnings({.size = "[240, 260]"}), ElementsAre(HasSubstr("22 % off the middle of 240 x 260")));
+}
+
+TEST_F(Plausibility, OneLensHasOneSize) {
+  Own own;
+  own.size = "[300, 260]";
+  std::string second = own.text();
+  second = second.substr(second.find("  - name"));
+  second.replace(second.find("events"), 6, "other");
+  const Calibration c = load_calibration(folder_.write("c.yaml", Own{}.text() + second));
+  EXPECT_THAT(c.warnings, ElementsAre(HasSubstr("has the lens of camera events but 300 x 260")));
+}
+
+TEST_F(Plausibility, EveryRigThatShipsIsPlausible) {
+  EXPECT_THAT(known_rigs(), ::testing::Contains("davis240c_ecd"));
+  for (const std::string& name : known_rigs()) {
+    const Calibration c = load_rig(name);
+    EXPECT_EQ(c.rig.name, name);
+    EXPECT_THAT(c.warnings, IsEmpty()) << name;
+    EXPECT_TRUE(c.has_extrinsics) << name;
+    EXPECT_NE(c.rig.find(Modality::Events), nullptr) << name;
+    for (const RigCamera& camera : c.rig.cameras) {
+      EXPECT_LT(camera.T_B_C.translation().norm(), 0.3) << name << " " << camera.name;
+      EXPECT_LT(std::abs(to_seconds(camera.time_offset)), 0.05) << name << " " << camera.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace edged

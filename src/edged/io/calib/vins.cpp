@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The configuration files of VINS and of what descends from it: VINS-Mono and SuperEIO (the camera in the same file),
+// VINS-Fusion (cam0_calib) and ESVIO (cam_left_calib, event_left_calib).
+#include "edged/core/check.hpp"
+#include "edged/io/calib/formats.hpp"
+
+namespace edged {
+namespace {
+
+/// One camera that such a file may describe, by its keys. body_T: a pose of 4 x 4, always camera to IMU; else
+/// extrinsicRotation and extrinsicTranslation, camera to IMU too, unless the flag is 1, which turns them round.
+struct VinsCamera {
+  const char* name;
+  const char* calib;  ///< names the file with the intrinsics
+  const char* topic;
+  const char* body_T;    ///< "": has none
+  const char* suffix;    ///< of extrinsicRotation and extrinsicTranslation; null: has none
+  const char* inverted;  ///< the flag
+  std::optional<Sees> sees;
+};
+
+const VinsCamera kCameras[] = {
+    {"events", "event_left_calib", "event_left_topic", "", "_event", "T_event_imu", Sees::Events},
+    {"frames", "cam_left_calib", "image_left_topic", "", "", "T_camera_imu", Sees::Frames},
+    {"events_right", "event_right_calib", "event_right_topic", "body_T_event1", nullptr, "", Sees::Events},
+    {"frames_right", "cam_right_calib", "image_right_topic", "body_T_cam1", nullptr, "", Sees::Frames},
+    {"cam0", "cam0_calib", "image0_topic", "body_T_cam0", "", "T_camera_imu", std::nullopt},
+    {"cam1", "cam1_calib", "image1_topic", "body_T_cam1", nullptr, "", std::nullopt},
+};
+
+/// camodocal's models: PINHOLE is radtan, KANNALA_BRANDT equidistant with other names.
+CameraModel read_camodocal(const YamlReader& root) {
+  const std::string type = root.text_or("model_type", "PINHOLE");
+  const bool fisheye = type == "KANNALA_BRANDT";
+  if (!fisheye && type != "PINHOLE")
+    root.at("model_type").fail("model " + type + " is not supported; PINHOLE and KANNALA_BRANDT are");
+  const YamlReader projection = root.at("projection_parameters");
+  const auto numbers = [](const YamlReader& from, std::initializer_list<const char*> keys) {
+    std::vector<double> out;
+    for (const char* key : keys) out.push_back(from.at(key).number());
+    return out;
+  };
+  Intrinsics in{root.at("image_width").number(), root.at("image_height").number(), {}, "radtan", {}};
+  if (fisheye) {
+    in.distortion = "equidistant";
+    in.projection = numbers(projection, {"mu", "mv", "u0", "v0"});
+    in.coefficients = numbers(projection, {"k2", "k3", "k4", "k5"});
+  } else {
+    in.projection = numbers(projection, {"fx", "fy", "cx", "cy"});
+    in.coefficients = numbers(root.at("distortion_parameters"), {"k1", "k2", "p1", "p2"});
+  }
+  return make_model(projection, in);
+}
+
+std::optional<SE3> read_vins_extrinsics(const YamlReader& root, const VinsCamera& camera) {
+  if (const auto body_T = root.find(camera.body_T)) return body_T->transform();
+  if (!camera.suffix) return std::nullopt;
+  const auto R = root.find(std::string("extrinsicRotation") + camera.suffix);
+  const auto t = root.find(std::string("extrinsicTranslation") + camera.suffix);
+  if (!R || !t) return std::nullopt;
+  const SE3 T = R->rigid(R->numbers(), t->numbers());
+  const bool inverted = root.text_or(camera.inverted, "0") == "1";
+  return inverted ? T.inverse() : T;
+}
+
+Lens read_vins_lens(const YamlReader& root, const VinsCamera& camera, const YamlReader& intrinsics,
+                    CalibrationFile& out) {
+  Lens lens;
+  lens.name = camera.name;
+  lens.model = read_camodocal(intrinsics);
+  lens.sees = camera.sees;
+  lens.words = root.text_or(camera.topic, "");
+  if (const auto T_B_C = read_vins_extrinsics(root, camera)) {
+    lens.T_B_C = *T_B_C;
+  } else {
+    out.has_extrinsics = false;
+  }
+  if (const auto td = root.find("td")) lens.time_offset = td->time_offset();  // t_imu = t_cam + td: the same as ours
+  return lens;
+}
+
+}  // namespace
+
+CalibrationFile read_vins(const YamlReader& root) {
+  CalibrationFile out;
+  for (const VinsCamera& camera : kCameras)
+    if (const auto calib = root.find(camera.calib))
+      out.lenses.push_back(
+          read_vins_lens(root, camera, root.other_file(root.file().parent_path() / calib->text()), out));
+  if (root.find("projection_parameters")) {
+    Lens lens = read_vins_lens(root, {"cam0", "", "", "body_T_cam0", "", "T_camera_imu", std::nullopt}, root, out);
+    const std::string events = root.text_or("event_topic", "");
+    lens.words = events.empty() ? root.text_or("image_topic", root.file().name()) : events;
+    out.lenses.push_back(std::move(lens));
+  }
+  if (out.has_extrinsics && root.text_or("estimate_extrinsic", "0") == "2")
+    root.at("estimate_extrinsic").warn("the extrinsics of this file are a guess that VINS replaces by its own");
+  if (root.find("acc_n"))
+    root.at("acc_n").warn(
+        "the IMU noise of VINS files is tuned for its own integration and is no density: not used; give --imu FILE "
+        "with "
+        "the densities of a Kalibr imu.yaml");
+  return out;
+}
+
+}  // namespace edged
