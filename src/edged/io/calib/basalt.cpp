@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The json files of basalt, as TUM-VI and TUM-VIE publish them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "edged/core/check.hpp"
@@ -18,7 +19,8 @@ SE3 read_basalt_pose(const YamlReader& node) {
   const Eigen::Quaterniond q(number("qw"), number("qx"), number("qy"), number("qz"));
   if (!(std::abs(q.norm() - 1.0) <= kUnitQuaternion))
     node.fail(fmt::format("the quaternion has a norm of {:.4g}, must be 1", q.norm()));
-  return SE3(q, Eigen::Vector3d(number("px"), number("py"), number("pz")));
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = q.normalized().toRotationMatrix();
+  return node.rigid({R.data(), 9}, std::array{number("px"), number("py"), number("pz")});
 }
 
 CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>& size) {

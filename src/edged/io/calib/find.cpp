@@ -30,7 +30,7 @@ bool is_json_calibration(const std::string& name) {
 }
 
 /// The first field of the first line that is no comment.
-bool starts_with_a_number(const SourcePath& file) {
+bool starts_with_a_number(const SourcePath& file) try {
   std::string begin(kProbeBytes, '\0');
   begin.resize(file.open()->read(begin));
   std::istringstream lines(begin);
@@ -40,6 +40,8 @@ bool starts_with_a_number(const SourcePath& file) {
     return parse_number(field).has_value();
   }
   return false;
+} catch (const Damage& damage) {
+  throw InputError::format("{}: {}", file.string(), damage.what());
 }
 
 bool is_vins(const YamlReader& root) {

@@ -65,7 +65,13 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
 /// As a yaml string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < ' ') {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    } else {
+      out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    }
+  }
   return out + '"';
 }
 

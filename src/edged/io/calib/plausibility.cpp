@@ -44,7 +44,7 @@ class Judge {
   void field(const RigCamera& camera) {
     const CameraModel& m = camera.model;
     const double view = field_of_view(m).diagonal * kViewDegrees;
-    if (view < kMinView || view > kMaxView)
+    if (!(view >= kMinView && view <= kMaxView))
       throw InputError::format(
           "{}: camera {}: a field of view of {:.3g} deg is impossible: fx {:g}, fy {:g} must be in pixels of the image "
           "of {} x {}",

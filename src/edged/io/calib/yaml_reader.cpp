@@ -19,6 +19,7 @@ constexpr double kRotationRounding = 1e-5;   // beyond: a warning; six digits ar
 constexpr std::size_t kMaxFileBytes = 16 << 20;
 constexpr std::size_t kMaxNumbers = 64;  // no value of any format has more
 constexpr int kMaxNesting = 4;           // of lists; a list may hold itself by an anchor
+constexpr double kMaxLength = 1e6;       // [m] of a translation
 constexpr double kMaxOffset = 10.0;      // [s]
 
 std::string read_small_file(const SourcePath& file) try {
@@ -150,6 +151,8 @@ SE3 YamlReader::transform() const {
 
 SE3 YamlReader::rigid(std::span<const double> rotation, std::span<const double> translation) const {
   if (rotation.size() != 9 || translation.size() != 3) fail("a rotation has 9 numbers and a translation 3");
+  const Eigen::Vector3d t = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  if (!(t.norm() <= kMaxLength)) fail(fmt::format("a translation of {:g} m is impossible", t.norm()));
   const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(deviation <= kRotationTolerance))
@@ -161,7 +164,7 @@ SE3 YamlReader::rigid(std::span<const double> rotation, std::span<const double> 
         fmt::format("the rotation is orthonormal only to {:.2g} (R^T R against 1); a rotation near it is used: "
                     "give more digits",
                     deviation));
-  return SE3(R, Eigen::Map<const Eigen::Vector3d>(translation.data()));
+  return SE3(R, t);
 }
 
 void YamlReader::allow_only(std::initializer_list<std::string_view> known) const {
