@@ -13,6 +13,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/ecd_writer.hpp"
 #include "edged/io/formats.hpp"
+#include "edged/io/hdf5/hdf5_writer.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/ros/ros_writer.hpp"
 #include "edged/io/text.hpp"
@@ -30,6 +31,13 @@ constexpr std::array kWritable = {
         .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
     WritableFormat{
         .name = "mcap", .extension = ".mcap", .frames = true, .imu = true, .ground_truth = true, .open = write_mcap},
+    WritableFormat{.name = "hdf5",
+                   .extension = ".h5",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .tick = kMicrosecond,
+                   .open = write_hdf5},
 };
 
 /// Hands on what the format holds and counts.

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
@@ -19,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kEventsAtOnce = 65536, kSamplesAtOnce = 1024;
+constexpr Duration kStep = std::chrono::milliseconds(50);  // of one stream at a time
 
 /// Images of a file with their stamps.
 struct H5Images {
@@ -133,6 +136,28 @@ class Hdf5Dataset final : public StreamedDataset {
     return true;
   }
 
+  /// A source of items with stamps. refill() reads some into an empty vector, false at the end. What it reads may span
+  /// more time than the merger waits for other streams: it is pushed in short steps.
+  template <typename T>
+  void add_source(std::function<bool(std::vector<T>&)> refill, std::function<void(std::span<const T>)> push) {
+    sources_.push_back({[refill = std::move(refill), push = std::move(push), items = std::vector<T>(),
+                         next = std::size_t{0}](Timestamp& reached) mutable {
+      if (next == items.size()) {
+        items.clear();
+        next = 0;
+        if (!refill(items)) return false;
+        if (items.empty()) return true;  // all of it was damaged
+      }
+      const auto first = items.begin() + static_cast<std::ptrdiff_t>(next);
+      auto end = std::find_if(first, items.end(), [&](const T& item) { return item.t >= reached + kStep; });
+      if (end == first) ++end;  // behind a gap, or a wrong stamp: the next one tells
+      push(std::span<const T>(first, end));
+      next = static_cast<std::size_t>(end - items.begin());
+      reached = end == items.end() ? std::prev(end)->t : std::min(std::prev(end)->t, end->t);
+      return true;
+    }});
+  }
+
   /// Calls read(first, count); where that throws Damage, again with both halves, so that no more than `smallest` rows
   /// are left out around what is damaged.
   template <typename Read>
@@ -150,26 +175,26 @@ class Hdf5Dataset final : public StreamedDataset {
     }
   }
 
-  void no_stamp(const char* subject) {
+  bool is_stamp(Timestamp t, const char* subject) {
+    if (t != Timestamp::min()) return true;
     repairs_.add(std::string(subject) + ": stamp that cannot be", fmt::format("{}: a stamp of the {}", name_, subject));
+    return false;
   }
 
   void add_events(H5Events events) {
     constexpr std::uint64_t kSmallestPart = 1024;
-    const auto shared = std::make_shared<H5Events>(std::move(events));
-    sources_.push_back({[this, shared, at = std::uint64_t{0}](Timestamp& reached) mutable {
+    const auto refill = [this, shared = std::make_shared<H5Events>(std::move(events)),
+                         at = std::uint64_t{0}](std::vector<Event>& items) mutable {
       if (at == shared->rows()) return false;
       const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
       read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
-        std::vector<Event> read = shared->read(first, n);
-        for (std::size_t bad = std::erase_if(read, [](const Event& e) { return e.t == Timestamp::min(); }); bad > 0; --bad)
-          no_stamp("events");
-        if (!read.empty()) reached = std::max(reached, read.back().t);
-        push_events(std::move(read));
+        const std::vector<Event> read = shared->read(first, n);
+        std::ranges::copy_if(read, std::back_inserter(items), [this](const Event& e) { return is_stamp(e.t, "events"); });
       });
       at += count;
       return true;
-    }});
+    };
+    add_source<Event>(refill, [this](std::span<const Event> part) { push_events({part.begin(), part.end()}); });
   }
 
   void add_images(H5Images images, bool cut) {
@@ -179,8 +204,8 @@ class Hdf5Dataset final : public StreamedDataset {
       if (at == rows) return false;
       read_parts(at++, 1, 1, "frames", [&](std::uint64_t row, std::uint64_t) {
         const Timestamp t = shared->stamps.read(row, 1).front();
-        if (t == Timestamp::min()) return no_stamp("frames");
-        reached = std::max(reached, t);
+        if (!is_stamp(t, "frames")) return;
+        reached = t;
         push_frame(t, h5_image(shared->pixels, row, cut));
       });
       return true;
@@ -211,22 +236,28 @@ class Hdf5Dataset final : public StreamedDataset {
     std::uint64_t rows = std::min(shared->first.rows(), shared->stamps.rows());
     if (shared->second) rows = std::min(rows, shared->second->rows());
     const bool accel_first = !shared->second && is_accel_first(shared->first);
-    sources_.push_back({[this, shared, rows, accel_first, at = std::uint64_t{0}](Timestamp& reached) mutable {
+    const auto refill = [this, shared, rows, accel_first,
+                         at = std::uint64_t{0}](std::vector<ImuSample>& items) mutable {
       if (at == rows) return false;
       const std::uint64_t count = std::min(kSamplesAtOnce, rows - at);
       read_parts(at, count, kSmallestPart, "imu", [&](std::uint64_t first, std::uint64_t n) {
-        for (const ImuSample& sample : read_samples(*shared, accel_first, first, n)) {
-          if (sample.t == Timestamp::min() || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) {
-            no_stamp("imu");
-            continue;
-          }
-          reached = std::max(reached, sample.t);
-          push_imu(sample);
-        }
+        for (const ImuSample& sample : read_samples(*shared, accel_first, first, n))
+          if (is_stamp(sample.t, "imu") && is_finite(sample)) items.push_back(sample);
       });
       at += count;
       return true;
-    }});
+    };
+    add_source<ImuSample>(refill, [this](std::span<const ImuSample> part) { push_samples(part); });
+  }
+
+  void push_samples(std::span<const ImuSample> part) {
+    for (const ImuSample& sample : part) push_imu(sample);
+  }
+
+  bool is_finite(const ImuSample& sample) {
+    if (sample.gyro_B.allFinite() && sample.accel_B.allFinite()) return true;
+    repairs_.add("imu: not finite", name_ + ": an IMU sample that is no number");
+    return false;
   }
 
   /// Of rows with both, whose order no document states: gravity tells which three are the specific force.
@@ -258,16 +289,11 @@ class Hdf5Dataset final : public StreamedDataset {
   }
 
   void add_imu_lines(const StampedLines<ImuSample>::Spec& spec) {
-    const auto lines = std::make_shared<StampedLines<ImuSample>>(spec, repairs_);
-    sources_.push_back({[this, lines](Timestamp& reached) {
-      if (!lines->peek()) return false;
-      for (std::uint64_t i = 0; i < 64 && lines->peek(); ++i) {
-        const ImuSample sample = lines->pop();
-        reached = sample.t;
-        push_imu(sample);
-      }
-      return true;
-    }});
+    const auto refill = [lines = std::make_shared<StampedLines<ImuSample>>(spec, repairs_)](std::vector<ImuSample>& items) {
+      while (lines->peek() && items.size() < kSamplesAtOnce) items.push_back(lines->pop());
+      return !items.empty();
+    };
+    add_source<ImuSample>(refill, [this](std::span<const ImuSample> part) { push_samples(part); });
   }
 
   SideFiles side_;
