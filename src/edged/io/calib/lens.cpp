@@ -142,9 +142,9 @@ std::optional<Sees> guess_sees(std::string_view words, int width, int height) {
 }
 
 Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions& options, const SourcePath& path) {
-  for (const auto& [name, sees] : options.sees)
-    if (std::none_of(file.lenses.begin(), file.lenses.end(), [&](const Lens& lens) { return lens.name == name; }))
-      throw InputError::format("{}: has no camera {}; it has: {}", path.string(), name, lens_list(file));
+  for (const auto& choice : options.sees)
+    if (std::none_of(file.lenses.begin(), file.lenses.end(), [&](const Lens& l) { return l.name == choice.first; }))
+      throw InputError::format("{}: has no camera {}; it has: {}", path.string(), choice.first, lens_list(file));
   Calibration out;
   out.rig.name = file.name.empty() ? std::filesystem::path(path.name()).stem().string() : file.name;
   out.has_extrinsics = file.has_extrinsics;
