@@ -250,6 +250,16 @@ TEST_F(CalibrationFormats, TheRowsOfAUslamPoseInFourListsAreRefusedWithAHint) {
               HasSubstr("4 rows of 4 need more than the 1 numbers"));
 }
 
+TEST_F(CalibrationFormats, AUslamRigInMillimetresWithAWrongWidthIsReadAndNamed) {
+  std::string text = changed(kUslam, "data: [0, 0, 1, 0.1,\n", "data: [0, 0, 1, -26.0,\n");
+  text = changed(text, "label: standard\n    image_height: 260\n    image_width: 346",
+                 "label: standard\n    image_height: 260\n    image_width: 240");
+  EXPECT_THAT(load(text).warnings,
+              ElementsAre(HasSubstr("camera dvs: 26 m away from the IMU"),
+                          HasSubstr("camera standard: has the lens of camera dvs but 240 x 260"),
+                          HasSubstr("camera standard: the principal point (177, 129) is 24 % off")));
+}
+
 TEST_F(CalibrationFormats, BasaltsPoseOffsetAndDensitiesAreOurs) {
   const Calibration c = load(kBasalt, "c.json", {.sees = {{"cam0", Sees::Events}}});
   EXPECT_THAT(names(c), ElementsAre("cam0:events"));
