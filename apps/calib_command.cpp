@@ -42,7 +42,7 @@ std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts)
 }
 
 /// A path, else the name of a rig that ships.
-Calibration load(const CalibOptions& options) {
+Calibration load_chosen(const CalibOptions& options) {
   if (!std::filesystem::exists(options.file) && options.imu.empty() && options.cameras.empty())
     return load_rig(options.file);
   return load_calibration(options.file, {.imu_file = options.imu, .sees = parse_cameras(options.cameras)});
@@ -77,7 +77,7 @@ ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
   return out;
 }
 
-ordered_json to_json(const Calibration& calibration) {
+ordered_json calibration_json(const Calibration& calibration) {
   ordered_json out = {{"name", calibration.rig.name},
                       {"has_extrinsics", calibration.has_extrinsics},
                       {"has_imu_noise", calibration.has_imu_noise}};
@@ -101,13 +101,13 @@ void write_own(const Calibration& calibration, const std::filesystem::path& out)
 }
 
 int run_calib(const CalibOptions& options) {
-  Calibration calibration = load(options);
+  Calibration calibration = load_chosen(options);
   if (!options.out.empty()) {
     calibration.rig.name = options.out.stem().string();  // as --rig finds it
     write_own(calibration, options.out);
   }
   if (options.json) {
-    fmt::print("{}\n", to_json(calibration).dump(2));
+    fmt::print("{}\n", calibration_json(calibration).dump(2));
   } else {
     fmt::print("{}", describe(calibration));
   }

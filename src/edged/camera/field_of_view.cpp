@@ -10,7 +10,7 @@ namespace edged {
 namespace {
 
 /// Between the rays of two pixels [rad].
-double angle_between(const CameraModel& camera, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double angle_between_pixels(const CameraModel& camera, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector3d u = camera.pixel_to_point(a).homogeneous(), v = camera.pixel_to_point(b).homogeneous();
   return std::atan2(u.cross(v).norm(), u.dot(v));
 }
@@ -20,9 +20,9 @@ double angle_between(const CameraModel& camera, const Eigen::Vector2d& a, const 
 FieldOfView field_of_view(const CameraModel& camera) {
   const double right = camera.width() - 1.0, bottom = camera.height() - 1.0;
   const double x = std::clamp(camera.cx(), 0.0, right), y = std::clamp(camera.cy(), 0.0, bottom);
-  return {
-      angle_between(camera, {0.0, y}, {right, y}), angle_between(camera, {x, 0.0}, {x, bottom}),
-      std::max(angle_between(camera, {0.0, 0.0}, {right, bottom}), angle_between(camera, {0.0, bottom}, {right, 0.0}))};
+  return {angle_between_pixels(camera, {0.0, y}, {right, y}), angle_between_pixels(camera, {x, 0.0}, {x, bottom}),
+          std::max(angle_between_pixels(camera, {0.0, 0.0}, {right, bottom}),
+                   angle_between_pixels(camera, {0.0, bottom}, {right, 0.0}))};
 }
 
 }  // namespace edged
