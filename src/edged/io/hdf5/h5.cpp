@@ -3,6 +3,8 @@
 // Rows by hyperslabs, with the sizes checked that a damaged file could state.
 #include "edged/io/hdf5/h5.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -78,6 +80,17 @@ H5Array::H5Array(H5Handle data, std::string path) : data_(std::move(data)), path
   if (rows() / kMostRatio > (held + kMostChunkBytes) / std::max<std::size_t>(columns_ * value_bytes, 1))
     throw Damage("says to hold far more than there is");
   chunk_bytes_ = chunk_bytes_of(data_.get());
+  if (chunk_bytes_ == 0) return;
+  const H5Handle creation(H5Dget_create_plist(data_.get()), H5Pclose);
+  chunk_shape_.resize(shape_.size());
+  H5Pget_chunk(creation.get(), rank, chunk_shape_.data());
+  const int filters = H5Pget_nfilters(creation.get());
+  filtered_ = filters > 0;
+  for (int i = 0; i < filters; ++i) {
+    std::size_t none = 0;
+    const auto filter = H5Pget_filter2(creation.get(), static_cast<unsigned>(i), nullptr, &none, nullptr, 0, nullptr, nullptr);
+    deflated_ = deflated_ || filter == H5Z_FILTER_DEFLATE;
+  }
 }
 
 bool H5Array::has_fields(std::initializer_list<const char*> names) const {
@@ -91,11 +104,59 @@ std::size_t H5Array::checked_size(std::uint64_t first, std::uint64_t count) cons
   return count * columns_;
 }
 
+/// The library reads beyond the end of a chunk that a damaged file says is shorter than it should be: such chunks are
+/// found before it sees them.
+void H5Array::check_chunks(std::uint64_t first, std::uint64_t count) const {
+  if (chunk_shape_.empty() || first + count <= checked_rows_) return;
+  const hsize_t rows = chunk_shape_.front();
+  for (hsize_t row = std::max(first, checked_rows_) / rows * rows; row < first + count; row += rows) {
+    std::vector<hsize_t> offset(shape_.size(), 0);
+    offset.front() = row;
+    for (std::size_t side = 1; side > 0;) {
+      check_chunk(offset);
+      for (side = shape_.size() - 1; side > 0; --side) {
+        if ((offset[side] += chunk_shape_[side]) < shape_[side]) break;
+        offset[side] = 0;
+      }
+    }
+    if (row <= checked_rows_) checked_rows_ = row + rows;
+  }
+}
+
+void H5Array::check_chunk(const std::vector<hsize_t>& offset) const {
+  const auto too_short = [&] { return Damage(fmt::format("{} has a damaged chunk at row {}", path_, offset.front())); };
+  hsize_t bytes = 0;
+  std::uint32_t skipped = 0;  // filters that were not applied
+  if (!filtered_) {
+    // Looks through all chunks, which is too slow for very many of them.
+    constexpr std::uint64_t kMostLookedThrough = 20'000;
+    haddr_t address = 0;
+    if (rows() / chunk_shape_.front() > kMostLookedThrough) return;
+    if (H5Dget_chunk_info_by_coord(data_.get(), offset.data(), &skipped, &address, &bytes) < 0) throw too_short();
+    if (address != HADDR_UNDEF && bytes < chunk_bytes_) throw too_short();
+    return;
+  }
+  if (H5Dget_chunk_storage_size(data_.get(), offset.data(), &bytes) < 0) throw too_short();
+  if (bytes > 2 * chunk_bytes_ + 65536) throw too_short();
+  if (bytes == 0) return;  // never written
+  Bytes packed(bytes);
+  if (H5Dread_chunk(data_.get(), H5P_DEFAULT, offset.data(), &skipped, packed.data()) < 0) throw too_short();
+  if (skipped != 0) {
+    if (bytes < chunk_bytes_) throw too_short();
+  } else if (deflated_) {
+    Bytes plain(chunk_bytes_ + 64);  // a checksum may have been added first
+    auto plain_bytes = static_cast<uLongf>(plain.size());
+    if (uncompress(plain.data(), &plain_bytes, packed.data(), packed.size()) != Z_OK || plain_bytes < chunk_bytes_)
+      throw too_short();
+  }
+}
+
 void H5Array::read_as(hid_t memory_type, std::uint64_t first, std::uint64_t count, void* to) const {
   const std::size_t size = checked_size(first, count);
   if (size == 0) return;
   if (type_ != H5T_INTEGER && type_ != H5T_FLOAT && type_ != H5T_ENUM && type_ != H5T_COMPOUND)
     throw Damage(path_ + " holds no numbers");
+  check_chunks(first, count);
   const H5ChunkScope scope(chunk_bytes_);
   const H5Handle space(H5Dget_space(data_.get()), H5Sclose);
   const hsize_t values = size;

@@ -86,12 +86,17 @@ class H5Array {
 
  private:
   std::size_t checked_size(std::uint64_t first, std::uint64_t count) const;
+  void check_chunks(std::uint64_t first, std::uint64_t count) const;
+  void check_chunk(const std::vector<hsize_t>& offset) const;
 
   H5Handle data_;
   std::string path_;
   std::vector<std::uint64_t> shape_;
   std::size_t columns_ = 1;
-  std::size_t chunk_bytes_ = 0;  ///< 0: not in chunks
+  std::size_t chunk_bytes_ = 0;       ///< 0: not in chunks
+  std::vector<hsize_t> chunk_shape_;  ///< empty: not in chunks
+  bool filtered_ = false, deflated_ = false;
+  mutable std::uint64_t checked_rows_ = 0;  ///< the chunks before this row are what they should be
   H5T_class_t type_ = H5T_NO_CLASS;
 };
 
