@@ -90,7 +90,9 @@ Source open_source(const SourceOptions& options) {
         options.recording, rig_list());
   if (!recording.calibration->has_extrinsics)
     throw InputError::format(
-        "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing",
+        "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
+        "or "
+        "--calib FILE",
         options.calib.empty() ? options.recording : options.calib.string());
   if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
   std::optional<int> seed;

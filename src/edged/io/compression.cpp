@@ -122,6 +122,30 @@ Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t ma
   throw Damage("compression `" + std::string(method) + "` is not known");
 }
 
+bool decompress_zstd_file(const std::filesystem::path& packed, const std::filesystem::path& unpacked) {
+  constexpr std::size_t kPiece = 1U << 20U;
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
+  if (!context) throw std::bad_alloc();
+  BinaryFile from(packed);
+  OutputFile to(unpacked);
+  Bytes piece(kPiece);
+  std::size_t hint = 1;  // zero at the end of a frame
+  for (std::uint64_t at = 0; at < from.size() && !ZSTD_isError(hint);) {
+    const Bytes in = from.read(at, kPiece);
+    if (in.empty()) break;
+    at += in.size();
+    ZSTD_inBuffer source{in.data(), in.size(), 0};
+    ZSTD_outBuffer target{piece.data(), piece.size(), 0};
+    do {
+      target.pos = 0;
+      hint = ZSTD_decompressStream(context.get(), &target, &source);
+      to.write(as_text(ByteSpan(piece).first(target.pos)));
+    } while (!ZSTD_isError(hint) && (source.pos < source.size || target.pos == target.size));
+  }
+  to.flush();
+  return hint == 0;
+}
+
 std::string compress(std::string_view method, std::string_view bytes) {
   if (method.empty() || method == "none") return std::string(bytes);
   if (method == "lz4") return pack_lz4(bytes);

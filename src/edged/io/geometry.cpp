@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The size of an event sensor, from whoever knows it.
+// The size of an event sensor and the lens before it, from whoever knows them.
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
@@ -25,6 +26,14 @@ std::optional<cv::Size> parse_geometry(std::string_view text) {
   if (cut == std::string_view::npos) return std::nullopt;
   const auto width = pixels(text.substr(0, cut)), height = pixels(text.substr(cut + 1));
   return width && height ? std::optional(cv::Size(*width, *height)) : std::nullopt;
+}
+
+void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality) {
+  constexpr double kTolerance = 0.02;
+  const RigCamera* camera = rig.find(modality);
+  if (!camera || std::abs(focal_px / camera->model.mean_focal() - 1.0) <= kTolerance) return;
+  spdlog::warn("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file, focal_px,
+               rig.name, camera->model.mean_focal());
 }
 
 cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig) {

@@ -24,6 +24,7 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig) {
 }
 
 Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
+  if (is_bag_folder(folder)) return open_bag(folder, rig, options);
   if (auto recording = try_folder(folder, rig)) return std::move(*recording);
   if (const auto file = find_hdf5_events(folder)) return open_hdf5(*file, rig, options.geometry);
   throw InputError::format(
@@ -55,6 +56,7 @@ Recording open_archive(const std::filesystem::path& file, const Rig* rig) {
 Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   constexpr std::size_t kHeadBytes = 4096;
   const Bytes head = BinaryFile(file).read(0, kHeadBytes);
+  if (is_bag(head)) return open_bag(file, rig, options);
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
   if (is_zip(head)) return open_archive(file, rig);
   if (is_hdf5(head)) return open_hdf5(file, rig, options.geometry);
@@ -70,8 +72,6 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
 Recording open_recording(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
-  if (is_bag(path))
-    return {std::make_unique<RosDataset>(path, options.topics, rig, options.geometry), std::nullopt};
   return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig, options) : open_file(path, rig, options);
 }
 

@@ -18,7 +18,8 @@ namespace edged {
 
 struct Recording {
   std::unique_ptr<Dataset> dataset;
-  std::optional<Calibration> calibration;  ///< where the recording brings a complete one (EuRoC, calibration.yaml)
+  std::optional<Calibration>
+      calibration;  ///< where the recording brings one (EuRoC, calibration.yaml); bags: intrinsics
 };
 
 /// What the user may say of a recording that it does not tell itself, or not clearly.
@@ -40,7 +41,8 @@ std::optional<cv::Size> parse_geometry(std::string_view text);
 /// - AEDAT4: cameras "events" and "frames".
 /// - HDF5 (DSEC, VECtor, TUM-VIE, M3ED, MVSEC, EDS, Metavision; folder or file): cameras "events" and "frames", ground
 ///   truth of "body", "events" or "frames", as the set has it.
-/// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body".
+/// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body", or of
+///   the camera that its messages name so.
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
 /// contradicts the recording. Throws InputError that lists what was looked for.
 Recording open_recording(const std::filesystem::path& path, const Rig* rig = nullptr,

@@ -129,7 +129,9 @@ std::optional<Message> Bag::take_message() {
 void Bag::add_connection(const BagFields& header, ByteSpan data) {
   const auto id = header.number<std::uint32_t>("conn");
   if (topic_of_connection_.contains(id)) return;
-  topic_of_connection_[id] = describe_topic(header.text("topic"), BagFields(data).text("type"));
+  const BagFields fields(data);
+  topic_of_connection_[id] =
+      describe_topic(header.text("topic"), fields.text("type"), fields.text("message_definition"));
 }
 
 /// Where a chunk is, from when to when, and how many messages it has of each connection.

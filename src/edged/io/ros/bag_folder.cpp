@@ -11,7 +11,12 @@ namespace edged {
 std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const auto extension = entry.path().extension();
+    std::filesystem::path plain = entry.path();
+    if (plain.extension() == ".zstd") {
+      plain.replace_extension();
+      if (std::filesystem::exists(plain)) continue;  // the recorder was stopped while it compressed
+    }
+    const auto extension = plain.extension();
     if (entry.is_regular_file() && (extension == ".db3" || extension == ".mcap")) parts.push_back(entry.path());
   }
   // name_2 before name_10.
@@ -23,7 +28,7 @@ BagFolder::BagFolder(const std::vector<std::filesystem::path>& parts, Repairs* r
   for (const std::filesystem::path& file : parts) {
     Part part{open_messages(file, repairs), {}};
     for (const Topic& topic : part.source->topics()) {
-      part.topics.push_back(topic_index(topics_, topic.name, topic.type));
+      part.topics.push_back(topic_index(topics_, topic.name, topic.type, topic.definition));
       topics_[part.topics.back()].count += topic.count;
     }
     parts_.push_back(std::move(part));

@@ -7,8 +7,8 @@
 
 namespace edged {
 
-/// The .db3 or .mcap files of a folder in the order of their numbers; empty where there are none. metadata.yaml, which
-/// crashed recorders do not write, says nothing that the files do not.
+/// The .db3 or .mcap files of a folder, also compressed as .zstd, in the order of their numbers; empty where there are
+/// none. metadata.yaml, which crashed recorders do not write, says nothing that the files do not.
 std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder);
 
 /// The messages of one file after those of the other.

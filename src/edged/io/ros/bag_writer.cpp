@@ -8,7 +8,6 @@
 
 #include "edged/io/compression.hpp"
 #include "edged/io/ros/bag_format.hpp"
-#include "edged/io/ros/definitions.hpp"
 
 namespace edged {
 namespace {
@@ -80,9 +79,8 @@ void BagWriter::write_head(std::uint64_t index_place) {
   file_.overwrite(kBagMagic.size(), record);
 }
 
-std::size_t BagWriter::add_topic(std::string_view name, std::string_view type) {
+std::size_t BagWriter::add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) {
   const auto id = static_cast<std::uint32_t>(connections_.size());
-  const MessageDefinition definition = definition_of(type, Wire::Ros1);
   const BagHeader header = BagHeader(kBagConnection).field("conn", id).text("topic", name);
   const BagHeader data = BagHeader()
                              .text("topic", name)

@@ -16,7 +16,7 @@ class BagWriter final : public MessageSink {
   explicit BagWriter(const std::filesystem::path& file, const ChunkOptions& options = {.compression = "lz4"});
 
   Wire wire() const override { return Wire::Ros1; }
-  std::size_t add_topic(std::string_view name, std::string_view type) override;
+  std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) override;
   void write(std::size_t topic, Timestamp t, std::string_view message) override;
   void finish() override;
 

@@ -15,7 +15,7 @@ struct MessageDefinition {
   std::string md5;   ///< by which ROS 1 knows versions of a message; empty for CDR
 };
 
-/// type: "dvs_msgs/EventArray" or another one that is written here or by the tests (CheckError for any other).
+/// type: "dvs_msgs/EventArray" or another one that is written here (CheckError for any other).
 MessageDefinition definition_of(std::string_view type, Wire wire);
 
 }  // namespace edged

@@ -131,7 +131,8 @@ std::optional<Message> Mcap::take_message() {
 bool Mcap::take_description(std::uint8_t op, ByteReader& record) {
   if (op == kMcapSchema) {
     const auto id = record.number<std::uint16_t>();
-    schemas_[id] = mcap_text(record);
+    const std::string_view type = mcap_text(record), encoding = mcap_text(record);
+    schemas_[id] = {std::string(type), encoding.starts_with("ros") ? std::string(mcap_text(record)) : ""};
     return true;
   }
   if (op != kMcapChannel) return false;
@@ -141,7 +142,7 @@ bool Mcap::take_description(std::uint8_t op, ByteReader& record) {
   if (schema == schemas_.end() || (encoding != "cdr" && encoding != "ros1") || topic_of_channel_.contains(id))
     return true;
   wire_ = encoding == "ros1" ? Wire::Ros1 : Wire::Cdr;
-  topic_of_channel_[id] = describe_topic(topic, schema->second);
+  topic_of_channel_[id] = describe_topic(topic, schema->second.type, schema->second.definition);
   return true;
 }
 

@@ -27,7 +27,10 @@ class Mcap final : public RecordSource {
   void take_statistics(ByteReader& record);
 
   Wire wire_ = Wire::Cdr;
-  std::map<std::uint16_t, std::string> schemas_;  ///< types of messages
+  struct Schema {
+    std::string type, definition;
+  };
+  std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, std::size_t> topic_of_channel_;
 };
 

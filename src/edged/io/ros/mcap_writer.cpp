@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "edged/io/compression.hpp"
-#include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/mcap_format.hpp"
 
 namespace edged {
@@ -39,7 +38,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const ChunkOptions& op
   file_.write(mcap_record(kMcapHeader, header));
 }
 
-std::size_t McapWriter::add_topic(std::string_view name, std::string_view type) {
+std::size_t McapWriter::add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) {
   const auto id = static_cast<std::uint16_t>(channels_.size());
   std::string long_type(type);
   long_type.insert(long_type.find('/'), "/msg");
@@ -47,7 +46,7 @@ std::size_t McapWriter::add_topic(std::string_view name, std::string_view type) 
   append_number<std::uint16_t>(schema, id + 1);  // zero means that there is none
   put_text(schema, long_type);
   put_text(schema, "ros2msg");
-  put_text(schema, definition_of(type, Wire::Cdr).text);
+  put_text(schema, definition.text);
   append_number(channel, id);
   append_number<std::uint16_t>(channel, id + 1);
   put_text(channel, name);

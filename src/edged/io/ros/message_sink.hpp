@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {
@@ -16,8 +17,8 @@ class MessageSink {
  public:
   virtual ~MessageSink() = default;
   virtual Wire wire() const = 0;
-  /// Number of a new topic, by which write() knows it. type: "pkg/Name", one that definition_of knows.
-  virtual std::size_t add_topic(std::string_view name, std::string_view type) = 0;
+  /// Number of a new topic, by which write() knows it. type: "pkg/Name".
+  virtual std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) = 0;
   /// t: when it was recorded.
   virtual void write(std::size_t topic, Timestamp t, std::string_view message) = 0;
   /// Completes the file with its index; nothing may be written any more.

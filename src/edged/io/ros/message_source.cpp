@@ -12,51 +12,61 @@
 #include "edged/io/ros/db3.hpp"
 #include "edged/io/ros/mcap.hpp"
 #include "edged/io/ros/mcap_format.hpp"
+#include "edged/io/ros/unpacked_source.hpp"
 
 namespace edged {
-
 namespace {
 
-enum class Container { None, Bag, Mcap, Db3, Folder };
+enum class Container { None, Bag, Mcap, Db3, Zstd };
 
-Container container_of(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) return bag_parts(path).empty() ? Container::None : Container::Folder;
-  if (!std::filesystem::is_regular_file(path)) return Container::None;
-  const Bytes head = BinaryFile(path).read(0, 16);
+Container container_of(ByteSpan head) {
   const std::string_view magic = as_text(head);
   if (magic.starts_with(kBagMagic)) return Container::Bag;
   if (magic.starts_with(kMcapMagic)) return Container::Mcap;
   if (magic.starts_with("SQLite format 3")) return Container::Db3;
+  if (magic.starts_with(kZstdMagic)) return Container::Zstd;
   return Container::None;
+}
+
+std::unique_ptr<MessageSource> open_container(const std::filesystem::path& file, Repairs* repairs) {
+  constexpr std::size_t kHeadBytes = 16;
+  const auto unpacked = [&](std::unique_ptr<MessageSource> source) {
+    return std::make_unique<UnpackedSource>(std::move(source), file.string(), repairs);
+  };
+  switch (container_of(BinaryFile(file).read(0, kHeadBytes))) {
+    case Container::Bag:
+      return std::make_unique<Bag>(file, repairs);
+    case Container::Mcap:
+      return unpacked(std::make_unique<Mcap>(file, repairs));
+    case Container::Db3:
+      return unpacked(std::make_unique<Db3>(file, repairs));
+    case Container::Zstd:
+      return open_packed_messages(file, repairs);
+    case Container::None:
+      break;
+  }
+  throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.string());
 }
 
 }  // namespace
 
-bool is_bag(const std::filesystem::path& path) { return container_of(path) != Container::None; }
+bool is_bag(ByteSpan head) { return container_of(head) != Container::None; }
+
+bool is_bag_folder(const std::filesystem::path& folder) { return !bag_parts(folder).empty(); }
 
 std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs) {
-  switch (container_of(path)) {
-    case Container::Bag:
-      return std::make_unique<Bag>(path, repairs);
-    case Container::Mcap:
-      return std::make_unique<Mcap>(path, repairs);
-    case Container::Db3:
-      return std::make_unique<Db3>(path, repairs);
-    case Container::Folder:
-      return std::make_unique<BagFolder>(bag_parts(path), repairs);
-    case Container::None:
-      break;
-  }
-  throw InputError::format("{}: no ROS bag, or its beginning is damaged", path.string());
+  if (std::filesystem::is_directory(path)) return std::make_unique<BagFolder>(bag_parts(path), repairs);
+  return open_container(path, repairs);
 }
 
-std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type) {
+std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
+                        std::string_view definition) {
   std::string short_type(type);
   if (const std::size_t at = short_type.find("/msg/"); at != std::string::npos) short_type.erase(at, 4);
   const auto found =
       std::ranges::find_if(topics, [&](const Topic& topic) { return topic.name == name && topic.type == short_type; });
   if (found != topics.end()) return static_cast<std::size_t>(found - topics.begin());
-  topics.push_back({std::string(name), short_type, 0});
+  topics.push_back({std::string(name), short_type, std::string(definition), 0});
   return topics.size() - 1;
 }
 

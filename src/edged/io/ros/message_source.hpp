@@ -19,9 +19,10 @@ namespace edged {
 enum class Wire { Ros1, Cdr };
 
 struct Topic {
-  std::string name;       ///< "/dvs/events"
-  std::string type;       ///< "dvs_msgs/EventArray", in ROS 2 too
-  std::size_t count = 0;  ///< of messages
+  std::string name;        ///< "/dvs/events"
+  std::string type;        ///< "dvs_msgs/EventArray", in ROS 2 too
+  std::string definition;  ///< of the type, as far as the container tells it
+  std::size_t count = 0;   ///< of messages
 };
 
 struct Message {
@@ -41,13 +42,17 @@ class MessageSource {
   virtual std::optional<Message> next() = 0;
 };
 
-/// Whether open_messages can open it, found by content.
-bool is_bag(const std::filesystem::path& path);
+/// Whether a file that begins so is a bag, or compressed as ROS 2 compresses whole bags.
+bool is_bag(ByteSpan head);
+/// Whether the folder is that of a ROS 2 bag.
+bool is_bag_folder(const std::filesystem::path& folder);
 
-/// Opens a bag; throws InputError where it is none. repairs may be null: then nothing is counted.
+/// Opens a file or folder that is a bag; throws InputError where it is none. repairs may be null: then nothing is
+/// counted.
 std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs);
 
 /// Index of the topic of that name and type, which is added where it is new. "pkg/msg/Name" becomes "pkg/Name".
-std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type);
+std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
+                        std::string_view definition = {});
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "edged/core/check.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -133,6 +134,29 @@ ImuSample read_imu(WireReader message) {
   const Eigen::Vector3d accel = message.vector<3>();
   if (!gyro.allFinite() || !accel.allFinite()) throw Damage("not finite");
   return {t, gyro, accel};
+}
+
+CameraModel read_camera_info(WireReader message) try {
+  message.header();
+  const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
+  if (width > kLargestSide || height > kLargestSide) throw Damage("no size of an image");
+  const std::string name(message.text());
+  const bool equidistant = name == "equidistant" || name == "fisheye";
+  const bool radial = name == "plumb_bob" || name == "rational_polynomial" || name.empty();
+  const std::size_t known = equidistant ? 4 : 5;
+  std::array<double, 5> coefficients{};
+  for (std::size_t i = 0, count = message.list(sizeof(double)); i < count; ++i) {
+    const auto k = message.number<double>();
+    if (i < known) coefficients[i] = k;
+    if (k != 0.0 && (i >= known || !(equidistant || radial)))
+      throw Damage("distortion `" + name + "` with such coefficients is not supported");
+  }
+  const Eigen::Matrix<double, 9, 1> K = message.vector<9>();
+  if (K[0] == 0.0) throw Damage("not calibrated");
+  return CameraModel(static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5],
+                     equidistant ? DistortionModel::Equidistant : DistortionModel::RadTan, coefficients);
+} catch (const InputError& e) {
+  throw Damage(e.what());
 }
 
 GrayImage read_image(WireReader message) {

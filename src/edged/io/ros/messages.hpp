@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/camera/camera_model.hpp"
 #include "edged/core/types.hpp"
 #include "edged/io/ros/message_source.hpp"
 
@@ -60,6 +61,9 @@ struct EventPacket {
 EventPacket read_event_packet(WireReader message);
 
 ImuSample read_imu(WireReader message);
+
+/// sensor_msgs/CameraInfo. Damage also where the camera is not calibrated or its distortion is none of ours.
+CameraModel read_camera_info(WireReader message);
 
 /// Any 8 or 16 bit encoding, as grey.
 struct GrayImage {

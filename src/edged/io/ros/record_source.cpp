@@ -74,8 +74,8 @@ void RecordSource::load(Bytes records) {
   reader_ = ByteReader(records_);
 }
 
-std::size_t RecordSource::describe_topic(std::string_view name, std::string_view type) {
-  return topic_index(topics_, name, type);
+std::size_t RecordSource::describe_topic(std::string_view name, std::string_view type, std::string_view definition) {
+  return topic_index(topics_, name, type, definition);
 }
 
 void RecordSource::extend(Timestamp t) {

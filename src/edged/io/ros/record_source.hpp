@@ -40,7 +40,7 @@ class RecordSource : public MessageSource {
   void load(Bytes records);
   ByteReader& reader() { return reader_; }
   /// Index of the topic with that name and type.
-  std::size_t describe_topic(std::string_view name, std::string_view type);
+  std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition);
   void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
   void add_chunk_place(std::uint64_t place) { chunk_places_.push_back(place); }
   void extend(Timestamp t);

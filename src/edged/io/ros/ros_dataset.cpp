@@ -7,6 +7,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
+#include "edged/io/ros/bag_intrinsics.hpp"
 
 namespace edged {
 
@@ -94,6 +95,14 @@ void RosDataset::feed_frame(const std::string& type, WireReader message) {
   push_frame(gray.t, std::move(gray.image));
 }
 
+std::optional<Calibration> RosDataset::intrinsics() const {
+  const auto is_info = [](const Topic& topic) { return topic.type == "sensor_msgs/CameraInfo"; };
+  if (std::ranges::none_of(source_->topics(), is_info)) return std::nullopt;
+  auto calibration = read_bag_intrinsics(*open_messages(name_, nullptr), choice_);
+  if (calibration) calibration->rig.name = info_.name;
+  return calibration;
+}
+
 std::optional<GroundTruth> RosDataset::ground_truth() const {
   const auto topic = choice_.of(Role::Truth);
   if (!topic) return std::nullopt;
@@ -120,6 +129,15 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
   const auto repeated = std::ranges::unique(poses, {}, &StampedPose::t);
   poses.erase(repeated.begin(), repeated.end());
   return poses.empty() ? std::nullopt : std::optional(std::move(truth));
+}
+
+Recording open_bag(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
+  auto dataset = std::make_unique<RosDataset>(path, options.topics, rig, options.geometry);
+  std::optional<Calibration> calibration = dataset->intrinsics();
+  if (calibration && rig)
+    for (const RigCamera& camera : calibration->rig.cameras)
+      warn_of_other_lens(path.string(), camera.model.mean_focal(), *rig, camera.modality);
+  return {std::move(dataset), std::move(calibration)};
 }
 
 }  // namespace edged

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "edged/camera/rig.hpp"
+#include "edged/io/recording.hpp"
 #include "edged/io/ros/event_packets.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/topic_choice.hpp"
@@ -23,6 +23,9 @@ class RosDataset final : public StreamedDataset {
 
   std::optional<GroundTruth> ground_truth() const override;
 
+  /// Intrinsics of its cameras, where it holds them.
+  std::optional<Calibration> intrinsics() const;
+
  private:
   bool read_on() override;
   void feed(const Message& message);
@@ -37,5 +40,7 @@ class RosDataset final : public StreamedDataset {
   EventPacketDecoder packets_;
   std::array<std::size_t, kRoleNames.size()> good_{}, bad_{};  ///< messages, by role
 };
+
+Recording open_bag(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

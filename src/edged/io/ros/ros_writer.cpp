@@ -7,6 +7,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag_writer.hpp"
+#include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/mcap_writer.hpp"
 #include "edged/io/ros/wire_writer.hpp"
 #include "edged/io/text.hpp"
@@ -36,8 +37,7 @@ class RosWriter final : public RecordingWriter {
     check(batch.events.front().t);
     describe_camera(Modality::Events, "/dvs/camera_info", batch.camera, end);
     // As a driver sends them: once the last one has happened.
-    send("/dvs/events", "dvs_msgs/EventArray", end,
-         event_array_message(sink_->wire(), batch, sensor_));
+    send("/dvs/events", "dvs_msgs/EventArray", end, event_array_message(sink_->wire(), batch, sensor_));
   }
 
   void write(const Frame& frame) override {
@@ -76,7 +76,8 @@ class RosWriter final : public RecordingWriter {
 
   void put(std::string_view topic, std::string_view type, Timestamp t, std::string_view message) {
     auto place = topics_.find(topic);
-    if (place == topics_.end()) place = topics_.emplace(topic, sink_->add_topic(topic, type)).first;
+    if (place == topics_.end())
+      place = topics_.emplace(topic, sink_->add_topic(topic, type, definition_of(type, sink_->wire()))).first;
     sink_->write(place->second, t, message);
   }
 

@@ -66,6 +66,15 @@ void check_role_names(const WantedTopics& wanted) {
   throw InputError::format("{}: no events, images or IMU among its topics: {}", file, types);
 }
 
+/// The first dvs_msgs (2015) had other fields under the same name.
+void refuse_old_events(const Topic& topic, const std::string& file) {
+  if (topic.type == "dvs_msgs/EventArray" && topic.definition.find("uint64 time") != std::string::npos)
+    throw InputError::format(
+        "{}: {} holds dvs_msgs/EventArray of 2015, which lacks the size of the sensor and ROS stamps: take the text "
+        "version of the data set, or give --topic events=none",
+        file, topic.name);
+}
+
 }  // namespace
 
 TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file) {
@@ -85,6 +94,7 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& 
   if (!ties.empty())
     throw InputError::format("{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none){}", file,
                              ties);
+  if (choice.of(Role::Events)) refuse_old_events(topics[*choice.of(Role::Events)], file);
   if (!choice.of(Role::Events) && !choice.of(Role::Frames) && !choice.of(Role::Imu))
     refuse_without_sensor(topics, file);
   return choice;

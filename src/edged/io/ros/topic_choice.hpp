@@ -25,7 +25,8 @@ struct TopicChoice {
 };
 
 /// The only topic of a fitting type takes its role. Throws InputError that lists them where there are several, where
-/// the bag lacks a wanted one, and where no sensor is left.
+/// the bag lacks a wanted one, where no sensor is left, and for
+/// the event messages of 2015.
 TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
 
 }  // namespace edged

@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
-#include <spdlog/spdlog.h>
-
 #include <array>
-#include <cmath>
 
 #include "edged/core/check.hpp"
 #include "edged/io/formats.hpp"
@@ -48,18 +45,6 @@ cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::option
   return ecd_image_size(folder).value_or(cv::Size(kEcdWidth, kEcdHeight));
 }
 
-/// The lens of a sequence can differ from that of the rig: the data set used several.
-void warn_of_other_lens(const SourcePath& folder, const Rig& rig) {
-  constexpr double kTolerance = 0.02;
-  const SourcePath file = folder / "calib.txt";
-  const RigCamera* camera = rig.find(Modality::Events);
-  if (!camera || !file.is_file()) return;
-  const double focal = load_calibration(file).rig.cameras.front().model.mean_focal();
-  if (std::abs(focal / camera->model.mean_focal() - 1.0) <= kTolerance) return;
-  spdlog::warn("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file.string(), focal,
-               rig.name, camera->model.mean_focal());
-}
-
 }  // namespace
 
 bool is_ecd_folder(const SourcePath& folder) {
@@ -85,7 +70,10 @@ std::optional<cv::Size> ecd_image_size(const SourcePath& folder) {
 Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   Recording recording;
   if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = load_calibration(own);
-  if (rig) warn_of_other_lens(folder, *rig);
+  // The lens of a sequence can differ from that of the rig: the data set used several.
+  if (const SourcePath calib = folder / "calib.txt"; rig && calib.is_file())
+    warn_of_other_lens(calib.string(), load_calibration(calib).rig.cameras.front().model.mean_focal(), *rig,
+                       Modality::Events);
 
   TextLayout layout;
   layout.info.name = folder.name();

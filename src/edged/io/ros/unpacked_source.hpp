@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// ROS 2 bags whose recorder compressed messages or whole files by zstd.
+#pragma once
+
+#include "edged/io/ros/message_source.hpp"
+
+namespace edged {
+
+/// The first bytes of a block of zstd. No message begins so: CDR has other ones.
+inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
+
+/// The messages of another source, unpacked where they are compressed one by one.
+class UnpackedSource final : public MessageSource {
+ public:
+  UnpackedSource(std::unique_ptr<MessageSource> packed, std::string name, Repairs* repairs)
+      : packed_(std::move(packed)), name_(std::move(name)), repairs_(repairs) {}
+
+  Wire wire() const override { return packed_->wire(); }
+  const std::vector<Topic>& topics() const override { return packed_->topics(); }
+  Duration length() const override { return packed_->length(); }
+  std::optional<Message> next() override;
+
+ private:
+  std::unique_ptr<MessageSource> packed_;
+  std::string name_;
+  Repairs* repairs_;
+  Bytes message_;
+};
+
+/// Opens a bag that is compressed as a whole. It is unpacked into a file in the folder of temporary files (TMPDIR),
+/// which has no name any more when this returns and goes away with the source.
+std::unique_ptr<MessageSource> open_packed_messages(const std::filesystem::path& path, Repairs* repairs);
+
+}  // namespace edged
