@@ -18,8 +18,8 @@ namespace edged {
 
 struct Recording {
   std::unique_ptr<Dataset> dataset;
-  std::optional<Calibration>
-      calibration;  ///< where the recording brings one (EuRoC, calibration.yaml); bags: intrinsics
+  /// Where the recording brings one: complete (EuRoC, calibration.yaml) or intrinsics (bags).
+  std::optional<Calibration> calibration;
 };
 
 /// What the user may say of a recording that it does not tell itself, or not clearly.

@@ -17,6 +17,21 @@ std::string_view column_text(sqlite3_stmt* statement, int column) {
   return text ? std::string_view(text) : std::string_view();
 }
 
+/// What SQLite reads as zeros, as it takes for written what the first page says was.
+bool is_cut(const std::filesystem::path& file) {
+  BinaryFile bytes(file);
+  const Bytes head = bytes.read(0, 100);
+  const auto big_endian = [&head](std::size_t at, std::size_t count) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < count; ++i) value = value << 8U | head[at + i];
+    return value;
+  };
+  if (head.size() < 100) return true;
+  const std::uint64_t said = big_endian(16, 2), page_bytes = said == 1 ? 65536 : said;
+  const bool pages_told = big_endian(24, 4) == big_endian(92, 4);
+  return pages_told && big_endian(28, 4) * page_bytes > bytes.size();
+}
+
 }  // namespace
 
 void Db3::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -32,6 +47,8 @@ Db3::Db3(const std::filesystem::path& file, Repairs* repairs) : name_(file.strin
       sqlite3_open_v2((uri + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(opened);
   if (result != SQLITE_OK) throw InputError::format("{}: cannot be opened as SQLite file", name_);
+  if (repairs_ && is_cut(file))
+    repairs_->add("bag: cut", name_ + ": the file ends before its last page: messages there may be damaged");
 
   const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (step(topics.get())) {

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint32_t kLargestSide = 32768;  // of an image or sensor [px]
 
-/// How an image's encoding turns into grey; conversion < 0: it is grey.
+/// How an image's encoding turns into grey; conversion < 0: it is grey. Words of 16 bits are pairs of bytes: their rows
+/// may begin anywhere.
 struct Encoding {
   std::string_view name;
   int type;
@@ -28,8 +29,8 @@ struct Encoding {
 constexpr std::array kEncodings = {
     Encoding{"mono8", CV_8UC1, -1},
     Encoding{"8UC1", CV_8UC1, -1},
-    Encoding{"mono16", CV_16UC1, -1},
-    Encoding{"16UC1", CV_16UC1, -1},
+    Encoding{"mono16", CV_8UC2, -1},
+    Encoding{"16UC1", CV_8UC2, -1},
     Encoding{"bgr8", CV_8UC3, cv::COLOR_BGR2GRAY},
     Encoding{"8UC3", CV_8UC3, cv::COLOR_BGR2GRAY},
     Encoding{"rgb8", CV_8UC3, cv::COLOR_RGB2GRAY},
@@ -159,7 +160,7 @@ CameraModel read_camera_info(WireReader message) try {
   throw Damage(e.what());
 }
 
-GrayImage read_image(WireReader message) {
+GrayImage read_image(WireReader message) try {
   GrayImage out{message.header(), {}};
   const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
   const std::string_view name = message.text();
@@ -176,7 +177,7 @@ GrayImage read_image(WireReader message) {
   // The library wants a mutable pointer, but only reads.
   const cv::Mat raw(static_cast<int>(height), static_cast<int>(width), encoding->type,
                     const_cast<std::uint8_t*>(data.data()), step);
-  if (encoding->type == CV_16UC1) {
+  if (encoding->type == CV_8UC2) {
     out.image = upper_bytes(raw, big_endian);
   } else if (encoding->conversion < 0) {
     out.image = raw.clone();
@@ -184,6 +185,8 @@ GrayImage read_image(WireReader message) {
     cv::cvtColor(raw, out.image, encoding->conversion);
   }
   return out;
+} catch (const cv::Exception&) {
+  throw Damage("image cannot be turned into grey");
 }
 
 GrayImage read_compressed_image(WireReader message) try {

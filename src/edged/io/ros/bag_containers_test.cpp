@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Every container of messages: whole, compressed, split, without index and damaged.
+#include <bzlib.h>
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "edged/io/recording.hpp"
+#include "edged/io/ros/bag_test_support.hpp"
+
+namespace edged {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class BagContainers : public ::testing::TestWithParam<BagContainer> {
+ protected:
+  /// The wire format of the container.
+  SmallBag small_bag() const { return SmallBag(GetParam().make(folder_.path() / "unused")->wire()); }
+  fs::path write(const SmallBag& bag) const { return write_bag(folder_, GetParam(), bag.topics); }
+
+  TempFolder folder_;
+};
+
+TEST_P(BagContainers, GiveBackEverySensorAndTheGroundTruth) {
+  const SmallBag bag = small_bag();
+  const Recording r = open_recording(write(bag));
+  const DatasetInfo& info = r.dataset->info();
+  EXPECT_EQ(info.event_sensor, kBagSensor);
+  EXPECT_EQ(info.begin, timestamp_from_seconds(100));
+  EXPECT_NEAR(to_seconds(*info.end), 100.195, 1e-3);
+  const Contents c = read_all(*r.dataset);
+  EXPECT_TRUE(c.events == bag.events);
+  ASSERT_EQ(c.frames.size(), 8u);
+  EXPECT_EQ(c.frames[3].image.at<std::uint8_t>(19, 29), 15);
+  EXPECT_EQ(c.frames[3].t, timestamp_from_seconds(100.075));
+  ASSERT_EQ(c.imu.size(), 40u);
+  EXPECT_EQ(c.imu[7].gyro_B, Eigen::Vector3d(0.1 * 7, 1.0 / 3.0, -2.0));
+  EXPECT_EQ(c.imu[7].accel_B, 3.0 * c.imu[7].gyro_B);
+  const auto truth = r.dataset->ground_truth();
+  ASSERT_TRUE(truth);
+  ASSERT_EQ(truth->trajectory.size(), 40u);
+  EXPECT_EQ(truth->frame, "body");
+  EXPECT_EQ(truth->trajectory[7].T.translation(), c.imu[7].gyro_B);
+  EXPECT_TRUE(r.dataset->repairs().empty());
+}
+
+TEST_P(BagContainers, CutAnywhereTheyGiveWhatIsWholeBefore) {
+  const SmallBag bag = small_bag();
+  const std::string whole = read_text(write(bag));
+  const bool sqlite = std::string(GetParam().extension) == ".db3";
+  std::size_t before = 0;
+  for (std::size_t percent = 0; percent < 100; ++percent) {
+    const fs::path cut = folder_.write("cut", whole.substr(0, whole.size() * percent / 100));
+    std::vector<Event> read;
+    std::map<std::string, std::size_t> repairs;
+    const std::string refusal = input_error([&] {
+      const Recording r = open_recording(cut);
+      read = read_all(*r.dataset).events;
+      repairs = r.dataset->repairs();
+    });
+    EXPECT_EQ(refusal.find('\n'), std::string::npos);
+    ASSERT_LE(read.size(), bag.events.size());
+    if (sqlite) {  // whose pages lie in any order, and missing ones are read as zeros
+      EXPECT_TRUE(!refusal.empty() || repairs.contains("bag: cut")) << percent;
+      continue;
+    }
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), bag.events.begin())) << percent;
+    EXPECT_GE(read.size(), before) << percent << " %: " << refusal;
+    before = read.size();
+  }
+  EXPECT_TRUE(sqlite || before >= bag.events.size() / 2);
+}
+
+TEST_P(BagContainers, FlippedBitsAreRefusedOrMended) {
+  const SmallBag bag = small_bag();
+  const std::string whole = read_text(write(bag));
+  std::mt19937 random(7);
+  std::size_t read_events = 0;
+  constexpr int kRounds = 300;
+  for (int i = 0; i < kRounds; ++i) {
+    std::string damaged = whole;
+    damaged[random() % whole.size()] ^= static_cast<char>(1U << random() % 8);
+    const fs::path file = folder_.write("damaged", damaged);
+    const std::string refusal = input_error([&] {
+      const Recording r = open_recording(file);
+      read_events += read_all(*r.dataset).events.size();
+      r.dataset->ground_truth();
+    });
+    EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
+  }
+  // One bit costs a message or a chunk, not the recording.
+  EXPECT_GT(read_events, bag.events.size() * kRounds / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BagContainers, ::testing::ValuesIn(kBagContainers),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(BagContainer, ARos1BagThatWasNeverFinishedIsReadThrough) {
+  TempFolder folder;
+  const SmallBag bag(Wire::Ros1);
+  const fs::path file = write_bag(folder, kBagContainers[1], bag.topics);
+  std::string text = read_text(file);
+  const std::size_t index = text.find("index_pos=") + 10;
+  text.replace(index, 8, 8, '\0');
+  const Recording r = open_recording(folder.write("open.bag", text));
+  EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
+  EXPECT_EQ(r.dataset->repairs(), (std::map<std::string, std::size_t>{{"bag: no index", 1}}));
+}
+
+TEST(BagContainer, AnMcapWithoutItsSummaryIsReadThrough) {
+  TempFolder folder;
+  const SmallBag bag(Wire::Cdr);
+  std::string text = read_text(write_bag(folder, kBagContainers[4], bag.topics));
+  // The footer: where the summary is, 28 bytes before the magic at the end.
+  text.replace(text.size() - 8 - 20, 8, 8, '\0');
+  const Recording r = open_recording(folder.write("open.mcap", text));
+  EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
+  EXPECT_EQ(r.dataset->repairs(), (std::map<std::string, std::size_t>{{"bag: no index", 1}}));
+}
+
+TEST(BagContainer, ADamagedChunkCostsOnlyItselfWhereThereIsAnIndex) {
+  for (const std::size_t which : {0u, 2u}) {  // not compressed
+    TempFolder folder;
+    const SmallBag bag(which == 0 ? Wire::Ros1 : Wire::Cdr);
+    std::string text = read_text(write_bag(folder, kBagContainers[which], bag.topics));
+    const std::size_t middle = text.size() / 2;
+    for (std::size_t i = 0; i < 600; ++i) text[middle + i] = '\xFF';
+    const Recording r = open_recording(folder.write("damaged", text));
+    const std::size_t read = read_all(*r.dataset).events.size();
+    EXPECT_GE(read, bag.events.size() * 7 / 10);
+    EXPECT_LT(read, bag.events.size());
+    EXPECT_FALSE(r.dataset->repairs().empty());
+  }
+}
+
+std::string pack_bz2(std::string_view bytes) {
+  std::string packed(bytes.size() + bytes.size() / 100 + 600, '\0');
+  auto size = static_cast<unsigned>(packed.size());
+  BZ2_bzBuffToBuffCompress(packed.data(), &size, const_cast<char*>(bytes.data()), static_cast<unsigned>(bytes.size()),
+                           9, 0, 0);
+  packed.resize(size);
+  return packed;
+}
+
+/// The first chunk of an uncompressed bag, packed: the rest of the file, whose index does not fit any more, is left
+/// out.
+TEST(BagContainer, ChunksCompressedByBzip2AreRead) {
+  TempFolder folder;
+  const SmallBag bag(Wire::Ros1);
+  const fs::path file = folder.path() / "whole.bag";
+  BagWriter writer(file, {.compression = "none", .bytes = 1U << 24U});
+  const std::string text = read_text(write_bag(file, writer, bag.topics));
+  constexpr std::size_t kChunk = 13 + 4096;
+  const auto number = [&](std::size_t at) {
+    return ByteReader(as_bytes(std::string_view(text).substr(at))).number<std::uint32_t>();
+  };
+  const std::size_t header_bytes = number(kChunk), data = kChunk + 4 + header_bytes + 4;
+  std::string header = text.substr(kChunk + 4, header_bytes);
+  const std::string field = std::string("\x10\0\0\0", 4) + "compression=none";
+  ASSERT_NE(header.find(field), std::string::npos);
+  header.replace(header.find(field), field.size(), std::string("\x0f\0\0\0", 4) + "compression=bz2");
+  const std::string packed = pack_bz2(std::string_view(text).substr(data, number(data - 4)));
+  std::string out = text.substr(0, kChunk);
+  append_number(out, static_cast<std::uint32_t>(header.size()));
+  out += header;
+  append_number(out, static_cast<std::uint32_t>(packed.size()));
+  out += packed;
+  EXPECT_TRUE(read_all(*open_recording(folder.write("bz2.bag", out)).dataset).events == bag.events);
+}
+
+/// The recording in three files, as a recorder splits them.
+std::vector<std::vector<TestTopic>> three_parts(const SmallBag& bag) {
+  std::vector<std::vector<TestTopic>> parts(3, bag.topics);
+  for (std::size_t p = 0; p < 3; ++p)
+    for (std::size_t i = 0; i < bag.topics.size(); ++i) {
+      const auto& all = bag.topics[i].messages;
+      const auto cut = [&](std::size_t k) { return all.begin() + static_cast<std::ptrdiff_t>(all.size() * k / 3); };
+      parts[p][i].messages.assign(cut(p), cut(p + 1));
+    }
+  return parts;
+}
+
+TEST(BagFolder, GivesItsFilesInTheOrderOfTheirNumbers) {
+  const SmallBag bag(Wire::Cdr);
+  const auto parts = three_parts(bag);
+  for (const char* extension : {".mcap", ".db3"}) {
+    TempFolder folder;
+    const fs::path names[] = {"rec_2", "rec_9", "rec_10"};
+    for (std::size_t p = 0; p < 3; ++p) {
+      const fs::path file = folder.path() / (names[p].string() + extension);
+      if (extension == std::string(".mcap")) {
+        McapWriter writer(file);
+        write_bag(file, writer, parts[p]);
+      } else {
+        Db3Writer writer(file);
+        write_bag(file, writer, parts[p]);
+      }
+    }
+    folder.write("metadata.yaml", "rosbag2_bagfile_information:\n  version: 5\n");
+    const Recording r = open_recording(folder.path());
+    EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
+    EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 40u);
+    EXPECT_TRUE(r.dataset->repairs().empty());
+  }
+}
+
+TEST(BagFolder, UnpacksFilesThatTheRecorderCompressedAndLeavesNothingBehind) {
+  const SmallBag bag(Wire::Cdr);
+  const auto parts = three_parts(bag);
+  TempFolder folder;
+  const fs::path recording = folder.path() / "rec", scratch = folder.path() / "scratch";
+  fs::create_directories(scratch);
+  for (std::size_t p = 0; p < 3; ++p) {
+    const fs::path file = scratch / fmt::format("rec_{}.db3", p);
+    Db3Writer writer(file);
+    folder.write(fmt::format("rec/rec_{}.db3.zstd", p), compress("zstd", read_text(write_bag(file, writer, parts[p]))));
+    fs::remove(file);
+  }
+  ::setenv("TMPDIR", scratch.c_str(), 1);
+  const Recording r = open_recording(recording);
+  EXPECT_TRUE(fs::is_empty(scratch));
+  EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
+  EXPECT_TRUE(r.dataset->repairs().empty());
+  // Cut: the tables of SQLite may be gone, but it is said, and nothing worse.
+  const std::string packed = read_text(recording / "rec_1.db3.zstd");
+  folder.write("rec/rec_1.db3.zstd", packed.substr(0, packed.size() / 2));
+  std::map<std::string, std::size_t> repairs;
+  const std::string refusal = input_error([&] {
+    const Recording cut = open_recording(recording);
+    read_all(*cut.dataset);
+    repairs = cut.dataset->repairs();
+  });
+  EXPECT_TRUE(repairs.contains("bag: cut") || !refusal.empty());
+  ::unsetenv("TMPDIR");
+}
+
+TEST(BagFolder, ACompressedFileThatIsNoBagIsRefused) {
+  TempFolder folder;
+  const fs::path file = folder.write("a.zst", compress("zstd", "anything"));
+  EXPECT_THAT(input_error([&] { open_recording(file); }), HasSubstr("no ROS bag"));
+}
+
+}  // namespace
+}  // namespace edged

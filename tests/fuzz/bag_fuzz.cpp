@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as a ROS 1 bag or an MCAP file, behind the magic that the first byte chooses: messages, and the recording
+// with its ground truth and intrinsics.
+#include <spdlog/spdlog.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "edged/core/check.hpp"
+#include "edged/io/recording.hpp"
+#include "edged/io/ros/bag_format.hpp"
+#include "edged/io/ros/mcap_format.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace edged;
+  if (size == 0) return 0;
+  spdlog::set_level(spdlog::level::off);
+  static const int file = memfd_create("bag", 0);
+  std::string bytes(data[0] % 2 == 0 ? kBagMagic : kMcapMagic);
+  bytes.append(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const auto length = static_cast<ssize_t>(bytes.size());
+  if (ftruncate(file, 0) != 0 || pwrite(file, bytes.data(), bytes.size(), 0) != length) std::abort();
+  try {
+    const Recording recording = open_recording("/proc/self/fd/" + std::to_string(file));
+    while (recording.dataset->next()) {
+    }
+    recording.dataset->ground_truth();
+  } catch (const InputError&) {
+    return 0;  // the one refusal that is allowed
+  }
+  return 0;
+}
