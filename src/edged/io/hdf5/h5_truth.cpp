@@ -12,12 +12,12 @@ namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kRotationTolerance = 1e-2;
+constexpr double kMostDeviation = 1e-2;
 
 /// x y z qx qy qz qw
 std::optional<SE3> pose_of_seven(const double* v) {
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-  if (!(std::abs(q.norm() - 1.0) < kRotationTolerance) || !Eigen::Vector3d(v).allFinite()) return std::nullopt;
+  if (!(std::abs(q.norm() - 1.0) < kMostDeviation) || !Eigen::Vector3d(v).allFinite()) return std::nullopt;
   return SE3(q, Eigen::Vector3d(v));
 }
 
@@ -26,7 +26,7 @@ std::optional<SE3> pose_of_matrix(const double* v) {
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(v);
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!T.allFinite() || !(deviation < kRotationTolerance) || R.determinant() < 0) return std::nullopt;
+  if (!T.allFinite() || !(deviation < kMostDeviation) || R.determinant() < 0) return std::nullopt;
   return SE3(R, T.topRightCorner<3, 1>());
 }
 

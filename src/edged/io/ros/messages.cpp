@@ -170,7 +170,7 @@ GrayImage read_image(WireReader message) try {
 
   const auto* const encoding = std::ranges::find(kEncodings, name, &Encoding::name);
   if (encoding == kEncodings.end()) throw Damage("encoding `" + std::string(name) + "` is not known");
-  const std::size_t row = width * std::size_t{CV_ELEM_SIZE(encoding->type)};
+  const std::size_t row = width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding->type));
   if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide || step < row ||
       data.size() < (height - 1) * std::size_t{step} + row)
     throw Damage("size of the image contradicts its data");

@@ -126,8 +126,8 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
     }
   }
   std::ranges::stable_sort(poses, {}, &StampedPose::t);
-  const auto repeated = std::ranges::unique(poses, {}, &StampedPose::t);
-  poses.erase(repeated.begin(), repeated.end());
+  const auto same_stamp = [](const StampedPose& a, const StampedPose& b) { return a.t == b.t; };
+  poses.erase(std::unique(poses.begin(), poses.end(), same_stamp), poses.end());
   return poses.empty() ? std::nullopt : std::optional(std::move(truth));
 }
 
