@@ -23,6 +23,8 @@ constexpr std::uint64_t kStartNs = 1'700'000'000'000'000'000;
 const BagContainer& kPlainBag = kBagContainers[0];
 const BagContainer& kPlainMcap = kBagContainers[2];
 
+ImuSample still(Timestamp t) { return {t, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
+
 class Messages : public ::testing::TestWithParam<Wire> {
  protected:
   Wire wire() const { return GetParam(); }
@@ -190,7 +192,7 @@ TEST_P(Messages, ThreeKindsOfPosesAreGroundTruth) {
     TestTopic poses{"/vicon", type, {}}, imu{"/imu", "sensor_msgs/Imu", {}};
     for (int i = 0; i < 5; ++i) {
       poses.messages.emplace_back(kStart, pose_message(wire(), type, i));
-      imu.messages.emplace_back(kStart, imu_message(wire(), {kStart + std::chrono::milliseconds(i), {}, {}}));
+      imu.messages.emplace_back(kStart, imu_message(wire(), still(kStart + std::chrono::milliseconds(i))));
     }
     const auto truth = open({poses, imu}).dataset->ground_truth();
     ASSERT_TRUE(truth) << type;
@@ -207,7 +209,7 @@ TEST_P(Messages, SeveralTopicsForOneRoleAreAskedForWithTheList) {
   const std::vector<TestTopic> topics = {
       {"/left/events", "dvs_msgs/EventArray", {{kStart, event_array_message(wire(), left, kBagSensor)}}},
       {"/right/events", "dvs_msgs/EventArray", {{kStart, event_array_message(wire(), right, kBagSensor)}}},
-      {"/imu", "sensor_msgs/Imu", {{kStart, imu_message(wire(), {kStart, {}, {}})}}},
+      {"/imu", "sensor_msgs/Imu", {{kStart, imu_message(wire(), still(kStart))}}},
       {"/chatter", "std_msgs/String", {{kStart, "hello"}}}};
   EXPECT_THAT(input_error([&] { open(topics); }),
               AllOf(HasSubstr("--topic ROLE=NAME"), HasSubstr("events: /left/events, /right/events")));
