@@ -240,9 +240,12 @@ std::vector<std::string> H5File::list(std::size_t most) const {
     const H5File& file;
     std::size_t most;
     std::vector<std::string> found;
+    std::size_t links = 0;
   } visit{*this, most, {}};
   const auto note = [](hid_t, const char* name, const H5L_info_t*, void* context) -> herr_t {
+    constexpr std::size_t kMostLinks = 1000, kLongestName = 1000;  // a damaged file may go in circles
     auto& v = *static_cast<Visit*>(context);
+    if (++v.links > kMostLinks || std::strlen(name) > kLongestName) return 1;
     const auto array = v.file.find(std::string("/") + name);
     if (!array) return 0;
     v.found.push_back(fmt::format("{} ({})", array->path(), fmt::join(array->shape(), ", ")));
