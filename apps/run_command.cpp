@@ -311,7 +311,8 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
   write_file(folder_ / "overview.png", std::string(png.begin(), png.end()));
 }
 
-int run(const RunOptions& options) {
+int run(RunOptions options) {
+  options.live = options.live || is_live(options.source);
   const OdometryConfig config = load_config(options.config);
   const RunSummary summary = Run(options, open_source(options.source), config).go();
   fmt::print("{}", options.json ? to_json(summary).dump(2) + "\n" : to_table(summary));

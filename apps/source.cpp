@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/sim/simulator.hpp"
+#include "interrupt.hpp"
 
 namespace edged {
 namespace {
@@ -43,6 +45,8 @@ RecordingOptions recording_options(const SourceOptions& options) {
     if (!chosen.geometry)
       throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
+  chosen.interrupted = [] { return interrupt_signal() != 0; };
+  if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
   for (const std::string& text : options.topics) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
@@ -55,17 +59,23 @@ RecordingOptions recording_options(const SourceOptions& options) {
 }  // namespace
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
-  command.add_option("RECORDING", options.recording, "Folder or file (format found by content), or sim:PRESET[:SEED]")
+  command
+      .add_option("RECORDING", options.recording,
+                  "Folder or file (format found by content), tcp://HOST:PORT[,PORT...] of a DV server, or "
+                  "sim:PRESET[:SEED]")
       ->required();
   CLI::Option* rig = command.add_option("--rig", options.rig, "Calibration that ships with the program, by name");
   command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
   command.add_option("--geometry", options.geometry,
                      "WIDTHxHEIGHT [px] of the event sensor, for files that do not hold it");
   command
-      .add_option(
-          "--topic", options.topics,
-          "Topic of a ROS bag as ROLE=NAME: events, frames, imu or truth; NAME none leaves it out; may be repeated "
-          "[the only topic of a fitting type]")
+      .add_option("--time-unit", options.time_unit, "Unit of the stamps in a plain event file [found from its content]")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
+  command
+      .add_option("--topic", options.topics,
+                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu or truth; NAME none leaves "
+                  "it out; may be repeated "
+                  "[the only topic of a fitting type]")
       ->allow_extra_args(false);
 }
 
@@ -81,6 +91,8 @@ Recording open_uncalibrated(const SourceOptions& options) {
   if (calibration) recording.calibration = std::move(calibration);
   return recording;
 }
+
+bool is_live(const SourceOptions& options) { return options.recording.starts_with(kTcpPrefix); }
 
 Source open_source(const SourceOptions& options) {
   Recording recording = open_uncalibrated(options);

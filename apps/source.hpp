@@ -21,6 +21,7 @@ struct SourceOptions {
   std::string rig;                  ///< name of a shipped rig; "" where not given
   std::filesystem::path calib;      ///< calibration file; "" where not given
   std::string geometry;             ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
+  std::string time_unit;            ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
   std::vector<std::string> topics;  ///< of bags: ROLE=NAME
 };
 
@@ -30,12 +31,15 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// Adds RECORDING, --rig, --calib, --geometry and --topic.
+/// Adds RECORDING, --rig, --calib, --geometry, --time-unit and --topic.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be
 /// opened.
 Recording open_uncalibrated(const SourceOptions& options);
+
+/// Whether it is measured now, and who is too slow for it misses something.
+bool is_live(const SourceOptions& options);
 
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
 Source open_source(const SourceOptions& options);

@@ -50,7 +50,7 @@ void read_events_text(benchmark::State& state) {
   const EventFile file(state.range(0));
   for (auto _ : state) {
     Repairs repairs;
-    EventTextStream stream(file.path(), 240, 180, repairs);
+    EventTextStream stream(file.path(), {}, 240, 180, repairs);
     std::size_t events = 0;
     while (const Event* first = stream.peek())
       events += stream.take_before(first->t + std::chrono::milliseconds(1)).size();

@@ -5,12 +5,14 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
+#include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
+#include "edged/io/text/event_csv.hpp"
 #include "edged/io/zip_archive.hpp"
 
 namespace edged {
@@ -60,10 +62,12 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
   if (is_zip(head)) return open_archive(file, rig);
   if (is_hdf5(head)) return open_hdf5(file, rig, options.geometry);
-  if (is_aedat4(head)) return open_aedat4(file, rig, options.geometry);
+  if (is_aedat4(head)) return open_aedat4(file, rig, options);
+  if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5 and zip. Of a "
-      "recording in several files give the folder (unpack an archive other than zip first)",
+      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5, zip "
+      "and text with an event in each line (`t x y p`, or columns named in the first line). Of a recording in several "
+      "files give the folder (unpack an archive other than zip first)",
       file.string());
 }
 
@@ -71,6 +75,7 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
 
 Recording open_recording(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
   std::error_code ignored;
+  if (path.string().starts_with(kTcpPrefix)) return open_aedat4_tcp(path.string(), rig, options);
   if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
   return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig, options) : open_file(path, rig, options);
 }

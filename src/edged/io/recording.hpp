@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <opencv2/core/types.hpp>
@@ -13,6 +14,7 @@
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calibration.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 
@@ -24,8 +26,11 @@ struct Recording {
 
 /// What the user may say of a recording that it does not tell itself, or not clearly.
 struct RecordingOptions {
-  std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
-  /// Of bags: role ("events", "frames", "imu", "truth") to topic or "none".
+  std::optional<cv::Size> geometry = std::nullopt;   ///< size of the event sensor [px], for files that do not hold it
+  std::optional<TimeUnit> time_unit = std::nullopt;  ///< of the stamps in plain event files, where it is not certain
+  /// Of live sources: whether the user has had enough; asked several times a second.
+  std::function<bool()> interrupted = {};
+  /// Of bags and AEDAT4: role ("events", "frames", "imu", "truth") to topic or "none".
   std::map<std::string, std::string> topics = {};
 };
 
@@ -38,6 +43,7 @@ std::optional<cv::Size> parse_geometry(std::string_view text);
 /// - EuRoC ASL and TUM-VI (mav0 or its parent): camera "cam0", ground truth of "body".
 /// - A zip archive of one of these.
 /// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
+/// - Plain text of events, csv or separated by blanks: camera "events".
 /// - AEDAT4: cameras "events" and "frames".
 /// - HDF5 (DSEC, VECtor, TUM-VIE, M3ED, MVSEC, EDS, Metavision; folder or file): cameras "events" and "frames", ground
 ///   truth of "body", "events" or "frames", as the set has it.

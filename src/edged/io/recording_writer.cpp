@@ -11,12 +11,14 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/ecd_writer.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/hdf5/hdf5_writer.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/ros/ros_writer.hpp"
 #include "edged/io/text.hpp"
+#include "edged/io/text/event_csv.hpp"
 
 namespace edged {
 namespace {
@@ -24,9 +26,17 @@ namespace {
 constexpr Duration kMicrosecond = std::chrono::microseconds(1);
 
 constexpr std::array kWritable = {
-    WritableFormat{.name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
+    WritableFormat{
+        .name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
+    WritableFormat{.name = "aedat4",
+                   .extension = ".aedat4",
+                   .frames = true,
+                   .imu = true,
+                   .tick = kMicrosecond,
+                   .open = write_aedat4},
+    WritableFormat{.name = "csv", .extension = ".csv", .open = write_csv},
     WritableFormat{
         .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
     WritableFormat{

@@ -62,25 +62,6 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
   return d;
 }
 
-/// decimals: of the unit, down to the nanosecond.
-std::optional<Timestamp> parse_stamp(std::string_view field, long decimals) {
-  const std::optional<Decimal> d = parse_decimal(field);
-  if (!d) return std::nullopt;
-  const long whole = d->point + decimals;  // digits of the number of nanoseconds
-  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
-  if (whole > 19) return std::nullopt;
-  std::uint64_t ns = 0;
-  for (long i = 0; i < whole; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
-  }
-  const auto next = static_cast<std::size_t>(whole);
-  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
-  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
-  const auto value = static_cast<std::int64_t>(ns);
-  return Timestamp(Duration(d->negative ? -value : value));
-}
-
 }  // namespace
 
 BlockReader::BlockReader(const SourcePath& file, std::size_t block_bytes)
@@ -137,11 +118,11 @@ bool is_heading(std::string_view line) {
 
 std::string_view FieldReader::next() {
   rest_ = rest();
-  const std::size_t end = rest_.find_first_of(" \t\r,");
+  const std::size_t end = rest_.find_first_of(" \t\r,;");
   const std::string_view field = rest_.substr(0, end);
   rest_.remove_prefix(field.size());
   rest_ = rest();
-  if (!rest_.empty() && rest_[0] == ',') rest_.remove_prefix(1);
+  if (!rest_.empty() && (rest_[0] == ',' || rest_[0] == ';')) rest_.remove_prefix(1);
   return field;
 }
 
@@ -155,8 +136,31 @@ std::optional<double> parse_number(std::string_view field) {
   return value;
 }
 
-std::optional<Timestamp> parse_seconds(std::string_view field) { return parse_stamp(field, 9); }
-std::optional<Timestamp> parse_microseconds(std::string_view field) { return parse_stamp(field, 3); }
+std::optional<TimeUnit> parse_time_unit(std::string_view text) {
+  if (text == "s") return TimeUnit::Seconds;
+  if (text == "ms") return TimeUnit::Milliseconds;
+  if (text == "us") return TimeUnit::Microseconds;
+  if (text == "ns") return TimeUnit::Nanoseconds;
+  return std::nullopt;
+}
+
+std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
+  const std::optional<Decimal> d = parse_decimal(field);
+  if (!d) return std::nullopt;
+  const long whole = d->point + static_cast<long>(unit);  // digits of the number of nanoseconds
+  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
+  if (whole > 19) return std::nullopt;
+  std::uint64_t ns = 0;
+  for (long i = 0; i < whole; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
+  }
+  const auto next = static_cast<std::size_t>(whole);
+  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
+  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
+  const auto value = static_cast<std::int64_t>(ns);
+  return Timestamp(Duration(d->negative ? -value : value));
+}
 
 std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
   std::int64_t ns = 0;
@@ -173,7 +177,8 @@ std::string format_seconds(Timestamp t) {
   return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", size / 1'000'000'000, size % 1'000'000'000);
 }
 
-std::optional<Timestamp> last_stamp(const SourcePath& file, std::optional<Timestamp> (*parse)(std::string_view)) {
+std::optional<Timestamp> last_stamp(const SourcePath& file,
+                                    const std::function<std::optional<Timestamp>(std::string_view)>& parse) {
   constexpr std::streamoff kTail = 8192;
   if (file.is_archived()) return std::nullopt;
   std::ifstream in(file.string(), std::ios::binary | std::ios::ate);
@@ -190,7 +195,7 @@ std::optional<Timestamp> last_stamp(const SourcePath& file, std::optional<Timest
     rest.remove_suffix(1);
     const std::size_t start = rest.rfind('\n') + 1;
     if (start == 0 && from > 0) return std::nullopt;  // the line begins before the tail
-    if (const auto t = parse(FieldReader(rest.substr(start)).next())) return t;
+    if (const auto t = parse(rest.substr(start))) return t;
     rest = rest.substr(0, start);
   }
   return std::nullopt;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -67,7 +68,7 @@ class LineReader {
 /// Words where numbers are wanted: the names of the columns of a csv.
 bool is_heading(std::string_view line);
 
-/// Fields of a line, separated by blanks, tabs, carriage returns or single commas.
+/// Fields of a line, separated by blanks, tabs, carriage returns or single commas or semicolons.
 class FieldReader {
  public:
   explicit FieldReader(std::string_view line) : rest_(line) {}
@@ -97,12 +98,20 @@ bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
   return true;
 }
 
-/// Decimal seconds, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when it is not a
-/// number or does not fit.
-std::optional<Timestamp> parse_seconds(std::string_view field);
+/// The unit of stamps in a file, as the power of ten that turns it into nanoseconds.
+enum class TimeUnit { Nanoseconds = 0, Microseconds = 3, Milliseconds = 6, Seconds = 9 };
 
-/// Decimal microseconds, likewise.
-std::optional<Timestamp> parse_microseconds(std::string_view field);
+/// "s", "ms", "us" or "ns"; nothing for any other text.
+std::optional<TimeUnit> parse_time_unit(std::string_view text);
+
+/// A decimal number of that unit, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when
+/// it is not a number or does not fit.
+std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit);
+
+inline std::optional<Timestamp> parse_seconds(std::string_view field) { return parse_stamp(field, TimeUnit::Seconds); }
+inline std::optional<Timestamp> parse_microseconds(std::string_view field) {
+  return parse_stamp(field, TimeUnit::Microseconds);
+}
 
 /// Whole nanoseconds.
 std::optional<Timestamp> parse_nanoseconds(std::string_view field);
@@ -110,9 +119,9 @@ std::optional<Timestamp> parse_nanoseconds(std::string_view field);
 /// Seconds with all nine decimals.
 std::string format_seconds(Timestamp t);
 
-/// Stamp of the last complete line (its first field), read from the end of the file; nothing when there is none, or in an
-/// archive, whose files have no end that could be read alone.
+/// Stamp of the last complete line that `parse` finds one in, read from the end of the file; nothing when there is
+/// none, or in an archive, whose files have no end that could be read alone.
 std::optional<Timestamp> last_stamp(const SourcePath& file,
-                                    std::optional<Timestamp> (*parse)(std::string_view));
+                                    const std::function<std::optional<Timestamp>(std::string_view line)>& parse);
 
 }  // namespace edged

@@ -11,7 +11,8 @@ namespace edged {
 /// From the first bytes of a file.
 bool is_aedat4(ByteSpan head);
 
-/// Cameras "events" and "frames"; stamps in Unix time. geometry: of the event sensor, for files that do not say it.
-Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry);
+/// Cameras "events" and "frames"; stamps in Unix time. Of options: geometry of the event sensor, for files that do not
+/// say it, and topics, the names of streams where there are several of a type.
+Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "edged/io/aedat/aedat4_test_support.hpp"
+#include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/prophesee/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -17,29 +17,52 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kDavisWidth = 346, kDavisHeight = 260;
+const cv::Size kDavis(346, 260);
+
+using Compression = Aedat4Encoder::Compression;
+
+Timestamp frame_time(int ms) { return timestamp_from_ns(1'000'000LL * ms); }
 
 /// 100 packets of 100 events each, a frame in every tenth, an IMU sample in each.
-std::string small_aedat4(int compression, std::vector<Event>& events) {
-  events = generated_events(10'000, kDavisWidth, kDavisHeight, 50);
-  Aedat4Writer writer(compression, kDavisWidth, kDavisHeight);
-  for (auto at = events.begin(); at < events.end(); at += 100) {
-    if ((at - events.begin()) % 1000 == 0)
-      writer.frame(at->t, 4, 2, CV_8UC1,
-                   {1, 2, 3, 4, 5, 6, 7, static_cast<std::uint8_t>((at - events.begin()) / 1000)});
-    writer.imu(at->t, {0, 0, 1}, {180, 0, -90});
-    writer.events({at, at + 100});
+struct SmallAedat4 {
+  explicit SmallAedat4(int compression) : encoder(static_cast<Compression>(compression), kDavis) {
+    parts.push_back(encoder.header());
+    for (auto at = events.begin(); at < events.end(); at += 100) {
+      if ((at - events.begin()) % 1000 == 0) {
+        const cv::Mat image(2, 4, CV_8UC1, cv::Scalar(static_cast<double>((at - events.begin()) / 1000)));
+        parts.push_back(encoder.frame({at->t, "frames", image}, std::chrono::milliseconds(2)));
+      }
+      const ImuSample sample{at->t, std::numbers::pi * Eigen::Vector3d(1, 0, -0.5), {0, 0, 9.80665}};
+      parts.push_back(encoder.imu({&sample, 1}));
+      parts.push_back(encoder.events({&*at, 100}));
+    }
   }
-  return writer.text();
-}
+
+  /// As an interrupted recording leaves it: without a table at the end.
+  std::string interrupted() const {
+    std::string text;
+    for (const std::string& part : parts) text += part;
+    return text;
+  }
+
+  std::string whole() const {
+    const std::string packets = interrupted(), header = encoder.header(static_cast<std::int64_t>(packets.size()));
+    return header + packets.substr(header.size()) + encoder.table();
+  }
+
+  std::vector<Event> events = generated_events(10'000, kDavis.width, kDavis.height, 50);
+  Aedat4Encoder encoder;
+  std::vector<std::string> parts;  ///< header and packets
+};
 
 class Aedat4 : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(, Aedat4, ::testing::Range(0, 5));
 
 TEST_P(Aedat4, GivesBackWhatWasWritten) {
   TempFolder folder;
-  std::vector<Event> events;
-  const Recording recording = open_recording(folder.write("a.aedat4", small_aedat4(GetParam(), events)));
+  const SmallAedat4 small(GetParam());
+  const std::vector<Event>& events = small.events;
+  const Recording recording = open_recording(folder.write("a.aedat4", small.whole()));
   const DatasetInfo& info = recording.dataset->info();
   EXPECT_TRUE(info.has_events && info.has_frames && info.has_imu);
   EXPECT_EQ(info.begin, events.front().t);
@@ -53,13 +76,43 @@ TEST_P(Aedat4, GivesBackWhatWasWritten) {
   EXPECT_EQ(c.imu[7].t, events[700].t);
   EXPECT_TRUE(c.imu[7].accel_B.isApprox(Eigen::Vector3d(0, 0, 9.80665)));
   EXPECT_TRUE(c.imu[7].gyro_B.isApprox(std::numbers::pi * Eigen::Vector3d(1, 0, -0.5)));
+  EXPECT_EQ(recording.dataset->info().end, events.back().t);
+  EXPECT_TRUE(recording.dataset->repairs().empty());
+}
+
+TEST_P(Aedat4, AnInterruptedRecordingIsReadToItsEnd) {
+  TempFolder folder;
+  const SmallAedat4 small(GetParam());
+  const Recording recording = open_recording(folder.write("a.aedat4", small.interrupted()));
+  EXPECT_TRUE(read_all(*recording.dataset).events == small.events);
   EXPECT_THAT(recording.dataset->repairs(), ::testing::ElementsAre(::testing::Pair("file: no table", 1u)));
+}
+
+TEST_P(Aedat4, GoesOnBehindADamagedLength) {
+  TempFolder folder;
+  const SmallAedat4 small(GetParam());
+  std::size_t at = 0;  // of the 21st packet of events
+  for (std::size_t i = 0, events = 0; events < 21; at += small.parts[i++].size()) {
+    EXPECT_LT(i, small.parts.size());
+    if (small.parts[i + 1][0] == 0 && i > 0) ++events;
+  }
+  for (const std::string& text : {small.whole(), small.interrupted()})
+    for (const std::int32_t wrong : {-1, 0x7fffffff, 10}) {
+      std::string damaged = text;
+      std::memcpy(damaged.data() + at + 4, &wrong, sizeof wrong);
+      const Recording recording = open_recording(folder.write("a.aedat4", damaged));
+      const std::vector<Event> read = read_all(*recording.dataset).events;
+      EXPECT_GE(read.size(), small.events.size() - 100) << wrong;
+      EXPECT_EQ(read.back(), small.events.back());
+      EXPECT_EQ(recording.dataset->repairs().at("file: cut"), 1u);
+    }
 }
 
 TEST_P(Aedat4, CutAnywhereItGivesTheWholePacketsBefore) {
   TempFolder folder;
-  std::vector<Event> events;
-  const std::string whole = small_aedat4(GetParam(), events);
+  const SmallAedat4 small(GetParam());
+  const std::vector<Event>& events = small.events;
+  const std::string whole = small.whole();
   std::size_t before = 0;
   for (int percent = 0; percent < 100; ++percent) {
     const auto file = folder.write("a.aedat4", whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
@@ -74,8 +127,7 @@ TEST_P(Aedat4, CutAnywhereItGivesTheWholePacketsBefore) {
 
 TEST_P(Aedat4, FlippedBitsAreRefusedOrMended) {
   TempFolder folder;
-  std::vector<Event> events;
-  const std::string whole = small_aedat4(GetParam(), events);
+  const std::string whole = SmallAedat4(GetParam()).whole();
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     std::string damaged = whole;
@@ -91,18 +143,34 @@ TEST_P(Aedat4, FlippedBitsAreRefusedOrMended) {
 
 TEST(Aedat4File, ColourFramesBecomeGreyAndOthersAreCounted) {
   TempFolder folder;
-  Aedat4Writer writer(1, kDavisWidth, kDavisHeight);
-  const auto t = [](int ms) { return timestamp_from_ns(1'000'000LL * ms); };
-  writer.frame(t(10), 2, 1, CV_8UC3, {90, 90, 90, 7, 7, 7});
-  writer.frame(t(20), 2, 1, CV_8UC4, {50, 50, 50, 255, 7, 7, 7, 255});
-  writer.frame(t(30), 2, 1, CV_8UC1, {1, 2, 3});
-  writer.frame(t(40), 1, 1, CV_8UC1, {1});
-  const Recording recording = open_recording(folder.write("a.aedat4", writer.text()));
+  Aedat4Encoder encoder(Compression::Lz4, kDavis);
+  std::string text = encoder.header();
+  text += encoder.frame({frame_time(10), "", cv::Mat(1, 2, CV_8UC3, cv::Scalar(90, 90, 90))});
+  text += encoder.frame({frame_time(20), "", cv::Mat(1, 2, CV_8UC4, cv::Scalar(50, 50, 50, 255))});
+  text += encoder.frame({frame_time(30), "", cv::Mat(1, 2, CV_16UC1, cv::Scalar(1))});
+  text += encoder.frame({frame_time(40), "", cv::Mat(1, 1, CV_8UC1, cv::Scalar(1))});
+  const Recording recording = open_recording(folder.write("a.aedat4", text));
   const Contents c = read_all(*recording.dataset);
   ASSERT_EQ(c.frames.size(), 2u);
   EXPECT_EQ(c.frames[0].image.at<std::uint8_t>(0, 0), 90);
   EXPECT_EQ(c.frames[1].image.at<std::uint8_t>(0, 0), 50);
   EXPECT_EQ(recording.dataset->repairs().at("file: packet unreadable"), 2u);
+}
+
+TEST(Aedat4File, SeveralStreamsOfATypeAreAskedFor) {
+  TempFolder folder;
+  const SmallAedat4 small(1);
+  std::string text = small.interrupted();
+  text.replace(text.find("FRME"), 4, "EVTS");  // of the header's stream 1, which now seems to be a second camera
+  const auto file = folder.write("a.aedat4", text);
+  EXPECT_THAT(input_error([&] { open_recording(file); }),
+              HasSubstr("--topic ROLE=NAME (or ROLE=none); events: events, frames"));
+  const Recording chosen = open_recording(file, nullptr, {.topics = {{"events", "events"}}});
+  EXPECT_EQ(read_all(*chosen.dataset).events.size(), 10'000u);
+  text.replace(text.find("string\">frames") + 8, 6, "events");
+  folder.write("a.aedat4", text);
+  EXPECT_THAT(input_error([&] { open_recording(file); }), HasSubstr("events: events@edged#0, events@edged#1"));
+  EXPECT_NO_THROW(open_recording(file, nullptr, {.topics = {{"events", "events@edged#0"}}}));
 }
 
 TEST(Aedat4File, RefusalsSayWhatIsWrong) {
@@ -112,13 +180,15 @@ TEST(Aedat4File, RefusalsSayWhatIsWrong) {
     return input_error([&] { open_recording(file); });
   };
   EXPECT_THAT(refusal("#!AER-DAT4.0\r\n"), HasSubstr("header is damaged"));
-  EXPECT_THAT(refusal(Aedat4Writer(1, kDavisWidth, kDavisHeight).text()), HasSubstr("nothing to read"));
-  EXPECT_THAT(refusal(Aedat4Writer(7, kDavisWidth, kDavisHeight).text()), HasSubstr("compression"));
-  EXPECT_THAT(refusal(Aedat4Writer(1, 0, 0).text()), HasSubstr("--geometry"));
-  std::vector<Event> events = generated_events(5000, kDavisWidth, kDavisHeight, 10);
-  Aedat4Writer small(1, 100, 100);
-  small.events(events);
-  EXPECT_THAT(refusal(small.text()), HasSubstr("outside"));
+  EXPECT_THAT(refusal(Aedat4Encoder(Compression::Lz4, kDavis).header()), HasSubstr("nothing to read"));
+  EXPECT_THAT(refusal(Aedat4Encoder(Compression::Lz4, {}).header()), HasSubstr("--geometry"));
+  std::string unknown = Aedat4Encoder(Compression::ZstdHigh, kDavis).header();
+  for (std::size_t at = 18; at < 80; at += 2)  // the number of the compression is somewhere among the first fields
+    if (unknown[at] == 4 && unknown[at - 2] == 0 && unknown[at + 2] == 0) unknown[at] = 77;
+  EXPECT_THAT(refusal(unknown), HasSubstr("header is damaged"));
+  Aedat4Encoder encoder(Compression::Lz4, {100, 100});
+  const std::vector<Event> events = generated_events(5000, kDavis.width, kDavis.height, 10);
+  EXPECT_THAT(refusal(encoder.header() + encoder.events(events)), HasSubstr("outside"));
 }
 
 TEST(Aedat4File, ReadsTheRealDavis346Recordings) {

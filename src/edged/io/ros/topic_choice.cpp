@@ -23,6 +23,10 @@ std::optional<Role> role_of(const std::string& type) {
       {"geometry_msgs/PoseStamped", Role::Truth},
       {"geometry_msgs/TransformStamped", Role::Truth},
       {"nav_msgs/Odometry", Role::Truth},
+      // Streams of AEDAT4.
+      {"EVTS", Role::Events},
+      {"FRME", Role::Frames},
+      {"IMUS", Role::Imu},
   };
   const auto found = roles.find(type);
   return found == roles.end() ? std::nullopt : std::optional(found->second);

@@ -21,14 +21,23 @@ constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,      
 
 unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsigned>('0'); }
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
+bool is_separator(char c) { return is_blank(c) || c == ',' || c == ';'; }
 
-/// A whole number below 100000 that is followed by a blank; null otherwise. The '\n' ends every loop.
-const char* parse_pixel(const char* p, std::uint16_t& value) {
+/// To the next field: blanks, with one comma or semicolon among them.
+const char* skip_separator(const char* p) {
   while (is_blank(*p)) ++p;
+  if (*p != ',' && *p != ';') return p;
+  for (++p; is_blank(*p);) ++p;
+  return p;
+}
+
+/// A whole number below 100000 that is followed by a separator; null otherwise. The '\n' ends every loop.
+const char* parse_pixel(const char* p, std::uint16_t& value) {
+  p = skip_separator(p);
   const char* const start = p;
   std::uint32_t v = 0;
   for (unsigned d; (d = digit(*p)) < 10 && p - start < 5; ++p) v = v * 10 + d;
-  if (p == start || !is_blank(*p) || v > 65535) return nullptr;
+  if (p == start || !is_separator(*p) || v > 65535) return nullptr;
   value = static_cast<std::uint16_t>(v);
   return p;
 }
@@ -55,28 +64,42 @@ const char* parse_event_line(const char* p, Event& event) {
     if (digit(*p) < 10 && digit(*p) >= 5) ++ns;
     while (digit(*p) < 10) ++p;
   }
-  if (!is_blank(*p)) return nullptr;
+  if (!is_separator(*p)) return nullptr;
   event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds * kPow10[9] + ns));
 
   if (!(p = parse_pixel(p, event.x)) || !(p = parse_pixel(p, event.y))) return nullptr;
-  while (is_blank(*p)) ++p;
+  p = skip_separator(p);
   if (digit(*p) > 1) return nullptr;
   event.positive = *p++ == '1';
   while (is_blank(*p) || *p == '\r') ++p;
   return *p == '\n' ? p + 1 : nullptr;
 }
 
-bool parse_event_fields(std::string_view line, Event& event) {
+bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event) {
   FieldReader fields(line);
-  const auto t = parse_seconds(fields.next());
-  const auto x = whole_number(fields.next()), y = whole_number(fields.next()), p = whole_number(fields.next());
-  if (!t || !x || !y || !p || *p > 1 || !fields.rest().empty()) return false;
-  event = {*t, *x, *y, *p == 1};
+  std::array<std::string_view, EventColumns::kMost> field;
+  for (std::size_t i = 0; i < columns.count; ++i) field[i] = fields.next();
+  const auto t = parse_stamp(field[columns.t], columns.unit);
+  const auto x = whole_number(field[columns.x]), y = whole_number(field[columns.y]);
+  const auto p = parse_number(field[columns.p]);
+  if (!t || !x || !y || !p || (*p != 0 && std::abs(*p) != 1) || !fields.rest().empty()) return false;
+  event = {*t, *x, *y, *p > 0};
   return true;
 }
 
-EventTextStream::EventTextStream(const SourcePath& file, int width, int height, Repairs& repairs)
-    : blocks_(file), damage_(file.string(), "events", repairs), width_(width), height_(height) {
+std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns) {
+  Event event;
+  return parse_event_fields(line, columns, event) ? std::optional(event.t) : std::nullopt;
+}
+
+EventTextStream::EventTextStream(const SourcePath& file, const EventColumns& columns, int width, int height,
+                                 Repairs& repairs)
+    : blocks_(file),
+      damage_(file.string(), "events", repairs),
+      columns_(columns),
+      plain_(columns == EventColumns{.header_lines = columns.header_lines}),
+      width_(width),
+      height_(height) {
   EDGED_CHECK(width > 0 && height > 0, "sensor {} x {}", width, height);
 }
 
@@ -121,11 +144,11 @@ void EventTextStream::parse_block(std::string_view block) {
   while (p < end) {
     ++line_;
     Event event;
-    const char* next = parse_event_line(p, event);
-    if (!next) [[unlikely]] {
+    const char* next = plain_ ? parse_event_line(p, event) : nullptr;
+    if (!next) {
       next = p + std::string_view(p, static_cast<std::size_t>(end - p)).find('\n') + 1;
       const std::string_view line(p, static_cast<std::size_t>(next - p) - 1);
-      if (!parse_event_fields(line, event)) {
+      if (!parse_event_fields(line, columns_, event)) {
         reject_line(line, next < end || !blocks_.unterminated());
         p = next;
         continue;
@@ -166,9 +189,11 @@ void EventTextStream::place_late(const Event& event) {
 void EventTextStream::reject_line(std::string_view line, bool terminated) {
   FieldReader fields(line);
   const std::string_view first = fields.next();
-  if (first.empty() || first[0] == '#') return;
+  if (first.empty() || first[0] == '#' || line_ <= columns_.header_lines) return;
   if (!terminated) return damage_.mended(line_, "last line cut", "the file ends within a line");
-  damage_.bad(line_, "unreadable line", "not `t x y p` with t in seconds, whole pixels and p 0 or 1");
+  damage_.bad(line_, "unreadable line",
+              columns_ == EventColumns() ? "not `t x y p` with t in seconds, whole pixels and p 0 or 1"
+                                         : "not an event in the columns of this file");
 }
 
 }  // namespace edged

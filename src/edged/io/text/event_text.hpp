@@ -12,19 +12,35 @@
 
 namespace edged {
 
-/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1. There
-/// must be a '\n' at or after p. Returns the start of the next line, or null when the line is not of that form.
+/// Where the parts of an event stand in a line.
+struct EventColumns {
+  std::size_t t = 0, x = 1, y = 2, p = 3;  ///< counted from 0
+  std::size_t count = 4;                   ///< of columns in a line, kMost at most
+  TimeUnit unit = TimeUnit::Seconds;
+  std::size_t header_lines = 0;  ///< lines at the begin of the file that are no events
+  static constexpr std::size_t kMost = 16;
+
+  bool operator==(const EventColumns&) const = default;
+};
+
+/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1, separated
+/// by blanks, commas or semicolons. There must be a '\n' at or after p. Returns the start of the next line, or null
+/// when the line is not of that form.
 const char* parse_event_line(const char* p, Event& event);
 
-/// The same for any layout of numbers (commas, exponents, `96.0`): slow, false when it is no event.
-bool parse_event_fields(std::string_view line, Event& event);
+/// The same for any order of columns and way of writing numbers (exponents, `96.0`, polarity -1): slow, false when it
+/// is no event.
+bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event);
+
+/// The stamp alone.
+std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns);
 
 /// The events of a file in time order. Memory stays bounded: a block of text and the events in it.
 /// Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines are left out. All
 /// counted.
 class EventTextStream {
  public:
-  EventTextStream(const SourcePath& file, int width, int height, Repairs& repairs);
+  EventTextStream(const SourcePath& file, const EventColumns& columns, int width, int height, Repairs& repairs);
 
   /// The next event, or null at the end.
   const Event* peek();
@@ -40,6 +56,8 @@ class EventTextStream {
 
   BlockReader blocks_;
   LineDamage damage_;
+  EventColumns columns_;
+  bool plain_;  ///< as parse_event_line reads it
   int width_, height_;
   std::size_t line_ = 0;
   std::vector<Event> events_;           ///< sorted

@@ -61,13 +61,13 @@ TEST(EventLine, RefusesWhatIsNoEvent) {
                                  "99999999999 2 3 1\n", "x\n", "0.1 2 3 10\n", " \t\n"}) {
     Event e;
     EXPECT_EQ(parse_event_line(text.data(), e), nullptr) << text;
-    EXPECT_FALSE(parse_event_fields(text.substr(0, text.size() - 1), e)) << text;
+    EXPECT_FALSE(parse_event_fields(text.substr(0, text.size() - 1), {}, e)) << text;
   }
 }
 
 TEST(EventLine, OfAnotherWriterIsReadFieldByField) {
   Event e;
-  ASSERT_TRUE(parse_event_fields("1.468939993067416019e+09,9.6e+01,133.0,0", e));
+  ASSERT_TRUE(parse_event_fields("1.468939993067416019e+09,9.6e+01,133.0,0", {}, e));
   EXPECT_EQ(e, (Event{timestamp_from_ns(1'468'939'993'067'416'019), 96, 133, false}));
 }
 
@@ -86,7 +86,7 @@ struct Stream {
 
 Stream read_stream(const std::filesystem::path& file, Duration step = std::chrono::milliseconds(2)) {
   Repairs repairs;
-  EventTextStream stream(file, 240, 180, repairs);
+  EventTextStream stream(file, {}, 240, 180, repairs);
   Stream out;
   while (const Event* first = stream.peek()) {
     const auto batch = stream.take_before(first->t + step);

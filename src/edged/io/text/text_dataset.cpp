@@ -50,7 +50,7 @@ void TextDataset::open_streams() {
   };
   DatasetInfo& info = layout_.info;
   if (const auto& e = layout_.events) {
-    events_.emplace(e->file, e->width, e->height, repairs_);
+    events_.emplace(e->file, e->columns, e->width, e->height, repairs_);
     info.has_events = opened(events_, "events", e->file);
   }
   if (const auto& f = layout_.frames) {
@@ -71,9 +71,11 @@ void TextDataset::find_ends() {
   const auto extend = [&info](std::optional<Timestamp> t) {
     if (t) info.end = std::max(info.end.value_or(*t), *t);
   };
-  if (events_) extend(last_stamp(layout_.events->file, parse_seconds));
-  if (frames_) extend(last_stamp(layout_.frames->lines.file, layout_.parse_stamp));
-  if (imu_) extend(last_stamp(layout_.imu->file, layout_.parse_stamp));
+  const auto first_field = [this](std::string_view line) { return layout_.parse_stamp(FieldReader(line).next()); };
+  const auto event_stamp = [this](std::string_view line) { return parse_event_stamp(line, layout_.events->columns); };
+  if (events_) extend(last_stamp(layout_.events->file, event_stamp));
+  if (frames_) extend(last_stamp(layout_.frames->lines.file, first_field));
+  if (imu_) extend(last_stamp(layout_.imu->file, first_field));
 }
 
 std::optional<Measurement> TextDataset::next() {

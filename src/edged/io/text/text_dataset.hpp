@@ -28,6 +28,7 @@ struct EventFile {
   SourcePath file;
   std::string camera;
   int width = 0, height = 0;
+  EventColumns columns = {};
 };
 
 struct FrameFile {

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The tables EVTS, FRME and IMUS.
+#include "edged/io/aedat/aedat4_dataset.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "edged/io/aedat/flat_table.hpp"
+#include "edged/io/compression.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+/// Of microseconds. Throws Damage for what no recording reaches.
+Timestamp stamp_of_us(std::int64_t us) {
+  if (us < 0 || us > kMaxStampNs / 1000) throw Damage("a stamp that cannot be");
+  return timestamp_from_ns(us * 1000);
+}
+
+/// The middle of the exposure: said by its ends, else by the stamp of the frame.
+Timestamp frame_stamp(const FlatTable& frame) {
+  const auto begin = frame.number<std::int64_t>(3), end = frame.number<std::int64_t>(4);
+  return stamp_of_us(begin > 0 && end >= begin ? begin + (end - begin) / 2 : frame.number<std::int64_t>(0));
+}
+
+cv::Mat grey_image(const FlatTable& frame) {
+  const int width = frame.number<std::int16_t>(6), height = frame.number<std::int16_t>(7);
+  const int type = frame.number<std::int8_t>(5);  // OpenCV's own numbers
+  const ByteSpan pixels = frame.bytes(10);
+  if (width <= 0 || height <= 0 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4) ||
+      pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * CV_ELEM_SIZE(type))
+    throw Damage("an image that cannot be");
+  // cv::Mat wants a mutable pointer, but is only read from.
+  const cv::Mat image(height, width, type, const_cast<std::uint8_t*>(pixels.data()));
+  if (type == CV_8UC1) return image.clone();
+  cv::Mat grey;
+  cv::cvtColor(image, grey, type == CV_8UC3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
+  return grey;
+}
+
+}  // namespace
+
+ByteSpan flat_buffer(const Bytes& bytes, std::string_view type) {
+  ByteReader reader(bytes);
+  const auto length = reader.number<std::uint32_t>();
+  const ByteSpan buffer = reader.take(length);
+  if (flat_identifier(buffer) != type) throw Damage("is not of the type of its stream");
+  return buffer;
+}
+
+void Aedat4Dataset::take_packet(Role role, std::string_view compression, ByteSpan packed, const std::string& place) {
+  try {
+    const Decompressed body = decompress(compression, packed, kMostPacketBytes);
+    if (!body.whole) throw Damage("cannot be unpacked");
+    if (role == Role::Events) take_events(flat_buffer(body.bytes, "EVTS"));
+    if (role == Role::Frames) take_frame(flat_buffer(body.bytes, "FRME"));
+    if (role == Role::Imu) take_imu(flat_buffer(body.bytes, "IMUS"));
+  } catch (const Damage& damage) {
+    repairs_.add("file: packet unreadable", fmt::format("{}: packet {}: {}", name_, place, damage.what()));
+  }
+}
+
+void Aedat4Dataset::take_events(ByteSpan buffer) {
+  constexpr std::size_t kEventBytes = 16;
+  const FlatVector list = FlatTable(buffer).vector(0, kEventBytes);
+  std::vector<Event> events;
+  events.reserve(list.count);
+  for (ByteReader reader(buffer.subspan(list.at, list.count * kEventBytes)); reader.left() > 0;) {
+    const Timestamp t = stamp_of_us(reader.number<std::int64_t>());
+    const auto x = reader.number<std::int16_t>(), y = reader.number<std::int16_t>();
+    const bool on = reader.number<std::uint8_t>() != 0;
+    reader.take(3);
+    // Negative ones become large, and so lie outside of any sensor.
+    events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
+  }
+  push_events(std::move(events));
+}
+
+void Aedat4Dataset::take_frame(ByteSpan buffer) {
+  const FlatTable frame(buffer);
+  push_frame(frame_stamp(frame), grey_image(frame));
+}
+
+void Aedat4Dataset::take_imu(ByteSpan buffer) {
+  constexpr double kRadPerDeg = std::numbers::pi / 180;
+  const FlatTable packet(buffer);
+  const FlatVector list = packet.vector(0, 4);
+  for (std::size_t i = 0; i < list.count; ++i) {
+    const FlatTable sample = packet.table(list, i);
+    const auto three = [&sample](unsigned first) {
+      const Eigen::Vector3d v(sample.number<float>(first), sample.number<float>(first + 1),
+                              sample.number<float>(first + 2));
+      if (!v.allFinite()) throw Damage("an IMU sample that is no number");
+      return v;
+    };
+    push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kRadPerDeg, three(2) * kStandardGravity});
+  }
+}
+
+}  // namespace edged

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// FlatBuffers of the format, built without generated code: six tables with numbered fields.
+#include "edged/io/aedat/aedat4_writer.hpp"
+
+#include <flatbuffers/flatbuffers.h>
+#include <lz4frame.h>
+#include <spdlog/fmt/fmt.h>
+#include <zstd.h>
+
+#include <numbers>
+
+#include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat4_header.hpp"
+
+namespace edged {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+
+flatbuffers::voffset_t slot(unsigned field) { return static_cast<flatbuffers::voffset_t>(4 + 2 * field); }
+
+std::int64_t to_us(Timestamp t) { return to_ns(t) / 1000; }
+
+/// The buffer with its length in front.
+std::string finished(FlatBufferBuilder& b, flatbuffers::uoffset_t start, const char* type) {
+  b.FinishSizePrefixed(flatbuffers::Offset<void>(b.EndTable(start)), type);
+  return {reinterpret_cast<const char*>(b.GetBufferPointer()), b.GetSize()};
+}
+
+std::string stream_xml(int number, const char* compression, const char* output, const char* type,
+                       const std::string& info) {
+  const std::string path = fmt::format("/mainloop/Recorder/outInfo/{}/", number);
+  return fmt::format(
+      R"(<node name="{0}" path="{1}"><attr key="compression" type="string">{2}</attr>)"
+      R"(<attr key="originalModuleName" type="string">capture</attr>)"
+      R"(<attr key="originalOutputName" type="string">{3}</attr>)"
+      R"(<attr key="typeDescription" type="string">{3}</attr><attr key="typeIdentifier" type="string">{4}</attr>)"
+      R"(<node name="info" path="{1}info/">{5}<attr key="source" type="string">edged</attr>)"
+      R"(<attr key="tsOffset" type="long">0</attr></node></node>)",
+      number, path, compression, output, type, info);
+}
+
+std::string header_xml(Aedat4Encoder::Compression compression, cv::Size sensor) {
+  constexpr const char* kNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
+  const char* const name = kNames[static_cast<std::size_t>(compression)];
+  const std::string size = fmt::format(
+      R"(<attr key="sizeX" type="int">{}</attr><attr key="sizeY" type="int">{}</attr>)", sensor.width, sensor.height);
+  return R"(<dv version="2.0"><node name="outInfo" path="/mainloop/Recorder/outInfo/">)" +
+         stream_xml(0, name, "events", "EVTS", size) + stream_xml(1, name, "frames", "FRME", size) +
+         stream_xml(2, name, "imu", "IMUS", "") + "</node></dv>";
+}
+
+}  // namespace
+
+std::string Aedat4Encoder::header(std::int64_t table_at) const {
+  FlatBufferBuilder b;
+  const auto xml = b.CreateString(header_xml(compression_, sensor_));
+  const auto start = b.StartTable();
+  b.AddElement<std::int32_t>(slot(0), static_cast<std::int32_t>(compression_), 0);
+  b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default, so that the length stays
+  b.AddOffset(slot(2), xml);
+  return std::string(kAedat4Magic) + finished(b, start, "IOHE");
+}
+
+std::string Aedat4Encoder::network_header() const { return header().substr(kAedat4Magic.size()); }
+
+std::string Aedat4Encoder::events(std::span<const Event> events) {
+  struct alignas(8) WireEvent {
+    std::int64_t t;
+    std::int16_t x, y;
+    std::uint8_t on, none[3];
+  };
+  std::vector<WireEvent> wire;
+  wire.reserve(events.size());
+  for (const Event& e : events)
+    wire.push_back({to_us(e.t), static_cast<std::int16_t>(e.x), static_cast<std::int16_t>(e.y), e.positive, {}});
+  FlatBufferBuilder b;
+  const auto list = b.CreateVectorOfStructs(wire);
+  const auto start = b.StartTable();
+  b.AddOffset(slot(0), list);
+  return packet({0, 0, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
+                finished(b, start, "EVTS"));
+}
+
+std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure) {
+  const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
+  FlatBufferBuilder b;
+  const auto pixels = b.CreateVector(image.data, image.total() * image.elemSize());
+  const auto start = b.StartTable();
+  const std::int64_t begin_us = to_us(frame.t - exposure / 2), end_us = to_us(frame.t + exposure / 2);
+  // The frame, its begin and end, the exposure's begin and end.
+  for (const unsigned field : {0U, 1U, 3U}) b.AddElement<std::int64_t>(slot(field), begin_us, 0);
+  for (const unsigned field : {2U, 4U}) b.AddElement<std::int64_t>(slot(field), end_us, 0);
+  b.AddElement<std::int8_t>(slot(5), static_cast<std::int8_t>(image.type()), 0);
+  b.AddElement<std::int16_t>(slot(6), static_cast<std::int16_t>(image.cols), 0);
+  b.AddElement<std::int16_t>(slot(7), static_cast<std::int16_t>(image.rows), 0);
+  b.AddOffset(slot(10), pixels);
+  return packet({0, 1, 0, 1, begin_us, end_us}, finished(b, start, "FRME"));
+}
+
+std::string Aedat4Encoder::imu(std::span<const ImuSample> samples) {
+  FlatBufferBuilder b;
+  std::vector<flatbuffers::Offset<void>> tables;
+  for (const ImuSample& s : samples) {
+    const auto start = b.StartTable();
+    b.AddElement<std::int64_t>(slot(0), to_us(s.t), 0);
+    for (unsigned i = 0; i < 3; ++i) {
+      b.AddElement<float>(slot(2 + i), static_cast<float>(s.accel_B[i] / kStandardGravity), 0);
+      b.AddElement<float>(slot(5 + i), static_cast<float>(s.gyro_B[i] * 180 / std::numbers::pi), 0);
+    }
+    tables.emplace_back(b.EndTable(start));
+  }
+  const auto list = b.CreateVector(tables);
+  const auto start = b.StartTable();
+  b.AddOffset(slot(0), list);
+  return packet({0, 2, 0, static_cast<std::int64_t>(samples.size()), to_us(samples.front().t), to_us(samples.back().t)},
+                finished(b, start, "IMUS"));
+}
+
+std::string Aedat4Encoder::table() const {
+  struct alignas(4) WirePacket {
+    std::int32_t stream, bytes;
+  };
+  FlatBufferBuilder b;
+  std::vector<flatbuffers::Offset<void>> tables;
+  for (const PacketEntry& p : packets_) {
+    const WirePacket info{p.stream, p.bytes};
+    const auto start = b.StartTable();
+    b.AddElement<std::int64_t>(slot(0), p.at, 0);
+    b.AddStruct(slot(1), &info);
+    b.AddElement<std::int64_t>(slot(2), p.count, 0);
+    b.AddElement<std::int64_t>(slot(3), p.first_us, 0);
+    b.AddElement<std::int64_t>(slot(4), p.last_us, 0);
+    tables.emplace_back(b.EndTable(start));
+  }
+  const auto list = b.CreateVector(tables);
+  const auto start = b.StartTable();
+  b.AddOffset(slot(0), list);
+  return packed(finished(b, start, "FTAB"));
+}
+
+std::string Aedat4Encoder::packed(const std::string& body) const {
+  std::string out = body;
+  std::size_t bytes = body.size();
+  if (compression_ == Compression::Lz4 || compression_ == Compression::Lz4High) {
+    LZ4F_preferences_t preferences{};
+    preferences.compressionLevel = compression_ == Compression::Lz4High ? 9 : 0;
+    out.resize(LZ4F_compressFrameBound(body.size(), &preferences));
+    bytes = LZ4F_compressFrame(out.data(), out.size(), body.data(), body.size(), &preferences);
+    EDGED_CHECK(!LZ4F_isError(bytes), "LZ4: {}", LZ4F_getErrorName(bytes));
+  } else if (compression_ == Compression::Zstd || compression_ == Compression::ZstdHigh) {
+    out.resize(ZSTD_compressBound(body.size()));
+    bytes =
+        ZSTD_compress(out.data(), out.size(), body.data(), body.size(), compression_ == Compression::ZstdHigh ? 9 : 1);
+    EDGED_CHECK(!ZSTD_isError(bytes), "zstd: {}", ZSTD_getErrorName(bytes));
+  }
+  out.resize(bytes);
+  return out;
+}
+
+std::string Aedat4Encoder::packet(PacketEntry entry, const std::string& body) {
+  const std::string content = packed(body);
+  entry.bytes = static_cast<std::int32_t>(content.size());
+  std::string out;
+  append_number(out, entry.stream);
+  append_number(out, entry.bytes);
+  entry.at = static_cast<std::int64_t>(header().size() + out.size()) + packets_bytes_;
+  packets_.push_back(entry);
+  out += content;
+  packets_bytes_ += static_cast<std::int64_t>(out.size());
+  return out;
+}
+
+namespace {
+
+class Aedat4Writer final : public RecordingWriter {
+ public:
+  explicit Aedat4Writer(const WriterSetup& setup)
+      : name_(setup.path.string()), encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor()), file_(setup.path) {
+    file_.write(encoder_.header());
+  }
+
+  void write(const EventBatch& batch) override {
+    for (const Event& event : batch.events) {
+      if (event.t < Timestamp())
+        throw InputError::format("{}: the format holds no stamps before 0, the recording has them", name_);
+      if (events_.size() >= kMostEvents || (!events_.empty() && event.t - events_.front().t > kLongestPacket))
+        flush_events();
+      events_.push_back(event);
+    }
+  }
+
+  void write(const Frame& frame) override { file_.write(encoder_.frame(frame)); }
+
+  void write(const ImuSample& sample) override {
+    if (!imu_.empty() && sample.t - imu_.front().t > kLongestPacket) flush_imu();
+    imu_.push_back(sample);
+  }
+
+  void finish() override {
+    flush_events();
+    flush_imu();
+    const auto table_at = static_cast<std::int64_t>(file_.size());
+    file_.write(encoder_.table());
+    file_.overwrite(0, encoder_.header(table_at));
+    file_.flush();
+  }
+
+ private:
+  static constexpr std::size_t kMostEvents = 10'000;
+  static constexpr Duration kLongestPacket = std::chrono::milliseconds(10);
+
+  void flush_events() {
+    if (!events_.empty()) file_.write(encoder_.events(events_));
+    events_.clear();
+  }
+
+  void flush_imu() {
+    if (!imu_.empty()) file_.write(encoder_.imu(imu_));
+    imu_.clear();
+  }
+
+  std::string name_;
+  Aedat4Encoder encoder_;
+  OutputFile file_;
+  std::vector<Event> events_;
+  std::vector<ImuSample> imu_;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordingWriter> write_aedat4(const WriterSetup& setup) {
+  return std::make_unique<Aedat4Writer>(setup);
+}
+
+}  // namespace edged
