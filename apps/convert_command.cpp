@@ -52,7 +52,7 @@ void print_summary(const ConvertOptions& options, const WritableFormat& format, 
         {"left_out",
          {{"frames", counts.frames_left_out}, {"imu", counts.imu_left_out}, {"poses", counts.poses_left_out}}},
         {"repairs", repairs}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return;
   }
   fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses\n{}", options.target.string(), counts.events,

@@ -52,9 +52,9 @@ int run_doctor(const DoctorOptions& options) {
   std::vector<CameraCheck> checks;
   for (std::size_t i = 0; i < cameras.size(); ++i)
     checks.push_back(
-        {cameras[i], recording.calibration->has_extrinsics, compare_with_gyro(visual[i].turns(), gyro)});
-  const std::vector<Finding> findings = diagnose(survey, checks);
-  fmt::print("{}", options.json ? to_json(findings).dump(2) + "\n" : to_text(findings));
+        {cameras[i], recording.calibration->has_extrinsics, compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
+  const std::vector<Finding> findings = diagnose(survey, recording.calibration.has_value(), checks);
+  fmt::print("{}", options.json ? to_json(findings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n" : to_text(findings));
   const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
   return ill ? kExitInput : kExitOk;
 }

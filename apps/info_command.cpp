@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "info_command.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <memory>
 #include <string>
@@ -32,9 +32,10 @@ int run_info(const InfoOptions& options) {
   const Recording recording = open_uncalibrated(options.source);
   const Survey survey = survey_recording(*recording.dataset, options.quiet, {});
   if (options.json)
-    fmt::print("{}\n", to_json(survey).dump(2));
+    fmt::print("{}\n", to_json(survey).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   else
     fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
+  if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts reach as far as was read");
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }
 

@@ -7,7 +7,7 @@
 
 namespace edged {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once.
+/// From now on the first SIGINT or SIGTERM only sets a flag; a second one of its kind ends the program at once.
 void catch_interrupts();
 
 /// The signal that came, or 0.

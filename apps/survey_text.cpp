@@ -66,14 +66,16 @@ std::string imu_text(const Survey& s) {
   std::string text = line("IMU", stream_text(s.imu)) + line("", gap_text(s.imu));
   text += line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
                                imu.mean_accel, imu.mean_gyro, imu.max_gyro));
+  if (!imu.calm) return text + line("", "noise: too few samples in any half second to tell");
+  const ImuCalm& calm = *imu.calm;
   text += line("", fmt::format("noise {}: gyro {:.2g} rad/s/sqrt(Hz), accelerometer {:.2g} m/s^2/sqrt(Hz)",
-                               imu.at_rest ? fmt::format("at rest (at {:.1f} s)", to_seconds(imu.calm_at))
-                                           : "when calmest (never at rest, so too high)",
-                               imu.gyro_noise, imu.accel_noise));
-  if (imu.at_rest)
+                               calm.at_rest ? fmt::format("at rest (at {:.1f} s)", to_seconds(calm.begin))
+                                            : "when calmest (never at rest, so too high)",
+                               calm.gyro_noise, calm.accel_noise));
+  if (calm.at_rest)
     text += line("", fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
-                                 imu.calm_gyro.x(), imu.calm_gyro.y(), imu.calm_gyro.z(), imu.calm_accel.x(),
-                                 imu.calm_accel.y(), imu.calm_accel.z()));
+                                 calm.gyro.x(), calm.gyro.y(), calm.gyro.z(), calm.accel.x(), calm.accel.y(),
+                                 calm.accel.z()));
   return text;
 }
 
@@ -114,7 +116,7 @@ std::string to_text(const Survey& s) {
     text += line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
                                          stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
                                          stream.role.empty() ? "" : " -> " + stream.role));
-  text += line("all sensors", fmt::format("{:.3f} s together", to_seconds(s.overlap())));
+  text += line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
   if (s.events.count > 0) text += events_text(s);
   if (s.frames.count > 0) {
     text += line("frames", stream_text(s.frames)) + line("", gap_text(s.frames));
@@ -157,15 +159,15 @@ nlohmann::ordered_json to_json(const Survey& s) {
                            {"height", s.image_size.height},
                            {"mean_brightness", s.mean_brightness}});
   json["imu"] = stream_json(s.imu);
-  if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0)
-    json["imu"].update({{"gyro_noise", imu.gyro_noise},
-                        {"accel_noise", imu.accel_noise},
-                        {"at_rest", imu.at_rest},
-                        {"calm_gyro", numbers(imu.calm_gyro)},
-                        {"calm_accel", numbers(imu.calm_accel)},
-                        {"mean_accel", imu.mean_accel},
-                        {"mean_gyro", imu.mean_gyro},
-                        {"max_gyro", imu.max_gyro}});
+  if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0) {
+    json["imu"].update({{"mean_accel", imu.mean_accel}, {"mean_gyro", imu.mean_gyro}, {"max_gyro", imu.max_gyro}});
+    if (imu.calm)
+      json["imu"].update({{"gyro_noise", imu.calm->gyro_noise},
+                          {"accel_noise", imu.calm->accel_noise},
+                          {"at_rest", imu.calm->at_rest},
+                          {"calm_gyro", numbers(imu.calm->gyro)},
+                          {"calm_accel", numbers(imu.calm->accel)}});
+  }
   if (s.truth) {
     json["ground_truth"] = stream_json(s.truth->stream);
     json["ground_truth"].update({{"path_m", s.truth->path_m}, {"frame", s.truth->frame}});

@@ -5,6 +5,7 @@
 
 #include <spdlog/fmt/compile.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
@@ -61,19 +62,34 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
   const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
   if (m.distortion() != DistortionModel::Equidistant) {
     const auto& k = m.coefficients();
-    std::ofstream(folder / "calib.txt") << fmt::format("{} {} {} {} {} {} {} {} {}\n", m.fx(), m.fy(), m.cx(), m.cy(),
-                                                       k[0], k[1], k[2], k[3], k[4]);
+    LazyFile file(folder / "calib.txt");
+    file.add(FMT_COMPILE("{} {} {} {} {} {} {} {} {}\n"), m.fx(), m.fy(), m.cx(), m.cy(), k[0], k[1], k[2], k[3], k[4]);
+    file.flush();
   }
-  if (named.has_extrinsics) std::ofstream(folder / "calibration.yaml") << to_yaml(named);
+  if (!named.has_extrinsics) return;
+  LazyFile file(folder / "calibration.yaml");
+  file.add(FMT_COMPILE("{}"), to_yaml(named));
+  file.flush();
+}
+
+/// By its name in the rig, or as the readers of formats without names call it.
+const RigCamera& find_camera(const Rig& rig, const std::string& name) {
+  const RigCamera* by_kind = name == "events"   ? rig.find(Modality::Events)
+                             : name == "frames" ? rig.find(Modality::Frames)
+                                                : nullptr;
+  const auto named = std::ranges::find(rig.cameras, name, &RigCamera::name);
+  return named == rig.cameras.end() && by_kind ? *by_kind : rig.camera(name);
 }
 
 /// T_W_C of the event camera (without one: of the first camera) on its clock.
-Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Calibration>& calibration) {
+Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setup) {
+  const std::optional<Calibration>& calibration = setup.calibration;
   if (!calibration || !calibration->has_extrinsics) {
-    if (truth.frame == "body")
-      throw InputError(
-          "groundtruth.txt holds the pose of the camera, the ground truth is of the body: a calibration with "
-          "extrinsics is needed to write it: give --rig or --calib");
+    if (truth.frame == "body" || (setup.info.has_events && truth.frame == "frames"))
+      throw InputError::format(
+          "groundtruth.txt holds the pose of the event camera, the ground truth is of {}: a calibration with extrinsics is "
+          "needed to write it: give --rig or --calib",
+          truth.frame == "body" ? "the body" : "the frame camera");
     return truth.trajectory;
   }
   const Rig& rig = calibration->rig;
@@ -81,7 +97,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Cal
   const RigCamera& to = events ? *events : rig.cameras.front();
   if (truth.frame == to.name) return truth.trajectory;
   const RigCamera body;  // identity and no offset
-  const RigCamera& from = truth.frame == "body" ? body : rig.camera(truth.frame);
+  const RigCamera& from = truth.frame == "body" ? body : find_camera(rig, truth.frame);
   const SE3 T_X_C = from.T_B_C.inverse() * to.T_B_C;
   Trajectory out = truth.trajectory;
   for (StampedPose& pose : out) pose = {pose.t + from.time_offset - to.time_offset, pose.T * T_X_C};
@@ -91,8 +107,8 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const std::optional<Cal
 class EcdWriter final : public RecordingWriter {
  public:
   explicit EcdWriter(const WriterSetup& setup)
-      : folder_(setup.path),
-        calibration_(setup.calibration),
+      : setup_(setup),
+        folder_(setup.path),
         events_(folder_ / "events.txt"),
         images_(folder_ / "images.txt"),
         imu_(folder_ / "imu.txt") {
@@ -101,7 +117,7 @@ class EcdWriter final : public RecordingWriter {
     if (error) throw InputError::format("{}: cannot be made: {}", folder_.string(), error.message());
     if (is_ecd_folder(folder_))
       throw InputError::format("{}: holds a recording already: give another folder", folder_.string());
-    if (calibration_) write_calibration(*calibration_, folder_);
+    if (setup_.calibration) write_calibration(*setup_.calibration, folder_);
   }
 
   void write(const EventBatch& batch) override {
@@ -133,7 +149,7 @@ class EcdWriter final : public RecordingWriter {
 
   void write(const GroundTruth& truth) override {
     LazyFile out(folder_ / "groundtruth.txt");
-    for (const StampedPose& pose : camera_ground_truth(truth, calibration_)) {
+    for (const StampedPose& pose : camera_ground_truth(truth, setup_)) {
       const Eigen::Vector3d& p = pose.T.translation();
       const Eigen::Quaterniond& q = pose.T.rotation();
       out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(),
@@ -157,8 +173,8 @@ class EcdWriter final : public RecordingWriter {
                                folder_.string(), known, camera);
   }
 
+  WriterSetup setup_;
   fs::path folder_;
-  std::optional<Calibration> calibration_;
   LazyFile events_, images_, imu_;
   std::string event_camera_, frame_camera_;
   std::size_t frames_ = 0;

@@ -13,14 +13,14 @@ namespace edged {
 namespace {
 
 constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
-constexpr Duration kPatience = std::chrono::seconds(1);       // a stream this far behind the others is not waited for
+constexpr Duration kPatience = std::chrono::seconds(1);       // a stream silent for so long is not waited for
 constexpr Duration kDisorder = std::chrono::milliseconds(1);  // within one stream
 constexpr std::size_t kMostInBatch = 65536;
 
 }  // namespace
 
-Turn next_turn(Timestamp imu, Timestamp events, Timestamp frame) {
-  using enum Turn::Stream;
+NextStream next_stream(Timestamp imu, Timestamp events, Timestamp frame) {
+  using enum NextStream::Stream;
   constexpr Timestamp never = Timestamp::max();
   if (imu == never && events == never && frame == never) return {};
   if (imu <= events && imu <= frame) return {Imu};
@@ -31,12 +31,12 @@ Turn next_turn(Timestamp imu, Timestamp events, Timestamp frame) {
 }
 
 template <typename T>
-void ArrivalQueue<T>::push(T item, Timestamp floor) {
+void ArrivalQueue<T>::push(T item) {
   if (suspect_) {
     T suspect = std::move(*suspect_);
     suspect_.reset();
     if (item.t > suspect.t - kJump) {
-      insert(std::move(suspect), floor);
+      insert(std::move(suspect));
     } else {
       repairs_.add(subject_ + ": stamp far ahead, dropped",
                    fmt::format("{}: stamp {} s is followed by {} s", subject_, format_seconds(suspect.t),
@@ -46,19 +46,19 @@ void ArrivalQueue<T>::push(T item, Timestamp floor) {
   if (!last_ || item.t - newest_ > kJump) {
     suspect_ = std::move(item);
   } else {
-    insert(std::move(item), floor);
+    insert(std::move(item));
   }
 }
 
 template <typename T>
-void ArrivalQueue<T>::push(std::span<const T> items, Timestamp floor) {
+void ArrivalQueue<T>::push(std::span<const T> items) {
   while (!items.empty()) {
-    const std::size_t count = count_in_order(items, floor);
+    const std::size_t count = count_in_order(items);
     if (count > 0) {
       sorted_.insert(sorted_.end(), items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count));
       last_ = newest_ = items[count - 1].t;
     } else {
-      push(items.front(), floor);
+      push(items.front());
     }
     items = items.subspan(std::max<std::size_t>(count, 1));
   }
@@ -66,10 +66,10 @@ void ArrivalQueue<T>::push(std::span<const T> items, Timestamp floor) {
 
 /// How many of the first items continue the stream, so that nothing has to be judged.
 template <typename T>
-std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items, Timestamp floor) const {
+std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items) const {
   if (suspect_ || !last_ || !stamps_repeat_) return 0;
   std::size_t count = 0;
-  for (Timestamp before = std::max(newest_, floor); count < items.size(); ++count) {
+  for (Timestamp before = std::max(newest_, handed_out_); count < items.size(); ++count) {
     const Timestamp t = items[count].t;
     if (t < before || t - newest_ > kJump) break;
     before = t;
@@ -78,8 +78,8 @@ std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items, Timestamp 
 }
 
 template <typename T>
-void ArrivalQueue<T>::finish(Timestamp floor) {
-  if (suspect_) insert(std::move(*suspect_), floor);
+void ArrivalQueue<T>::finish() {
+  if (suspect_) insert(std::move(*suspect_));
   suspect_.reset();
 }
 
@@ -87,6 +87,7 @@ template <typename T>
 T ArrivalQueue<T>::pop() {
   T item = std::move(sorted_.front());
   sorted_.pop_front();
+  handed_out_ = item.t;
   return item;
 }
 
@@ -96,17 +97,18 @@ std::vector<T> ArrivalQueue<T>::pop_before(Timestamp end, std::size_t most) {
   const auto cut = std::partition_point(sorted_.begin(), last, [end](const T& item) { return item.t < end; });
   std::vector<T> items(sorted_.begin(), cut);
   sorted_.erase(sorted_.begin(), cut);
+  if (!items.empty()) handed_out_ = items.back().t;
   return items;
 }
 
 template <typename T>
-void ArrivalQueue<T>::insert(T item, Timestamp floor) {
+void ArrivalQueue<T>::insert(T item) {
   const Timestamp t = item.t;
   last_ = t;
   const auto repair = [&](const char* kind) {
     repairs_.add(subject_ + ": " + kind, fmt::format("{}: stamp {} s: {}", subject_, format_seconds(t), kind));
   };
-  if (t < floor) return repair("out of order, dropped");
+  if (t < handed_out_) return repair("out of order, dropped");
   if (t > newest_ || (stamps_repeat_ && t == newest_)) {
     newest_ = t;
     sorted_.push_back(std::move(item));
@@ -125,58 +127,74 @@ Merger::Merger(Repairs& repairs)
       frames_("frames", false, 300, repairs),
       imu_("imu", false, 100'000, repairs) {}
 
-void Merger::push(std::span<const Event> events) { events_.push(events, floor_); }
+void Merger::expect(const Streams& streams) {
+  event_camera_ = streams.event_camera;
+  event_pace_.expected = streams.events;
+  frame_pace_.expected = streams.frames;
+  imu_pace_.expected = streams.imu;
+}
 
-void Merger::push(Frame frame) { frames_.push(std::move(frame), floor_); }
+void Merger::push(std::span<const Event> events) {
+  events_.push(events);
+  note(event_pace_, events_.last());
+}
 
-void Merger::push(const ImuSample& sample) { imu_.push(sample, floor_); }
+void Merger::push(Frame frame) {
+  frames_.push(std::move(frame));
+  note(frame_pace_, frames_.last());
+}
+
+void Merger::push(const ImuSample& sample) {
+  imu_.push(sample);
+  note(imu_pace_, imu_.last());
+}
+
+void Merger::note(Pace& pace, std::optional<Timestamp> last) {
+  if (!last) return;
+  if (!begin_) begin_ = last;
+  newest_ = std::max(newest_.value_or(*last), *last);
+  pace = {pace.expected, last, newest_};
+}
 
 void Merger::finish() {
-  events_.finish(floor_);
-  frames_.finish(floor_);
-  imu_.finish(floor_);
+  events_.finish();
+  frames_.finish();
+  imu_.finish();
   finished_ = true;
 }
 
 /// Whatever comes from now on is not expected before this stamp.
 Timestamp Merger::horizon() const {
   if (finished_) return Timestamp::max();
-  Timestamp oldest = Timestamp::max(), newest = Timestamp::min();
-  const auto wait_for = [&](bool expected, std::optional<Timestamp> last) {
-    if (expected || last) oldest = std::min(oldest, last.value_or(Timestamp::min()));
-    newest = std::max(newest, last.value_or(Timestamp::min()));
-  };
-  wait_for(expected_.events, events_.last());
-  wait_for(expected_.frames, frames_.last());
-  wait_for(expected_.imu, imu_.last());
-  if (newest == Timestamp::min()) return newest;
-  const Timestamp settled = oldest == Timestamp::min() ? oldest : oldest - kDisorder;
-  return std::max({settled, newest - kPatience, events_.overflow(), frames_.overflow(), imu_.overflow()});
+  if (!newest_) return Timestamp::min();
+  Timestamp settled = Timestamp::max();
+  for (const Pace* pace : {&event_pace_, &frame_pace_, &imu_pace_}) {
+    if (!pace->expected && !pace->last) continue;
+    const bool silent = *newest_ - pace->heard.value_or(*begin_) > kPatience;
+    settled = std::min(settled, silent       ? *newest_ - kPatience
+                                : pace->last ? *pace->last - kDisorder
+                                             : Timestamp::min());
+  }
+  return std::max({settled, events_.overflow(), frames_.overflow(), imu_.overflow()});
 }
 
 std::optional<Measurement> Merger::pop() {
   const Timestamp ready = horizon();
-  const Turn turn = next_turn(imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp());
+  const NextStream next = next_stream(imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp());
   if (std::min({imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp()}) >= ready) return std::nullopt;
-  switch (turn.stream) {
-    case Turn::Stream::Imu:
-      floor_ = imu_.next_stamp();
+  switch (next.stream) {
+    case NextStream::Stream::Imu:
       return imu_.pop();
-    case Turn::Stream::Frame:
-      floor_ = frames_.next_stamp();
+    case NextStream::Stream::Frame:
       return frames_.pop();
-    case Turn::Stream::Events:
-      return take_events(std::min(turn.events_end, ready));
-    case Turn::Stream::None:
+    case NextStream::Stream::Events:
+      return take_events(std::min(next.events_end, ready));
+    case NextStream::Stream::None:
       break;
   }
   return std::nullopt;
 }
 
-EventBatch Merger::take_events(Timestamp end) {
-  EventBatch batch{expected_.event_camera, events_.pop_before(end, kMostInBatch)};
-  floor_ = batch.events.back().t;
-  return batch;
-}
+EventBatch Merger::take_events(Timestamp end) { return {event_camera_, events_.pop_before(end, kMostInBatch)}; }
 
 }  // namespace edged

@@ -15,13 +15,13 @@
 namespace edged {
 
 /// Which stream is next, and where its batch has to end if it is that of the events.
-struct Turn {
+struct NextStream {
   enum class Stream { None, Imu, Events, Frame } stream = Stream::None;
   Timestamp events_end = Timestamp::max();  ///< the batch holds events before this stamp
 };
 
 /// The order of Dataset from the next stamp of each stream (Timestamp::max() for one that has ended).
-Turn next_turn(Timestamp imu, Timestamp events, Timestamp frame);
+NextStream next_stream(Timestamp imu, Timestamp events, Timestamp frame);
 
 /// The items of one stream, T with a member `Timestamp t`, sorted although they may come a little out of order. A stamp
 /// far ahead of all others counts only once another confirms it, so that one damaged stamp does not end the stream.
@@ -32,12 +32,11 @@ class ArrivalQueue {
   ArrivalQueue(std::string subject, bool stamps_repeat, std::size_t max_held, Repairs& repairs)
       : subject_(std::move(subject)), stamps_repeat_(stamps_repeat), max_held_(max_held), repairs_(repairs) {}
 
-  /// floor: stamp of what has been handed out; earlier items come too late.
-  void push(T item, Timestamp floor);
+  void push(T item);
   /// Many; those that simply follow each other go in at once.
-  void push(std::span<const T> items, Timestamp floor);
+  void push(std::span<const T> items);
   /// Nothing more will come.
-  void finish(Timestamp floor);
+  void finish();
 
   const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
   Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : sorted_.front().t; }
@@ -54,8 +53,8 @@ class ArrivalQueue {
 
  private:
   static constexpr Duration kJump = std::chrono::seconds(10);
-  void insert(T item, Timestamp floor);
-  std::size_t count_in_order(std::span<const T> items, Timestamp floor) const;
+  void insert(T item);
+  std::size_t count_in_order(std::span<const T> items) const;
 
   std::string subject_;
   bool stamps_repeat_;
@@ -65,11 +64,14 @@ class ArrivalQueue {
   std::optional<T> suspect_;  ///< far ahead of those before, or the first of all
   std::optional<Timestamp> last_;
   Timestamp newest_ = Timestamp::min();
+  Timestamp handed_out_ = Timestamp::min();  ///< what is before comes too late
 };
 
 /// Push what the file gives, pop what is ready: `while (!(m = merger.pop()) && more) push(...)`. Holds back what an
-/// expected stream may still precede, for at most a second of recording and a few million events. Items that come later
-/// are left out, those out of order before that sorted in; both are counted.
+/// expected stream may still precede, but no more than a few million events, and waits no longer than a second of
+/// recording for a stream that is silent. A stream that is farther behind the others, by another clock for instance,
+/// comes late, but whole: within it, order holds always. Its items that are out of order are sorted in, or left out
+/// where what follows them has been handed out; both are counted.
 class Merger {
  public:
   struct Streams {
@@ -80,7 +82,7 @@ class Merger {
   explicit Merger(Repairs& repairs);
 
   /// Streams to wait for; before any push.
-  void expect(const Streams& streams) { expected_ = streams; }
+  void expect(const Streams& streams);
 
   void push(std::span<const Event> events);
   void push(Frame frame);
@@ -92,14 +94,21 @@ class Merger {
   std::optional<Measurement> pop();
 
  private:
+  /// How far a stream has come, and where the newest of all was when it last delivered.
+  struct Pace {
+    bool expected = false;
+    std::optional<Timestamp> last, heard;
+  };
+  void note(Pace& pace, std::optional<Timestamp> last);
   Timestamp horizon() const;
   EventBatch take_events(Timestamp end);
 
-  Streams expected_;
+  std::string event_camera_;
+  Pace event_pace_, frame_pace_, imu_pace_;
+  std::optional<Timestamp> begin_, newest_;  ///< first and newest stamp of all
   ArrivalQueue<Event> events_;
   ArrivalQueue<Frame> frames_;
   ArrivalQueue<ImuSample> imu_;
-  Timestamp floor_ = Timestamp::min();
   bool finished_ = false;
 };
 

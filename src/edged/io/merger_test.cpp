@@ -69,6 +69,31 @@ TEST(Merger, WaitsOneSecondForAStreamThatStaysAway) {
   EXPECT_EQ(popped(merger), "I0 I100");
 }
 
+TEST(Merger, AStreamOnAnotherClockComesWhole) {
+  for (const double shift : {-3000.0, 3000.0, 1e9}) {
+    Repairs repairs;
+    Merger merger(repairs);
+    merger.expect({true, false, true, "events"});
+    std::size_t events = 0, samples = 0;
+    const auto drain = [&] {
+      while (const auto m = merger.pop()) {
+        if (const auto* batch = std::get_if<EventBatch>(&*m)) events += batch->events.size();
+        samples += std::holds_alternative<ImuSample>(*m);
+      }
+    };
+    for (int t = 0; t < 10'000; t += 2) {
+      merger.push(events_at({t + 0.1, t + 1.1}));
+      merger.push(imu_at(t + shift));
+      drain();
+    }
+    merger.finish();
+    drain();
+    EXPECT_EQ(events, 10'000u);
+    EXPECT_EQ(samples, 5'000u);
+    EXPECT_TRUE(repairs.counts().empty());
+  }
+}
+
 TEST(Merger, LateItemsAreSortedInWhilePossibleAndCountedAlways) {
   Repairs repairs;
   Merger merger(repairs);

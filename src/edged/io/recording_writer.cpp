@@ -113,16 +113,18 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
   std::vector<std::string> known;
   for (const WritableFormat& f : kWritable)
     known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
-  throw InputError::format("{}: nothing is written in format `{}`; there are: {}", path.string(),
+  throw InputError::format("{}: nothing is written in format `{}`; give --format, one of: {}", path.string(),
                            name.empty() ? extension : name, fmt::join(known, ", "));
 }
 
 WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
                             const std::optional<Calibration>& calibration, const WriteOptions& options) {
   constexpr std::size_t kProgressEvery = 256;  // measurements
-  const bool is_file = !format.extension.empty();
-  if (is_file && std::filesystem::exists(path))
-    throw InputError::format("{}: is there already: give another name", path.string());
+  std::error_code ignored;
+  const bool is_file = !format.extension.empty(), existed = std::filesystem::exists(path, ignored);
+  if (is_file && existed) throw InputError::format("{}: is there already: give another name", path.string());
+  if (!dataset.info().has_events && !format.frames && !format.imu)
+    throw InputError::format("{}: holds no events, and format {} holds nothing else", dataset.info().name, format.name);
   try {
     const std::unique_ptr<RecordingWriter> writer = format.open({path, dataset.info(), calibration});
     Sieve sieve(*writer, format, options.round);
@@ -135,8 +137,7 @@ WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, cons
     writer->finish();
     return sieve.counts;
   } catch (const InputError&) {
-    std::error_code ignored;
-    if (is_file) std::filesystem::remove(path, ignored);  // half a file passes for a whole one
+    if (!existed) std::filesystem::remove_all(path, ignored);  // half a recording passes for a whole one
     throw;
   }
 }

@@ -52,7 +52,7 @@ TEST_P(WritableFormats, KeepEventsApartByLongSilences) {
 }
 
 TEST_P(WritableFormats, RefuseStampsTheyAreTooCoarseForUnlessToldToCutThem) {
-  if (GetParam().tick == Duration(1)) return;
+  if (GetParam().tick == Duration(1)) GTEST_SKIP() << "holds every nanosecond";
   ListedDataset fine;
   fine.measurements.push_back(EventBatch{"events", {Event{timestamp_from_ns(1'234'567'891), 3, 5, true}}});
   ListedDataset again = fine;
@@ -60,6 +60,20 @@ TEST_P(WritableFormats, RefuseStampsTheyAreTooCoarseForUnlessToldToCutThem) {
   EXPECT_FALSE(std::filesystem::exists(target()));
   write(again, {.round = true});
   EXPECT_EQ(read_back().events.front().t, timestamp_from_ns(1'234'567'000));
+}
+
+TEST_P(WritableFormats, RefuseWhatTheyHaveNoRoomFor) {
+  if (GetParam().frames || GetParam().imu) GTEST_SKIP() << "holds more than events";
+  ListedDataset source;
+  source.describe().has_events = false;
+  EXPECT_THAT(input_error([&] { write(source); }), HasSubstr("holds no events"));
+}
+
+TEST_P(WritableFormats, LeaveNoHalfRecordingBehind) {
+  ListedDataset source = random_dataset(GetParam().tick);
+  source.failing = true;
+  EXPECT_THAT(input_error([&] { write(source); }), HasSubstr("damaged"));
+  EXPECT_FALSE(std::filesystem::exists(target()));
 }
 
 TEST_P(WritableFormats, LeaveAloneWhatIsThere) {
@@ -82,7 +96,7 @@ TEST(WritableFormat, IsFoundByNameOrExtensionElseTheRefusalListsThem) {
   EXPECT_EQ(writable_format("", "a/b.raw").name, "raw");
   EXPECT_EQ(writable_format("", "a/folder").name, "ecd");
   EXPECT_EQ(writable_format("dat", "a/b.bin").name, "dat");
-  EXPECT_THAT(input_error([] { writable_format("", "a.xyz"); }), HasSubstr("`.xyz`; there are: ecd (a folder), raw"));
+  EXPECT_THAT(input_error([] { writable_format("", "a.xyz"); }), HasSubstr("`.xyz`; give --format, one of: ecd (a folder), raw"));
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ class ListedDataset : public Dataset {
  public:
   const DatasetInfo& info() const override { return info_; }
   std::optional<Measurement> next() override {
+    if (next_ == measurements.size() && failing) throw InputError("damaged at its end");
     if (next_ == measurements.size()) return std::nullopt;
     return measurements[next_++];
   }
@@ -77,6 +78,8 @@ class ListedDataset : public Dataset {
 
   std::vector<Measurement> measurements;
   std::optional<GroundTruth> truth;
+  bool failing = false;  ///< throws at its end
+  DatasetInfo& describe() { return info_; }
 
  private:
   DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, {}, cv::Size(240, 180)};

@@ -55,11 +55,13 @@ void judge_clocks(const Survey& s, Findings& out) {
     all += ", " + interval(name, *stream);
     shortest = std::min(shortest, stream->length());
   }
+  if (s.events.count == 0 && s.frames.count == 0)
+    return out.error("neither events nor frames", "record one of them, or name the topic with --topic events=NAME");
   const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
-  if (common <= 0.0)
+  if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
-              "stamp all sensors on one clock, or set time_offset in the calibration to the difference");
-  else if (common < 0.9 * least)
+              "stamp all sensors on one clock when recording: no run can mend whole seconds");
+  else if (common < std::max(0.9 * least, 1.0))
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "what only some of them cover is left out; check that all were recorded");
   else
@@ -86,11 +88,12 @@ void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, F
   if (s.imu.count == 0) return;
   const ImuSurvey& imu = s.imu_details;
   const double g = imu.mean_accel;
-  if (g > 0.8 && g < 1.25)
+  const double calm = imu.calm ? imu.calm->accel.norm() : g;  // a mean, so that motion does not count
+  if (g > 0.7 && g < 2.5 && calm > 0.8 && calm < 1.25)
     out.error(fmt::format("accelerometer in g: its mean is {:.2f}, not about 9.8 m/s^2", g), "multiply it by 9.80665");
   else if (g > 8000 && g < 12000)
     out.error(fmt::format("accelerometer in mm/s^2: its mean is {:.0f}", g), "divide it by 1000");
-  else if (g < 0.5)
+  else if (g < 2.5)
     out.error(fmt::format("accelerometer without gravity: its mean is {:.2f} m/s^2", g),
               "record the raw specific force, not the linear acceleration");
   else if (g < 8.0 || g > 13.0)
@@ -104,7 +107,10 @@ void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, F
   else if (imu.mean_gyro > kFastest)
     out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
   else
-    out.good(fmt::format("gyro in rad/s (mean {:.2f}, highest {:.2f})", imu.mean_gyro, imu.max_gyro));
+    out.good(fmt::format("gyro with a mean of {:.2f}, highest {:.2f} rad/s{}", imu.mean_gyro, imu.max_gyro,
+                         std::ranges::any_of(cameras, [](const CameraCheck& c) { return c.agreement && sure(*c.agreement); })
+                             ? ""
+                             : " (its unit is not checked against a camera)"));
 }
 
 void judge_events(const Survey& s, Findings& out) {
@@ -146,7 +152,11 @@ void judge_shift(const CameraCheck& check, Findings& out) {
   const double sigma = 1e3 * found.time_sigma_s;
   const std::string text = fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
                                        check.camera.name, shift, sigma, given);
-  if (std::abs(shift - given) > std::max(kLeast_ms, kSigmas * sigma))
+  if (found.at_bound)
+    out.warn(fmt::format("camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms by its turning",
+                         check.camera.name, 1e3 * to_seconds(kMostShift), given),
+             "check the clocks of camera and IMU");
+  else if (std::abs(shift - given) > std::max(kLeast_ms, kSigmas * sigma))
     out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
   else
     out.good(text);
@@ -190,14 +200,28 @@ void judge_scale(const CameraCheck& check, Findings& out) {
            "check the focal length, and the unit of the gyro");
 }
 
-void judge_camera(const CameraCheck& check, Findings& out) {
+/// False where the calibration is of a sensor of another size.
+bool judge_size(const CameraCheck& check, const Survey& s, Findings& out) {
+  const cv::Size calibrated(check.camera.model.width(), check.camera.model.height());
+  const bool events = check.camera.modality == Modality::Events;
+  const cv::Size seen = events ? s.event_details.extent : s.image_size;
+  const bool fits = events ? seen.width <= calibrated.width && seen.height <= calibrated.height : seen == calibrated;
+  if (!fits && !seen.empty())
+    out.error(fmt::format("camera {}: calibrated for {} x {} px, recorded {} x {}", check.camera.name, calibrated.width,
+                          calibrated.height, seen.width, seen.height),
+              "choose the calibration of this camera, and of this resolution");
+  return fits || seen.empty();
+}
+
+void judge_camera(const CameraCheck& check, const Survey& s, Findings& out) {
   const std::string& name = check.camera.name;
+  if (!judge_size(check, s, out)) return;
   if (!check.agreement)
-    return out.note(fmt::format("camera {}: cannot be compared with the gyro: too few corners to follow", name));
+    return out.note(fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
   if (!sure(*check.agreement))
     return out.note(fmt::format("camera {}: turns too little, or too unlike the gyro, to judge its calibration ({:.0f} % of "
                                 "its turning unexplained)",
-                                name, 100 * check.agreement->unexplained));
+                                name, 100 * std::min(1.0, check.agreement->unexplained)));
   judge_shift(check, out);
   check.has_extrinsics ? judge_rotation(check, out) : tell_rotation(check, out);
   judge_scale(check, out);
@@ -215,16 +239,18 @@ void judge_truth(const Survey& s, Findings& out) {
 
 }  // namespace
 
-std::vector<Finding> diagnose(const Survey& survey, const std::vector<CameraCheck>& cameras) {
+std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras) {
   Findings out;
   judge_clocks(survey, out);
   judge_imu_rate(survey, out);
   judge_imu_units(survey, cameras, out);
   judge_events(survey, out);
   judge_frames(survey, out);
-  for (const CameraCheck& check : cameras) judge_camera(check, out);
-  if (cameras.empty())
+  for (const CameraCheck& check : cameras) judge_camera(check, survey, out);
+  if (!calibrated)
     out.note("no calibration, so none is checked", "give --rig NAME or --calib FILE");
+  else if (cameras.empty())
+    out.note("the calibration has no camera that could be compared with a gyro");
   judge_truth(survey, out);
   for (const auto& [kind, count] : survey.repairs)
     out.note(fmt::format("repaired while reading: {} ({})", kind, count));

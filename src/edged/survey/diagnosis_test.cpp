@@ -37,7 +37,7 @@ CameraCheck agreeing() {
   return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
 }
 
-/// The worst finding that has this text: its remedy.
+/// The remedy of the first finding of that severity that has this text.
 std::string remedy_of(const std::vector<Finding>& findings, Severity severity, const std::string& text) {
   for (const Finding& f : findings)
     if (f.severity == severity && f.text.find(text) != std::string::npos) return f.remedy;
@@ -45,76 +45,95 @@ std::string remedy_of(const std::vector<Finding>& findings, Severity severity, c
 }
 
 TEST(Diagnosis, OfAHealthyRecordingIsGoodAllOver) {
-  for (const Finding& f : diagnose(healthy(), {agreeing()})) EXPECT_EQ(f.severity, Severity::Good) << f.text;
+  for (const Finding& f : diagnose(healthy(), true, {agreeing()})) EXPECT_EQ(f.severity, Severity::Good) << f.text;
 }
 
 TEST(Diagnosis, NamesClocksThatDoNotOverlap) {
   Survey s = healthy();
   s.imu = stream(2000, 1000, 1010);
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "IMU 1000.000 to 1010.000 s"), HasSubstr("time_offset"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "IMU 1000.000 to 1010.000 s"), HasSubstr("time_offset"));
   s.imu = stream(2000, 5, 15);
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Warning, "cover 5.0 s only"), HasSubstr("left out"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Warning, "cover 5.0 s only"), HasSubstr("left out"));
 }
 
 TEST(Diagnosis, NamesAMissingSlowOrHolyImu) {
   Survey s = healthy();
   s.imu = {};
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "no IMU samples"), HasSubstr("--topic imu"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "no IMU samples"), HasSubstr("--topic imu"));
   s = healthy();
   s.imu = stream(300, 0, 10);
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Warning, "IMU at 30 Hz"), HasSubstr("200 Hz"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Warning, "IMU at 30 Hz"), HasSubstr("200 Hz"));
   s = healthy();
   s.imu.gaps = 2, s.imu.missing = std::chrono::milliseconds(700);
   s.imu.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(600)}};
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
 }
 
 TEST(Diagnosis, NamesWrongUnits) {
   Survey s = healthy();
   s.imu_details.mean_accel = 1.0;
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "accelerometer in g"), HasSubstr("9.80665"));
+  s.imu_details.calm = ImuCalm{.begin = {}, .at_rest = true, .accel = {0, 0, 1}};
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "accelerometer in g"), HasSubstr("9.80665"));
   s.imu_details.mean_accel = 9806;
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "mm/s^2"), HasSubstr("1000"));
-  s.imu_details.mean_accel = 0.2;
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "without gravity"), HasSubstr("specific force"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "mm/s^2"), HasSubstr("1000"));
+  s.imu_details.mean_accel = 0.9;
+  s.imu_details.calm = ImuCalm{.begin = {}, .at_rest = false, .accel = {0.1, 0, 0}};
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "without gravity"), HasSubstr("specific force"));
   s = healthy();
   CameraCheck check = agreeing();
   check.agreement->gyro_scale = 57.0;
-  EXPECT_THAT(remedy_of(diagnose(s, {check}), Severity::Error, "gyro in deg/s"), HasSubstr("pi / 180"));
+  EXPECT_THAT(remedy_of(diagnose(s, true, {check}), Severity::Error, "gyro in deg/s"), HasSubstr("pi / 180"));
   s.imu_details.mean_gyro = 20;
-  EXPECT_THAT(remedy_of(diagnose(s, {}), Severity::Error, "probably in deg/s"), HasSubstr("pi / 180"));
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "probably in deg/s"), HasSubstr("pi / 180"));
 }
 
 TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
   CameraCheck check = agreeing();
   check.agreement->time_offset = std::chrono::milliseconds(12);
-  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Warning, "+12.0 ms"), HasSubstr("0.0120"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "+12.0 ms"), HasSubstr("0.0120"));
   check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
-  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Error, "contradicts the gyro by 86 deg"),
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "contradicts the gyro by 86 deg"),
               HasSubstr("86 deg about the camera's axis (0.00, 0.00, 1.00)"));
   check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
-  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Error, "the inverse fits"), HasSubstr("other way"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "the inverse fits"), HasSubstr("other way"));
   check = agreeing();
   check.agreement->gyro_scale = 0.5;
-  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Warning, "0.50 times"), HasSubstr("focal length"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "0.50 times"), HasSubstr("focal length"));
 }
 
 TEST(Diagnosis, GuessesTheRotationOfACameraThatHasNone) {
   CameraCheck check = agreeing();
   check.has_extrinsics = false;
   check.agreement->R_B_C << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  EXPECT_THAT(remedy_of(diagnose(healthy(), {check}), Severity::Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+}
+
+TEST(Diagnosis, NamesWhatIsMissingOrOfAnotherSize) {
+  Survey s = healthy();
+  s.events = s.frames = {};
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "neither events nor frames"), HasSubstr("--topic"));
+  s = healthy();
+  s.image_size = cv::Size(346, 260);
+  EXPECT_THAT(remedy_of(diagnose(s, true, {agreeing()}), Severity::Error, "recorded 346 x 260"), HasSubstr("resolution"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), false, {}), Severity::Note, "no calibration"), HasSubstr("--rig"));
+  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {}), Severity::Note, "no camera that could be compared"), "");
+}
+
+TEST(Diagnosis, GivesNoNumberForAShiftBeyondItsSearch) {
+  CameraCheck check = agreeing();
+  check.agreement->at_bound = true;
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "100 ms or more off"), HasSubstr("clocks"));
 }
 
 TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
   CameraCheck check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
   check.agreement->unexplained = 0.8;
-  EXPECT_EQ(remedy_of(diagnose(healthy(), {check}), Severity::Note, "80 % of its turning unexplained"), "");
+  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "80 % of its turning unexplained"), "");
   check = agreeing();
   check.agreement->rotation_sigma = 0.5;
-  EXPECT_EQ(remedy_of(diagnose(healthy(), {check}), Severity::Note, "about one axis only"), "");
+  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "about one axis only"), "");
 }
 
 TEST(Diagnosis, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {
@@ -123,7 +142,7 @@ TEST(Diagnosis, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {
   s.event_details.positive_share = 1.0;
   s.mean_brightness = 4;
   s.truth = TruthSurvey{stream(100, 500, 510), "body", 3.0};
-  const std::vector<Finding> findings = diagnose(s, {});
+  const std::vector<Finding> findings = diagnose(s, false, {});
   EXPECT_THAT(remedy_of(findings, Severity::Warning, "most at (3, 4)"), HasSubstr("mask"));
   EXPECT_THAT(remedy_of(findings, Severity::Warning, "100.0 % of the events are positive"), HasSubstr("polarities"));
   EXPECT_THAT(remedy_of(findings, Severity::Note, "frames are dark"), HasSubstr("expose"));

@@ -28,13 +28,13 @@ struct EventSurvey {
   std::array<double, kRateBands.size() + 1> rate_shares{};  ///< of the time, by band
   double active_share = 0.0;                               ///< pixels that fired at all, of the sensor
   cv::Size extent;                                         ///< the least sensor that holds every event [px]
-  std::size_t hot_pixels = 0;                              ///< above kHotFactor times the median pixel that fired
+  std::size_t hot_pixels = 0;                              ///< above kHotFactor times the median pixel that fired, and alone
   double hot_share = 0.0;                                  ///< events of hot pixels, of all
   std::vector<HotPixel> hottest;                           ///< at most ten, hottest first
   static constexpr double kHotFactor = 50.0;
 };
 
-/// Takes events in time order. Memory: four bytes a pixel.
+/// Takes events in time order. Memory: four bytes a pixel, 16 MB at most.
 class EventSurveyor {
  public:
   /// sensor: pixels beyond it are counted, but not one by one; empty where it is not known.
@@ -45,9 +45,11 @@ class EventSurveyor {
 
  private:
   void close_bin(std::size_t bins);
+  std::size_t place(int x, int y) const;
+  bool is_hot(int x, int y, double limit) const;
   void find_hot_pixels(EventSurvey& survey) const;
 
-  cv::Size sensor_, extent_;
+  cv::Size sensor_, counted_, extent_;
   std::vector<std::uint32_t> pixels_;
   std::size_t events_ = 0, positive_ = 0, bin_events_ = 0, bins_ = 0, peak_ = 0;
   std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins_{};

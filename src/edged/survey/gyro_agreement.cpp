@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kFewestTurns = 30;
 constexpr std::size_t kMostSamples = 300'000;  // of the gyro: five minutes of 1 kHz
-constexpr Duration kMostShift = std::chrono::milliseconds(100);
 constexpr Duration kShiftStep = std::chrono::milliseconds(4);   // then refined
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);  // between samples; a longer one is a gap
 
@@ -110,10 +109,10 @@ double overlap_of(std::span<const Turn> turns) {
 }
 
 /// The shift of the grid where rotation and scale fit best.
-std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro) {
+std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected) {
   std::optional<Duration> best;
   double least = std::numeric_limits<double>::infinity();
-  for (Duration shift = -kMostShift; shift <= kMostShift; shift += kShiftStep) {
+  for (Duration shift = expected - kMostShift; shift <= expected + kMostShift; shift += kShiftStep) {
     const Pairs pairs = pairs_at(turns, gyro, shift);
     if (pairs.camera.size() < kFewestTurns) continue;
     const double error = fit_turns(pairs).median_error;
@@ -153,10 +152,11 @@ Eigen::Vector3d GyroIntegral::up_to(std::size_t after, Timestamp t) const {
   return sum_[after - 1] + (gyro_[after - 1] + now) / 2 * part;
 }
 
-std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro) {
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
+                                               Duration expected) {
   constexpr int kRefinements = 5;
   if (turns.size() < kFewestTurns) return std::nullopt;
-  const auto coarse = best_shift(turns, gyro);
+  const auto coarse = best_shift(turns, gyro, expected);
   if (!coarse) return std::nullopt;
   GyroAgreement agreement;
   agreement.time_offset = *coarse;
@@ -165,8 +165,8 @@ std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, cons
     if (pairs.camera.size() < kFewestTurns) return std::nullopt;
     const Fit fit = fit_turns(pairs);
     const double step_s = refine_shift(pairs, fit, overlap_of(turns), agreement);
-    agreement.time_offset =
-        std::clamp(agreement.time_offset + duration_from_seconds(std::clamp(step_s, -0.02, 0.02)), -kMostShift, kMostShift);
+    agreement.time_offset = std::clamp(agreement.time_offset + duration_from_seconds(std::clamp(step_s, -0.02, 0.02)),
+                                       expected - kMostShift, expected + kMostShift);
     agreement.turns = pairs.camera.size();
     agreement.R_B_C = fit.R;
     agreement.gyro_scale = fit.scale;
@@ -174,6 +174,7 @@ std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, cons
     for (const Eigen::Vector3d& turn : pairs.camera) speeds.push_back(turn.norm());
     agreement.unexplained = fit.median_error / std::max(median(speeds), 1e-9);
   }
+  agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > kMostShift - kShiftStep;
   return agreement;
 }
 

@@ -16,6 +16,7 @@ struct GyroAgreement {
   double unexplained = 1.0;    ///< median difference over median angular speed; above about 0.5 the rest means little
   Duration time_offset{0};     ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;
+  bool at_bound = false;       ///< farther off than was searched: time_offset is no estimate
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
   double rotation_sigma = 0.0;  ///< of the least known axis [rad]; large where it turned about one axis only
   double gyro_scale = 1.0;      ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
@@ -34,7 +35,8 @@ class GyroIntegral {
   std::vector<Eigen::Vector3d> gyro_, sum_;
 };
 
-/// Shifts within 100 ms of zero are tried. Nothing where there are too few turns to compare.
-std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro);
+/// Time offsets within kMostShift of `expected` are tried. Nothing where there are too few turns to compare.
+inline constexpr Duration kMostShift = std::chrono::milliseconds(100);
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected);
 
 }  // namespace edged

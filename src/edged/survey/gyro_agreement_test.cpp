@@ -38,7 +38,7 @@ const Eigen::Matrix3d kTurned = so3::exp({0.3, -1.2, 2.0}).toRotationMatrix();
 
 TEST(GyroAgreement, FindsShiftAndRotationOfAnAnalyticMotion) {
   for (const double offset_s : {0.0, 0.023, -0.061}) {
-    const auto found = compare_with_gyro(turns_of(8, kTurned, offset_s), gyro_of(8));
+    const auto found = compare_with_gyro(turns_of(8, kTurned, offset_s), gyro_of(8), Duration(0));
     ASSERT_TRUE(found);
     EXPECT_NEAR(to_seconds(found->time_offset), offset_s, 2e-4);
     EXPECT_LT((found->R_B_C - kTurned).norm(), 2e-3);
@@ -47,26 +47,35 @@ TEST(GyroAgreement, FindsShiftAndRotationOfAnAnalyticMotion) {
   }
 }
 
+TEST(GyroAgreement, SearchesAroundTheCalibratedOffsetAndSaysWhenItIsFartherOff) {
+  const std::vector<Turn> turns = turns_of(8, kTurned, 0.15);
+  const auto found = compare_with_gyro(turns, gyro_of(8), std::chrono::milliseconds(140));
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->at_bound);
+  EXPECT_NEAR(to_seconds(found->time_offset), 0.15, 2e-4);
+  EXPECT_TRUE(compare_with_gyro(turns, gyro_of(8), Duration(0))->at_bound);
+}
+
 TEST(GyroAgreement, OneWrongTurnInTenDecidesNothing) {
   std::vector<Turn> turns = turns_of(8, kTurned, 0.01);
   for (std::size_t i = 0; i < turns.size(); i += 10) turns[i].phi_C = Eigen::Vector3d(0.5, -0.5, 0.5);
-  const auto found = compare_with_gyro(turns, gyro_of(8));
+  const auto found = compare_with_gyro(turns, gyro_of(8), Duration(0));
   ASSERT_TRUE(found);
   EXPECT_NEAR(to_seconds(found->time_offset), 0.01, 1e-3);
   EXPECT_LT((found->R_B_C - kTurned).norm(), 1e-2);
 }
 
 TEST(GyroAgreement, TellsAGyroInDegrees) {
-  const auto found = compare_with_gyro(turns_of(8, kTurned, 0.0), gyro_of(8, 180 / M_PI));
+  const auto found = compare_with_gyro(turns_of(8, kTurned, 0.0), gyro_of(8, 180 / M_PI), Duration(0));
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->gyro_scale, 180 / M_PI, 0.5);
 }
 
 TEST(GyroAgreement, SaysNothingOfTooFewTurnsOrOtherTimes) {
   const std::vector<Turn> turns = turns_of(8, kTurned, 0.0);
-  EXPECT_FALSE(compare_with_gyro(std::span(turns).first(10), gyro_of(8)));
-  EXPECT_FALSE(compare_with_gyro(turns, GyroIntegral()));
-  EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 100.0), gyro_of(8)));
+  EXPECT_FALSE(compare_with_gyro(std::span(turns).first(10), gyro_of(8), Duration(0)));
+  EXPECT_FALSE(compare_with_gyro(turns, GyroIntegral(), Duration(0)));
+  EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 100.0), gyro_of(8), Duration(0)));
 }
 
 TEST(GyroIntegral, HasNothingAcrossAGapOrBeyondItsEnds) {

@@ -68,12 +68,12 @@ ImuSurvey ImuSurveyor::result() const {
   // Differences of white noise have twice its variance; the density is the deviation times the root of the step.
   const double step_s = to_seconds(calm.time) / steps;
   const auto density = [&](double differences) { return std::sqrt(differences / (3 * steps) / 2 * step_s); };
-  survey.gyro_noise = density(calm.gyro_differences);
-  survey.accel_noise = density(calm.accel_differences);
-  survey.at_rest = calm.gyro_deviation() < kRestGyro && calm.accel_deviation() < kRestAccel;
-  survey.calm_at = calm.begin;
-  survey.calm_gyro = calm.gyro / n;
-  survey.calm_accel = calm.accel / n;
+  survey.calm = {calm.begin,
+                 calm.gyro_deviation() < kRestGyro && calm.accel_deviation() < kRestAccel,
+                 density(calm.gyro_differences),
+                 density(calm.accel_differences),
+                 calm.gyro / n,
+                 calm.accel / n};
   return survey;
 }
 

@@ -11,17 +11,21 @@
 
 namespace edged {
 
+/// The calmest half second of an IMU. Continuous-time densities, from differences of successive samples: there white noise
+/// remains, motion does not.
+struct ImuCalm {
+  Timestamp begin;
+  bool at_rest = false;
+  double gyro_noise = 0.0;   ///< [rad/s/sqrt(Hz)]
+  double accel_noise = 0.0;  ///< [m/s^2/sqrt(Hz)]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< mean: at rest the gyro's bias [rad/s]
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean: at rest upwards [m/s^2]
+};
+
 struct ImuSurvey {
-  /// Continuous-time densities, from differences of successive samples in the calmest half second: there white noise
-  /// remains, motion does not.
-  double gyro_noise = 0.0;                                 ///< [rad/s/sqrt(Hz)]
-  double accel_noise = 0.0;                                ///< [m/s^2/sqrt(Hz)]
-  bool at_rest = false;                                    ///< that half second was one of rest
-  Timestamp calm_at;                                       ///< where it begins
-  Eigen::Vector3d calm_gyro = Eigen::Vector3d::Zero();   ///< mean there: at rest the gyro's bias [rad/s]
-  Eigen::Vector3d calm_accel = Eigen::Vector3d::Zero();  ///< mean there: at rest upwards [m/s^2]
-  double mean_accel = 0.0;                                 ///< length of the specific force over all [m/s^2]
-  double mean_gyro = 0.0, max_gyro = 0.0;                  ///< angular speed over all [rad/s]
+  std::optional<ImuCalm> calm;             ///< nothing where no half second has 20 samples
+  double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
+  double mean_gyro = 0.0, max_gyro = 0.0;  ///< angular speed [rad/s]
 };
 
 /// Takes samples in time order. Memory is bounded.

@@ -32,7 +32,7 @@ Duration Survey::overlap() const {
     begin = std::max(begin, *stream->begin);
     end = std::min(end, *stream->end);
   }
-  return begin == Timestamp::min() ? Duration(0) : std::max(end - begin, Duration(0));
+  return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
 
 Surveyor::Surveyor(const DatasetInfo& info) : events_(kEventSilence), event_details_(info.event_sensor) {}

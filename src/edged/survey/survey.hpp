@@ -31,7 +31,7 @@ struct Survey {
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
 
-  /// Time that all sensors there cover, if any.
+  /// Time that all sensors there cover; below zero: how far their clocks are apart.
   Duration overlap() const;
 };
 

@@ -67,12 +67,42 @@ TEST(ImuSurveyor, EstimatesNoiseAtRestOfWhiteNoise) {
                   Eigen::Vector3d(0, 0, 9.81 + moving) + noise(kAccel) * 0.2});
   }
   const ImuSurvey survey = surveyor.result();
-  EXPECT_TRUE(survey.at_rest);
-  EXPECT_GE(survey.calm_at, at(1.5));
-  EXPECT_NEAR(survey.gyro_noise / (0.2 * kGyro), 1.0, 0.15);
-  EXPECT_NEAR(survey.accel_noise / (0.2 * kAccel), 1.0, 0.15);
-  EXPECT_NEAR(survey.calm_gyro.x(), 0.02, 2e-3);
+  ASSERT_TRUE(survey.calm);
+  EXPECT_TRUE(survey.calm->at_rest);
+  EXPECT_GE(survey.calm->begin, at(1.5));
+  EXPECT_NEAR(survey.calm->gyro_noise / (0.2 * kGyro), 1.0, 0.15);
+  EXPECT_NEAR(survey.calm->accel_noise / (0.2 * kAccel), 1.0, 0.15);
+  EXPECT_NEAR(survey.calm->gyro.x(), 0.02, 2e-3);
   EXPECT_NEAR(survey.mean_accel, 9.81, 0.05);
+}
+
+TEST(ImuSurveyor, SaysNothingOfNoiseFromTooFewSamples) {
+  ImuSurveyor surveyor;
+  EXPECT_FALSE(surveyor.result().calm);
+  surveyor.add({.t = at(0), .accel_B = {0, 0, 9.81}});
+  EXPECT_FALSE(surveyor.result().calm);
+  EXPECT_NEAR(surveyor.result().mean_accel, 9.81, 1e-9);
+}
+
+TEST(EventSurveyor, SurvivesAnySensorAndOneEvent) {
+  for (const cv::Size sensor : {cv::Size(), cv::Size(1, 1), cv::Size(65536, 65536), cv::Size(346, 8388868)}) {
+    EventSurveyor surveyor(sensor);
+    EXPECT_EQ(surveyor.result().extent, cv::Size());
+    const std::vector<Event> one{{at(1), 65535, 65535, true}, {at(1), 0, 0, true}};
+    surveyor.add(one);
+    EXPECT_EQ(surveyor.result().extent, cv::Size(65536, 65536));
+    EXPECT_EQ(surveyor.result().hot_pixels, 0u);
+  }
+}
+
+TEST(EventSurveyor, AThingThatMovesIsNotMadeOfHotPixels) {
+  EventSurveyor surveyor(cv::Size(100, 100));
+  std::vector<Event> events;
+  for (int i = 0; i < 1000; ++i) events.push_back({at(i * 1e-3), static_cast<std::uint16_t>(i % 100), 90, true});
+  for (int i = 0; i < 40'000; ++i)
+    events.push_back({at(1 + i * 1e-4), static_cast<std::uint16_t>(20 + i % 30), static_cast<std::uint16_t>(20 + i / 30 % 3), true});
+  surveyor.add(events);
+  EXPECT_EQ(surveyor.result().hot_pixels, 0u);
 }
 
 TEST(Survey, OverlapIsTheTimeThatAllSensorsCover) {

@@ -139,9 +139,9 @@ class PropheseeDataset final : public StreamedDataset {
           now.unknown);
   }
 
-  /// From the last block; nothing for EVT 3, whose time wraps every 17 s.
+  /// From the last block; nothing where the counter may have wrapped before it (EVT 3: 17 s, DAT: 72 min).
   std::optional<Timestamp> last_stamp_of(const PropheseeHeader& header, cv::Size geometry) {
-    if (header.format == EvtFormat::Evt3) return std::nullopt;
+    if (header.format == EvtFormat::Evt3 || header.format == EvtFormat::Dat) return std::nullopt;
     const std::uint64_t blocks = (file_.size() - header.bytes) / kEventBlockBytes;
     std::vector<Event> events;
     EvtDecoder(header.format, geometry.width, geometry.height)

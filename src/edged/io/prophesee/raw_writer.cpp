@@ -8,6 +8,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/prophesee/evt_encoder.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
@@ -25,6 +26,7 @@ class EvtFileWriter final : public RecordingWriter {
   void write(const EventBatch& batch) override {
     if (batch.events.empty()) return;
     if (file_.size() == 0) write_header(batch.events.front().t);
+    if (format_ == EvtFormat::Dat) refuse_long_silence(batch.events);
     shifted_ = batch.events;
     for (Event& event : shifted_) event.t -= offset_;
     file_.write(encoder_.encode(shifted_));
@@ -50,12 +52,24 @@ class EvtFileWriter final : public RecordingWriter {
     file_.write(text);
   }
 
+  /// A step of more than half the counter's range would look like one back.
+  void refuse_long_silence(std::span<const Event> events) {
+    constexpr Duration kLongest = std::chrono::microseconds(std::int64_t{7} << 28);
+    for (const Event& event : events) {
+      if (last_ && event.t - *last_ > kLongest)
+        throw InputError::format("{}: no events from {} to {} s: DAT cannot hold a silence of more than {:.0f} minutes; take raw",
+                                 name_, format_seconds(*last_), format_seconds(event.t), to_seconds(kLongest) / 60);
+      last_ = event.t;
+    }
+  }
+
   std::string name_;
   cv::Size sensor_;
   EvtFormat format_;
   EvtEncoder encoder_;
   OutputFile file_;
   Duration offset_{0};
+  std::optional<Timestamp> last_;
   std::vector<Event> shifted_;
 };
 

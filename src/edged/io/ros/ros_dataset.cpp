@@ -83,6 +83,8 @@ void RosDataset::feed_events(const std::string& type, WireReader message) {
     size = cv::Size(static_cast<int>(array.width), static_cast<int>(array.height));
     events = std::move(array.events);
   }
+  constexpr int kMostSide = 16384;  // as --geometry
+  if (size.width > kMostSide || size.height > kMostSide) throw Damage("a sensor of that size");
   if (info_.event_sensor.empty()) {
     const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
     set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));

@@ -80,10 +80,10 @@ void TextDataset::find_ends() {
 
 std::optional<Measurement> TextDataset::next() {
   while (true) {
-    const Turn turn = next_turn(next_stamp(imu_), next_stamp(events_), next_stamp(frames_));
-    if (turn.stream == Turn::Stream::None) return std::nullopt;
-    if (turn.stream == Turn::Stream::Imu) return imu_->pop();
-    if (turn.stream == Turn::Stream::Events)
+    const NextStream turn = next_stream(next_stamp(imu_), next_stamp(events_), next_stamp(frames_));
+    if (turn.stream == NextStream::Stream::None) return std::nullopt;
+    if (turn.stream == NextStream::Stream::Imu) return imu_->pop();
+    if (turn.stream == NextStream::Stream::Events)
       return EventBatch{layout_.events->camera, events_->take_before(turn.events_end)};
     if (auto frame = load(frames_->pop())) return std::move(*frame);
   }
