@@ -48,7 +48,8 @@ TEST_P(PropheseeFile, GivesBackEveryEvent) {
   EXPECT_EQ(info.name, "a");
   EXPECT_EQ(info.begin, events.front().t);
   EXPECT_EQ(info.end.value_or(events.back().t), events.back().t);
-  EXPECT_EQ(info.end.has_value(), GetParam().format != EvtFormat::Evt3);
+  const bool wraps = GetParam().format == EvtFormat::Evt3 || GetParam().format == EvtFormat::Dat;
+  EXPECT_EQ(info.end.has_value(), !wraps);  // where the counter may have wrapped, the end is not known beforehand
   const Contents c = read_all(*recording.dataset);
   EXPECT_TRUE(c.events == events);
   EXPECT_TRUE(recording.dataset->repairs().empty());
