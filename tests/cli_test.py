@@ -201,7 +201,7 @@ class Recordings(WithFolder):
         cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="edged_cli_"))
         cls.addClassCleanup(shutil.rmtree, cls.shared)
         cls.flight = cls.shared / "flight"
-        made = edged("simulate", "--preset", "handheld-fast", "--duration", 5, "--out", cls.flight, "--quiet")
+        made = edged("simulate", "--preset", "handheld-fast", "--duration", 3, "--out", cls.flight, "--quiet")
         assert made.returncode == 0, made.stderr
 
     def changed(self, name, change):
