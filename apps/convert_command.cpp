@@ -14,6 +14,7 @@
 #include "edged/io/recording_writer.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "json_text.hpp"
 #include "source.hpp"
 #include "status_line.hpp"
 
@@ -52,7 +53,7 @@ void print_summary(const ConvertOptions& options, const WritableFormat& format, 
         {"left_out",
          {{"frames", counts.frames_left_out}, {"imu", counts.imu_left_out}, {"poses", counts.poses_left_out}}},
         {"repairs", repairs}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
     return;
   }
   fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses\n{}", options.target.string(), counts.events,

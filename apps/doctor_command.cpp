@@ -12,6 +12,7 @@
 #include "edged/survey/diagnosis.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "json_text.hpp"
 #include "survey_run.hpp"
 #include "survey_text.hpp"
 
@@ -54,7 +55,7 @@ int run_doctor(const DoctorOptions& options) {
     checks.push_back(
         {cameras[i], recording.calibration->has_extrinsics, compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
   const std::vector<Finding> findings = diagnose(survey, recording.calibration.has_value(), checks);
-  fmt::print("{}", options.json ? to_json(findings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n" : to_text(findings));
+  fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n" : to_text(findings));
   const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
   return ill ? kExitInput : kExitOk;
 }

@@ -9,6 +9,7 @@
 
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "json_text.hpp"
 #include "survey_run.hpp"
 #include "survey_text.hpp"
 
@@ -32,7 +33,7 @@ int run_info(const InfoOptions& options) {
   const Recording recording = open_uncalibrated(options.source);
   const Survey survey = survey_recording(*recording.dataset, options.quiet, {});
   if (options.json)
-    fmt::print("{}\n", to_json(survey).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(to_json(survey)));
   else
     fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
   if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts reach as far as was read");
