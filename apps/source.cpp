@@ -8,6 +8,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/sim/dimmed_frames.hpp"
 #include "edged/sim/simulator.hpp"
 #include "interrupt.hpp"
 
@@ -56,6 +57,20 @@ RecordingOptions recording_options(const SourceOptions& options) {
   return chosen;
 }
 
+/// With the calibration that was chosen, or which the recording brings, if any.
+Recording open_whole(const SourceOptions& options) {
+  std::optional<Calibration> calibration = chosen_calibration(options);
+  if (options.recording.starts_with(kSimulatorPrefix)) {
+    auto simulator = std::make_unique<Simulator>(simulator_config(options.recording));
+    if (!calibration) calibration = simulator->calibration();
+    return {std::move(simulator), std::move(calibration)};
+  }
+  Recording recording =
+      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
+  if (calibration) recording.calibration = std::move(calibration);
+  return recording;
+}
+
 }  // namespace
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
@@ -77,18 +92,22 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
                   "it out; may be repeated "
                   "[the only topic of a fitting type]")
       ->allow_extra_args(false);
+  command.add_option("--from", options.piece.from_s, "Leave out what comes before [s since the recording's begin]")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--to", options.piece.to_s, "Leave out what comes from then on [s since the recording's begin]")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--dim-frames", options.dim_frames,
+                  "Frames as their camera would give them in so much less light: 0.06 leaves some 20 grey levels")
+      ->check(CLI::Range(1e-3, 1.0));
 }
 
 Recording open_uncalibrated(const SourceOptions& options) {
-  std::optional<Calibration> calibration = chosen_calibration(options);
-  if (options.recording.starts_with(kSimulatorPrefix)) {
-    auto simulator = std::make_unique<Simulator>(simulator_config(options.recording));
-    if (!calibration) calibration = simulator->calibration();
-    return {std::move(simulator), std::move(calibration)};
-  }
-  Recording recording =
-      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
-  if (calibration) recording.calibration = std::move(calibration);
+  Recording recording = open_whole(options);
+  if (options.piece.from_s > 0.0 || options.piece.to_s)
+    recording.dataset = std::make_unique<RecordingPiece>(std::move(recording.dataset), options.piece);
+  if (options.dim_frames)
+    recording.dataset = std::make_unique<DimmedFrames>(std::move(recording.dataset), *options.dim_frames);
   return recording;
 }
 

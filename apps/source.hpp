@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "edged/core/dataset.hpp"
+#include "edged/core/recording_piece.hpp"
 #include "edged/io/recording.hpp"
 
 namespace edged {
@@ -23,6 +24,8 @@ struct SourceOptions {
   std::string geometry;             ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
   std::string time_unit;            ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
   std::vector<std::string> topics;  ///< of bags: ROLE=NAME
+  PieceBounds piece;
+  std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
 
 struct Source {
@@ -31,7 +34,7 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// Adds RECORDING, --rig, --calib, --geometry, --time-unit and --topic.
+/// Adds RECORDING, --rig, --calib, --geometry, --time-unit, --topic, --from, --to and --dim-frames.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be

@@ -221,6 +221,39 @@ class Recordings(WithFolder):
         for word in ("events", "no gaps", "highest rate", "hot pixels", "noise", "ground truth"):
             self.assertIn(word, text)
 
+    def test_a_piece_holds_what_lies_between_its_bounds(self):
+        whole = json.loads(edged("info", self.flight, "--json").stdout)
+        begin = whole["imu"]["begin_ns"]
+        for name in ("flight", "part.h5", "part.bag"):
+            recording = self.flight if name == "flight" else self.folder / name
+            if recording != self.flight:
+                self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+            rig = ["--calib", self.flight / "calibration.yaml"]
+            piece = json.loads(edged("info", recording, *rig, "--from", 1, "--to", 1.5, "--json").stdout)
+            for stream, slack in (("events", 1), ("frames", 100), ("imu", 3)):  # [ms] clocks differ by 2.4 ms
+                self.assertGreaterEqual(piece[stream]["begin_ns"] - begin, 1e9 - 3e6, f"{name} {stream}")
+                self.assertLess(piece[stream]["begin_ns"] - begin, 1e9 + 1e6 * slack, f"{name} {stream}")
+                self.assertLess(piece[stream]["end_ns"] - begin, 1.5e9, f"{name} {stream}")
+                self.assertGreater(piece[stream]["end_ns"] - begin, 1.5e9 - 1e6 * slack - 3e6, f"{name} {stream}")
+        converted = self.folder / "piece"
+        self.assertEqual(edged("convert", self.flight, converted, "--from", 1, "--to", 1.5, "--quiet").returncode, 0)
+        self.assertEqual(json.loads(edged("info", converted, "--json").stdout)["events"]["count"], piece["events"]["count"])
+
+    def test_bounds_that_hold_nothing_are_refused(self):
+        self.assert_refused(edged("info", self.flight, "--from", 2, "--to", 1), "--from 2", "--to")
+        self.assert_refused(edged("run", self.flight, "--from", 60, "--out", self.folder / "run"), "--from 60", "3.0")
+        self.assertEqual(edged("info", self.flight, "--from", -1).returncode, 2)
+
+    def test_dimmed_frames_are_dark_whoever_reads_them(self):
+        bright = json.loads(edged("info", self.flight, "--json").stdout)["frames"]
+        dark = json.loads(edged("info", self.flight, "--dim-frames", 0.06, "--json").stdout)["frames"]
+        self.assertEqual(dark["count"], bright["count"])
+        self.assertAlmostEqual(dark["mean_brightness"], 0.06 * bright["mean_brightness"], delta=0.5)
+        folder = self.folder / "dark"
+        self.assertEqual(edged("convert", self.flight, folder, "--dim-frames", 0.06, "--quiet").returncode, 0)
+        self.assertEqual(json.loads(edged("info", folder, "--json").stdout)["frames"]["mean_brightness"],
+                         dark["mean_brightness"])
+
     def test_the_doctor_finds_a_healthy_recording_healthy(self):
         result = edged("doctor", self.flight)
         self.assertEqual(result.returncode, 0, result.stdout)

@@ -22,6 +22,12 @@ void FrameCameraConfig::visit(ConfigFields& fields) {
   fields.add("read_noise_electrons", read_noise_electrons, {"", 0, 1e5, "noise that does not depend on light"});
 }
 
+std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random) {
+  const double noise = std::sqrt(electrons + read_noise * read_noise);
+  const double level = (electrons + noise * random.normal()) / electrons_per_level;
+  return static_cast<std::uint8_t>(std::clamp(level + 0.5, 0.0, 255.0));
+}
+
 FrameCamera::FrameCamera(const FrameCameraConfig& config, int width, int height, std::uint64_t seed)
     : config_(config),
       width_(width),
@@ -42,10 +48,8 @@ cv::Mat FrameCamera::read_out() {
   std::size_t i = 0;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x, ++i) {
-      const double electrons = light_[i] * 1e3 * config_.electrons_per_ms;
-      const double noise = std::sqrt(electrons + config_.read_noise_electrons * config_.read_noise_electrons);
-      const double level = (electrons + noise * random_.normal()) / config_.electrons_per_level;
-      image(y, x) = static_cast<std::uint8_t>(std::clamp(level + 0.5, 0.0, 255.0));
+      image(y, x) = grey_level(light_[i] * 1e3 * config_.electrons_per_ms, config_.read_noise_electrons,
+                               config_.electrons_per_level, random_);
     }
   }
   std::fill(light_.begin(), light_.end(), 0.0F);

@@ -26,6 +26,9 @@ struct FrameCameraConfig {
   void visit(ConfigFields& fields);
 };
 
+/// What a pixel that caught so many electrons reads: with photon noise and read noise [electrons], in 8 bits.
+std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random);
+
 class FrameCamera {
  public:
   FrameCamera(const FrameCameraConfig& config, int width, int height, std::uint64_t seed);

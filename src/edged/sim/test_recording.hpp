@@ -32,16 +32,20 @@ inline SimulatorConfig small(const std::string& preset, double duration_s) {
   return config;
 }
 
-inline Recorded record(const SimulatorConfig& config) {
-  Simulator simulator(config);
+inline Recorded record(Dataset& dataset) {
   Recorded out;
-  while (const auto measurement = simulator.next()) {
+  while (const auto measurement = dataset.next()) {
     if (const auto* batch = std::get_if<EventBatch>(&*measurement))
       out.events.insert(out.events.end(), batch->events.begin(), batch->events.end());
     if (const auto* frame = std::get_if<Frame>(&*measurement)) out.frames.push_back(*frame);
     if (const auto* sample = std::get_if<ImuSample>(&*measurement)) out.imu.push_back(*sample);
   }
   return out;
+}
+
+inline Recorded record(const SimulatorConfig& config) {
+  Simulator simulator(config);
+  return record(simulator);
 }
 
 inline bool same(const Recorded& a, const Recorded& b) {

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A part of a recording, as if the sensors had been switched on late and off early.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "edged/core/dataset.hpp"
+
+namespace edged {
+
+/// Seconds since the recording's begin: from <= t < to.
+struct PieceBounds {
+  double from_s = 0.0;
+  std::optional<double> to_s;  ///< nothing: up to the end
+};
+
+/// Each sensor's measurements are kept by their own stamps. The truth keeps a pose on either side of the piece.
+class RecordingPiece final : public Dataset {
+ public:
+  /// Where the recording does not know its begin, its first measurement is; it is read here. Throws InputError for
+  /// bounds that hold nothing, here, or in next() where only the recording's end tells.
+  RecordingPiece(std::unique_ptr<Dataset> whole, const PieceBounds& bounds);
+
+  const DatasetInfo& info() const override { return info_; }
+  std::optional<Measurement> next() override;
+  std::optional<GroundTruth> ground_truth() const override;
+  std::map<std::string, std::size_t> repairs() const override { return whole_->repairs(); }
+
+ private:
+  std::optional<Measurement> read();
+  /// The part of it that lies in the piece, if any; notes which sensors are through with it.
+  std::optional<Measurement> cut(Measurement measurement);
+  bool all_past() const { return !(left_.events || left_.frames || left_.imu); }
+
+  std::unique_ptr<Dataset> whole_;
+  DatasetInfo info_;
+  PieceBounds bounds_;
+  Timestamp from_, to_;
+  std::optional<Measurement> first_;  // read for the begin
+  Timestamp newest_ = Timestamp::min();
+  bool empty_ = true;  // nothing handed out yet
+  struct {
+    bool events, frames, imu;
+  } left_;  // sensors that have not reached the piece's end
+};
+
+}  // namespace edged

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a recording as their camera would have given them in less light; all else as recorded.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "edged/core/dataset.hpp"
+
+namespace edged {
+
+/// What a typical 8-bit camera gives at a share `factor` of the light, with unchanged exposure and gain: fewer
+/// electrons (10000 fill 255 grey levels), their noise, a read noise of 1.2 grey levels. The noise follows from the
+/// stamp: the same frame looks the same wherever reading began.
+class DimmedFrames final : public Dataset {
+ public:
+  DimmedFrames(std::unique_ptr<Dataset> bright, double factor);
+
+  const DatasetInfo& info() const override { return bright_->info(); }
+  std::optional<Measurement> next() override;
+  std::optional<GroundTruth> ground_truth() const override { return bright_->ground_truth(); }
+  std::map<std::string, std::size_t> repairs() const override { return bright_->repairs(); }
+
+ private:
+  cv::Mat dim(const Frame& frame) const;
+
+  std::unique_ptr<Dataset> bright_;
+  double factor_;
+};
+
+}  // namespace edged
