@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the benchmarks share: recordings made once, runs of the program, what counts as a failure, and the progress bar."""
 import concurrent.futures
+import csv
 import json
 import os
 import pathlib
@@ -10,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tarfile
 import threading
 import time
 
@@ -17,6 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
 MODES = ["fused", "frames", "events"]
 NEVER_GOOD = 4  # exit code of edged run
+MIRROR_RIG = "davis240c_ecd"
 # A run that loses its way has failed, and so has one that does not know that it has.
 LEAST_COVERAGE = 0.5
 WORST_SHARE_OF_PATH = 0.05
@@ -38,6 +41,11 @@ def call(command, accepted=(0,)):
 def add_program_option(parser):
     parser.add_argument("--edged", default=DEFAULT_PROGRAM, type=pathlib.Path,
                         help="the program [$EDGED, or build/release/bin/edged]")
+
+
+def add_data_option(parser):
+    parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("EDGED_DATA", ROOT / "../shared/data"),
+                        help="folder that holds mirror/ and euroc_mh01/ [$EDGED_DATA, or ../shared/data]")
 
 
 def check_program(edged):
@@ -68,14 +76,37 @@ def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(
     return folder
 
 
-def estimate(edged, recording, mode, out, settings=(), rig=None):
-    """Runs the odometry; the content of metrics.json."""
-    command = [edged, "run", recording, "--mode", mode, "--out", out, "--json", "--quiet"]
+def unpacked_mirrors(data, cache):
+    """Folders of the mirrors that come as archives, unpacked in the cache."""
+    folders = []
+    for archive in sorted((data / "mirror").glob("*.tar.xz")):
+        folder = cache / archive.name.removesuffix(".tar.xz")
+        if not folder.is_dir():
+            unfinished = folder.with_name(folder.name + ".unfinished")
+            with tarfile.open(archive) as tar:
+                tar.extractall(unfinished)
+            (unfinished / folder.name).rename(folder)
+            unfinished.rmdir()
+        folders.append(folder)
+    return folders
+
+
+def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
+    """Runs the odometry, with extra arguments; the content of metrics.json."""
+    command = [edged, "run", recording, "--mode", mode, "--out", out, "--json", "--quiet", *extra]
     if rig:
         command += ["--rig", rig]
     for setting in settings:
         command += ["--set", setting]
     return json.loads(call(command, accepted=(0, NEVER_GOOD)))
+
+
+def read_states(folder):
+    """(seconds, status, position) of every packet."""
+    with open(folder / "states.csv", encoding="utf-8") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return [(1e-9 * int(row["t_ns"]), row["status"],
+                 tuple(float(row[key]) for key in ("px_m", "py_m", "pz_m")) if row["px_m"] else None) for row in rows]
 
 
 def failure(metrics):

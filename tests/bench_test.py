@@ -24,7 +24,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "flights", "sim_suite", "../tests/stress"):
+        for name in ("ablation", "flights", "sim_suite", "starts", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -35,6 +35,18 @@ class Bench(unittest.TestCase):
         self.assertEqual((self.folder / "table.md").read_text(), first.stdout)
         runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
         self.assertEqual(len(runs), 1)
+        self.assertEqual(bench(*args).stdout, first.stdout)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_starts_prints_a_row_a_recording_and_keeps_what_it_has_run(self):
+        args = ["starts", "--cache", self.folder, "--no-data", "--simulated", "room", "--duration", 4.2, "--modes", "frames",
+                "--length", 3, "--least", 3]
+        first = bench(*args)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertRegex(first.stdout, r"\| room_1_4\.2s +\| frames +\| 2 +\|")
+        self.assertEqual((self.folder / "table.md").read_text(), first.stdout)
+        runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
+        self.assertEqual(len(runs), 2)
         self.assertEqual(bench(*args).stdout, first.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
 
