@@ -18,6 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 constexpr std::size_t kMinPairCorners = 10;
+constexpr std::size_t kMinSights = 3;    // of a corner
 constexpr double kBiasPrior = 0.15;      // [rad/s]
 constexpr double kRayNoise = 5e-3;       // [rad]
 
@@ -133,7 +134,7 @@ std::map<FeatureId, std::vector<Sight>> gather_tracks(const std::vector<InitFram
       for (const FeatureObservation& f : seen->features) tracks[f.id].push_back({i, c, f.point});
     }
   }
-  std::erase_if(tracks, [](const auto& track) { return track.second.size() < 4; });
+  std::erase_if(tracks, [](const auto& track) { return track.second.size() < kMinSights; });
   return tracks;
 }
 
@@ -359,27 +360,6 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
     result.states.push_back(state);
   }
   return result;
-}
-
-double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise) {
-  for (std::size_t first = 0; first + 1 < frames.size(); ++first) {
-    std::vector<RayPair> rays;
-    for (const RigCamera& camera : rig.cameras) {
-      const std::vector<RayPair> more = common_rays(frames[first], frames.back(), camera);
-      rays.insert(rays.end(), more.begin(), more.end());
-    }
-    if (rays.size() < kMinPairCorners) continue;
-    // Without its bias the gyro would call the drift of a second or two parallax.
-    const Vector3d bg = align_gyro_bias(frames, rig, noise).value_or(Vector3d::Zero());
-    const Matrix3d R = between(frames, first, frames.size() - 1, bg, noise).dR(bg).toRotationMatrix();
-    std::vector<double> angles;
-    for (const RayPair& pair : rays) {
-      const Vector3d turned = R * pair.ray_1;
-      angles.push_back(std::atan2(pair.ray_0.cross(turned).norm(), pair.ray_0.dot(turned)));
-    }
-    return median(std::move(angles));
-  }
-  return 0.0;
 }
 
 }  // namespace edged

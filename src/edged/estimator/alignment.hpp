@@ -48,8 +48,4 @@ std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& fra
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
                                double accel_bias_sigma);
 
-/// Median angle between the rays of the newest view's corners and their rays in the oldest view that shows enough of
-/// them, rotation taken out with the gyro [rad]; zero when no view does.
-double median_parallax(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise);
-
 }  // namespace edged

@@ -76,7 +76,6 @@ TEST(AlignGyroBias, SaysNothingWithoutCommonCorners) {
   }
   EXPECT_FALSE(align_gyro_bias(frames, world.rig(), world.noise()).has_value());
   EXPECT_FALSE(align(frames, world.rig(), world.noise(), kAccelBiasSigma).has_value());
-  EXPECT_EQ(median_parallax(frames, world.rig(), world.noise()), 0.0);
 }
 
 TEST(Align, IsExactWithoutNoise) {
@@ -119,24 +118,6 @@ TEST(Align, TurnsAnAccelerometerBiasIntoNoMoreTiltThanItsShareOfGravity) {
   ASSERT_TRUE(alignment.has_value());
   const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
   EXPECT_LT(e.gravity_deg, 2.5);
-}
-
-TEST(MedianParallax, IsNothingInPureRotationAndGrowsWithTheBaseline) {
-  // The gyro's bias, 1.5 deg/s, must not pass for parallax.
-  TestWorld turning({.speed = 0.0});
-  EXPECT_LT(median_parallax(views_of(turning, 1.0), turning.rig(), turning.noise()), 0.5 * kDeg);
-  TestWorld moving({});
-  const std::vector<InitFrame> frames = views_of(moving, 1.0, 5);
-  const double parallax = median_parallax(frames, moving.rig(), moving.noise());
-  // The baseline at 2.5 to 3 m median distance, seen at any angle.
-  const double baseline = (moving.T_W_B(1.0).translation() - moving.T_W_B(1.0 + 4 * kSpacing_s).translation()).norm();
-  EXPECT_GT(parallax, 0.5 * baseline / 3.0);
-  EXPECT_LT(parallax, 1.5 * baseline / 2.5);
-}
-
-TEST(MedianParallax, OfOneViewIsNothing) {
-  TestWorld world({});
-  EXPECT_EQ(median_parallax(views_of(world, 1.0, 1), world.rig(), world.noise()), 0.0);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
 constexpr double kDoubtGain = 0.25;           // a packet
-constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is moving is not at rest
+constexpr double kBetterStart = 0.8;          // a start that takes the place of another knows the scale so much better
+constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
@@ -31,16 +32,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
   standstill_.add(input.imu, input.observations, input.events_quiet);
   result.standstill = standstill_.still();
-  if (!initialized_) {
-    StartResult start = initializer_.add(input, standstill_);
-    result.waiting_for = std::move(start.waiting_for);
-    if (!start.window) return result;
-    window_ = std::move(*start.window);
-    window_.free_calibration(config_.calibration);
-    initialized_ = true;
-    slide();
-    return result;
-  }
+  if (start(input, result) || !initialized_) return result;
   append(input);
   result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
@@ -49,7 +41,32 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
   slide();
+  settle_scale(input.keyframe);
+  result.provisional = provisional();
   return result;
+}
+
+/// The start, or while it is provisional a better one in its place. True when there was one.
+bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
+  if (initialized_ && !provisional()) return false;
+  const double wanted = initialized_ ? kBetterStart * scale_sigma_ : config_.provisional_scale_sigma;
+  StartResult found = initializer_.add(input, initialized_ ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma));
+  result.waiting_for = std::move(found.waiting_for);
+  if (!found.start) return false;
+  window_ = std::move(found.start->window);
+  scale_sigma_ = found.start->scale_sigma;
+  initialized_ = result.new_frame = true;
+  if (!provisional()) window_.free_calibration(config_.calibration);
+  result.provisional = provisional();
+  slide();
+  return true;
+}
+
+/// What a provisional start has seen since may have told it the scale.
+void Estimator::settle_scale(bool keyframe) {
+  if (!provisional() || !keyframe) return;
+  scale_sigma_ = std::min(scale_sigma_, config_.sigma_inflation * scale_sigma(window_));
+  if (!provisional()) window_.free_calibration(config_.calibration);
 }
 
 Eigen::Vector3d Estimator::gyro_bias() const {
@@ -83,7 +100,7 @@ void Estimator::append(const EstimatorInput& input) {
   const StateId id = window_.add_state(window_state(state, input.imu.back().gyro_B, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
-  if (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed) {
+  if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {
     window_.states.at(id).rested = true;
     window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
                                                {config_.zero_velocity_sigma, kFree, kFree}));
@@ -118,11 +135,10 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 /// what is not so: something that moves, or errors they have in common.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
-  constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
-    const std::optional<double> median = median_residual(window_, camera);
-    if (!median) continue;
-    const double wanted = std::max(*median, 1e-3) / kMedianOfNorm * config_.noise_inflation;
+    const std::optional<double> spread = median_residual(window_, camera);
+    if (!spread) continue;
+    const double wanted = std::max(*spread, 1e-3) * config_.noise_inflation;
     double& scale = window_.noise_scale[camera];
     scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale, config_.max_noise_scale);
   }

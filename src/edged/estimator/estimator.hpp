@@ -23,6 +23,8 @@ struct EstimatorResult {
   int landmarks_seen = 0;           ///< of them, seen by the newest state
   double imu_strain = 0.0;          ///< of the window: see Window::imu_strain [sigma]
   bool standstill = false;
+  bool new_frame = false;           ///< the estimator has started (again) with this input, in a frame of its own
+  bool provisional = false;         ///< the start does not know the scale well enough yet
   bool plausible = true;            ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
 
@@ -35,6 +37,8 @@ class Estimator {
   EstimatorResult add(const EstimatorInput& input);
 
   bool initialized() const { return initialized_; }
+  /// The start is used, but its scale is not known to init_scale_sigma yet.
+  bool provisional() const { return scale_sigma_ > config_.init_scale_sigma; }
   /// The newest state; meaningful once initialised.
   NavState newest() const { return window_.newest().nav(); }
   /// Gyro bias known so far (zero at first) [rad/s].
@@ -51,6 +55,8 @@ class Estimator {
   const Window& window() const { return window_; }
 
  private:
+  bool start(const EstimatorInput& input, EstimatorResult& result);
+  void settle_scale(bool keyframe);
   void append(const EstimatorInput& input);
   bool take_depth();
   void optimize(EstimatorResult& result, int iterations);
@@ -63,6 +69,7 @@ class Estimator {
   StandstillDetector standstill_;
   Initializer initializer_;
   bool initialized_ = false;
+  double scale_sigma_ = kFree;  ///< of ln scale, while above init_scale_sigma: the start is provisional
   LogScale depth_scale_;
 };
 

@@ -16,13 +16,15 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
   fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
   fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the newest views of a start in motion"});
+  fields.add("init_turn_deg", init_turn_deg, {"deg", 0.5, 90, "turning by this makes the next of these views sooner"});
   fields.add("init_min_views", init_min_views, {"", 5, 30, "views a start in motion needs at least"});
   fields.add("init_max_views", init_max_views, {"", 5, 60, "views a start in motion looks back on at most"});
   fields.add("init_max_span_s", init_max_span_s,
              {"s", 0.5, 60, "time a start in motion looks back on at most"});
   fields.add("init_scale_sigma", init_scale_sigma,
-             {"", 0.01, 1, "how well a start in motion must know the scale, as a share of it (standard deviation)"});
-  fields.add("init_parallax_deg", init_parallax_deg, {"deg", 0.1, 30, "parallax a start in motion waits for"});
+             {"", 0.01, 1, "how well a start in motion must know the scale to be Good, as a share of it (standard deviation)"});
+  fields.add("provisional_scale_sigma", provisional_scale_sigma,
+             {"", 0.01, 1, "knowing it only to this, a start is used, Degraded, and refined"});
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
   fields.add("noise_inflation", noise_inflation,
              {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});

@@ -89,7 +89,7 @@ TEST(Estimator, StartsInMotionAndFindsScaleAndGravity) {
 TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
   const RunResult result = run({.speed = 0.0}, 5.0);
   EXPECT_FALSE(result.initialized);
-  EXPECT_THAT(result.waiting_for, testing::HasSubstr("parallax"));
+  EXPECT_THAT(result.waiting_for, testing::HasSubstr("motion that tells the scale"));
 }
 
 EstimatorConfig self_calibrating() {

@@ -18,14 +18,17 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
-constexpr int kStartIterations = 25;
+constexpr int kStartIterations = 25, kRefineIterations = 8;
 constexpr std::ptrdiff_t kMinStartLandmarks = 15;
 constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleration at rest
+constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: calm is not quite rest
 constexpr double kMaxFreeGravityError = 0.3;  // of a start in motion, when gravity's length is left free
 constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
 constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's sights: more is a wrong start
 constexpr double kMaxTiltSigma_deg = 2.0;     // the accelerometer bias by itself makes it 0.9
 constexpr double kMaxBiasSigmas = 4.0;        // of the accelerometer bias
+constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
+constexpr double kAlignmentSlack = 1.5;       // the solved window may know the scale better than the alignment
 
 void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) {
   // The first sample of a packet repeats the last one of the packet before.
@@ -49,17 +52,16 @@ double visual_rms(const Window& window) {
   return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / (2.0 * n));
 }
 
-/// Standard deviation of the logarithm of the scale: of the longest baseline in the window over its length.
-double scale_sigma(Window& window) {
-  const Eigen::Vector3d origin = window.states.begin()->second.T_W_B().translation();
-  const auto baseline = [&](const auto& entry) { return (entry.second.T_W_B().translation() - origin).norm(); };
-  const auto farthest = std::max_element(window.states.begin(), window.states.end(), [&](const auto& a, const auto& b) {
-    return baseline(a) < baseline(b);
-  });
-  const std::optional<Matrix15d> P = covariance(window, farthest->first);
-  if (!P) return kFree;
-  const Eigen::Vector3d way = farthest->second.T_W_B().translation() - origin;
-  return std::sqrt(way.dot(P->topLeftCorner<3, 3>() * way)) / way.squaredNorm();
+/// Angle that the body has turned over the samples, one way and back counted both [rad].
+double turned_rad(const std::vector<ImuSample>& imu) {
+  double angle = 0.0;
+  for (std::size_t i = 1; i < imu.size(); ++i) angle += imu[i].gyro_B.norm() * to_seconds(imu[i].t - imu[i - 1].t);
+  return angle;
+}
+
+std::string scale_text(double sigma, double most) {
+  return fmt::format("motion that tells the scale: known to {:.0f} %, {:.0f} % wanted", 100.0 * std::min(sigma, 9.99),
+                     100.0 * most);
 }
 
 /// Standard deviation of the newest state's tilt, of the worst direction [rad].
@@ -73,21 +75,32 @@ double tilt_sigma(Window& window) {
 
 }  // namespace
 
-StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector& standstill) {
+double scale_sigma(Window& window) {
+  const auto way_of = [](const auto& entry) { return entry.second.T_W_B().translation(); };
+  const auto farthest = std::max_element(window.states.begin(), window.states.end(), [&](const auto& a, const auto& b) {
+    return way_of(a).norm() < way_of(b).norm();
+  });
+  const std::optional<Matrix15d> P = covariance(window, farthest->first);
+  const Eigen::Vector3d way = way_of(*farthest);
+  if (!P || way.isZero()) return kFree;
+  return std::sqrt(way.dot(P->topLeftCorner<3, 3>() * way)) / way.squaredNorm();
+}
+
+StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma) {
   const bool new_view = buffer_view(input);
-  if (standstill.still()) {
-    const double gravity = standstill.mean_accel_B().norm();
+  if (rest != nullptr && rest->still()) {
+    const double gravity = rest->mean_accel_B().norm();
     if (std::abs(gravity - kGravity) > kMaxGravityError) {
       return {{}, fmt::format("an accelerometer in m/s^2: it reads {:.2f} of 9.81 at rest", gravity)};
     }
-    return {start_at_rest(input, standstill), ""};
+    return {Start{start_at_rest(input, *rest)}, ""};
   }
   if (new_view) {
-    StartResult start = start_in_motion();
-    if (start.window) return start;
-    motion_lacks_ = std::move(start.waiting_for);
+    StartResult result = start_in_motion(most_scale_sigma);
+    if (result.start) return result;
+    motion_lacks_ = std::move(result.waiting_for);
   }
-  return {{}, fmt::format("rest ({}) or {}", standstill.reason(), motion_lacks_)};
+  return {{}, rest == nullptr ? motion_lacks_ : fmt::format("rest ({}) or {}", rest->reason(), motion_lacks_)};
 }
 
 /// Keeps the input as a view when it is time for the next. True when it was.
@@ -99,12 +112,17 @@ bool Initializer::buffer_view(const EstimatorInput& input) {
   }
   const bool any_corner = std::any_of(input.observations.begin(), input.observations.end(),
                                       [](const CameraObservations& view) { return !view.features.empty(); });
-  const Duration spacing = duration_from_seconds(config_.init_spacing_s);
-  if (!any_corner || (!buffer_.empty() && input.t - buffer_.back().t < spacing)) return false;
+  if (!any_corner || !view_due(input)) return false;
   buffer_.push_back({input.t, std::move(pending_imu_), input.observations, input.depth});
   pending_imu_.clear();
   if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) make_room();
   return true;
+}
+
+/// In a fast turn a corner crosses the view within a tenth of a second: views must follow it.
+bool Initializer::view_due(const EstimatorInput& input) const {
+  return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s) ||
+         turned_rad(pending_imu_) > config_.init_turn_deg * kDeg;
 }
 
 /// Slow motion needs time to tell the scale, fast motion close views. Of a full buffer that view goes that is closest to
@@ -139,50 +157,66 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   window.add_observations(id, input.observations);
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
   window.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
-  // At rest the tilt is as well known as the accelerometer bias: gravity's direction is what was measured.
-  LinearPrior tilt;
-  tilt.blocks = {pose};
-  tilt.x0 = {{window.states.at(id).pose.begin(), window.states.at(id).pose.end()}};
-  tilt.J = Eigen::MatrixXd::Zero(2, 6);
-  tilt.J.block<2, 3>(0, 3) = state.T_W_B.R().topRows<2>() / (config_.accel_bias_sigma / kGravity);
-  tilt.r = Eigen::VectorXd::Zero(2);
-  window.soft_priors.push_back(tilt);
+  window.soft_priors.push_back(rest_prior(pose, window.states.at(id).pose, motion, window.states.at(id).motion,
+                                          standstill.mean_accel_B(), kRestAccelSigma));
   window.soft_priors.push_back(motion_prior(
       motion, motion_block(state), {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
   spdlog::info("started at rest at {:.3f} s", to_seconds(input.t));
   return window;
 }
 
-StartResult Initializer::start_in_motion() const {
+StartResult Initializer::start_in_motion(double most_scale_sigma) {
   if (buffer_.size() < static_cast<std::size_t>(config_.init_min_views)) {
     return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
   }
-  const double parallax = median_parallax(buffer_, rig_, noise_) / kDeg;
-  if (parallax < config_.init_parallax_deg) {
-    return {{}, fmt::format("parallax {:.2f} of {:.2f} deg", parallax, config_.init_parallax_deg)};
-  }
+  const Timestamp now = buffer_.back().t;
+  if (now < next_solve_) return {{}, motion_lacks_};
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma);
-  if (!alignment) return {{}, "corners that last for four views"};
+  if (!alignment) return {{}, "corners that last for three views"};
   if (std::abs(alignment->gravity_error) > kMaxFreeGravityError) {
     const double seen = kGravity * (1.0 + alignment->gravity_error);
     return {{}, fmt::format("motion that fits gravity: it says {:.2f} of 9.81 m/s^2", seen)};
   }
-  if (!(alignment->scale_sigma <= config_.init_scale_sigma)) return {{}, scale_text(alignment->scale_sigma)};
+  if (!(alignment->scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
+    return {{}, scale_text(alignment->scale_sigma, most_scale_sigma)};
+  }
+  next_solve_ = now + kSolveEvery;
   Window window = aligned_window(*alignment);
+  solve_start(window);
+  std::string doubt = doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma);
+  if (!doubt.empty()) return {{}, std::move(doubt)};
+  const double sigma = scale_sigma(window);
+  if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
+  spdlog::info("started in motion at {:.3f} s: scale known to {:.1f} %, speed {:.2f} m/s", to_seconds(now),
+               100.0 * sigma, window.newest().nav().v_W.norm());
+  return {Start{std::move(window), sigma}, ""};
+}
+
+void Initializer::solve_start(Window& window) const {
   for (int round = 0; round < 3; ++round) {
-    triangulate_features(window, config_.landmarks);
-    solve(window, kStartIterations);
+    triangulate_features(window, config_.landmarks, Tracks::All);
+    solve(window, round == 0 ? kStartIterations : kRefineIterations);
+    if (round == 1) weigh_sights(window);
     remove_outliers(window, config_.landmarks);
   }
-  std::string doubt = doubt_about(window);
-  if (!doubt.empty()) return {{}, std::move(doubt)};
-  spdlog::info("started in motion at {:.3f} s: scale known to {:.1f} %, speed {:.2f} m/s", to_seconds(buffer_.back().t),
-               100.0 * scale_sigma(window), window.newest().nav().v_W.norm());
-  return {std::move(window), ""};
+}
+
+/// What a sight is worth is told by how well the solved window fits it.
+void Initializer::weigh_sights(Window& window) const {
+  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+    const std::optional<double> spread = median_residual(window, camera, Sights::All);
+    if (!spread) continue;
+    const double scale = std::clamp(*spread * config_.noise_inflation, config_.min_noise_scale, config_.max_noise_scale);
+    window.noise_scale[camera] = scale;
+    for (auto& [id, feature] : window.features) {
+      if (feature.camera != camera) continue;
+      for (auto& [state, sight] : feature.seen) sight.sigma *= scale;
+    }
+  }
 }
 
 /// What speaks against a solved window, empty when nothing does.
-std::string Initializer::doubt_about(Window& window) const {
+std::string Initializer::doubt_about(Window& window, double most_tilt_deg) const {
   const auto landmarks = std::count_if(window.features.begin(), window.features.end(),
                                        [](const auto& entry) { return entry.second.anchor.has_value(); });
   if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);
@@ -190,11 +224,9 @@ std::string Initializer::doubt_about(Window& window) const {
   if (!(rms <= kMaxStartRms)) {
     return fmt::format("motion that fits the IMU: corners {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
   }
-  const double sigma = scale_sigma(window);
-  if (!(sigma <= config_.init_scale_sigma)) return scale_text(sigma);
   const double tilt_deg = tilt_sigma(window) / kDeg;
-  if (!(tilt_deg <= kMaxTiltSigma_deg)) {
-    return fmt::format("motion that tells gravity: known to {:.1f} deg, {:.1f} wanted", tilt_deg, kMaxTiltSigma_deg);
+  if (!(tilt_deg <= most_tilt_deg)) {
+    return fmt::format("motion that tells gravity: known to {:.1f} deg, {:.1f} wanted", tilt_deg, most_tilt_deg);
   }
   const NavState state = window.newest().nav();
   const double most_bias = kMaxBiasSigmas * config_.accel_bias_sigma;
@@ -206,11 +238,6 @@ std::string Initializer::doubt_about(Window& window) const {
     return "motion whose scale the depth source agrees with";
   }
   return "";
-}
-
-std::string Initializer::scale_text(double sigma) const {
-  return fmt::format("motion that tells the scale: known to {:.0f} %, {:.0f} % wanted", 100.0 * std::min(sigma, 9.99),
-                     100.0 * config_.init_scale_sigma);
 }
 
 /// The buffer's views as keyframes where the alignment puts them.

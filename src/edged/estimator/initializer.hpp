@@ -16,34 +16,47 @@
 
 namespace edged {
 
+/// A window to go on from: its newest state is that of the packet.
+struct Start {
+  Window window;
+  double scale_sigma = 0.0;  ///< of ln scale; 0 from rest, where nothing has been scaled yet
+};
+
 /// What a packet brought the start.
 struct StartResult {
-  std::optional<Window> window;  ///< the start: the newest state is that of the packet
-  std::string waiting_for;       ///< else what is missing, with numbers
+  std::optional<Start> start;
+  std::string waiting_for;  ///< else what is missing, with numbers
 };
+
+/// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state tells it.
+double scale_sigma(Window& window);
 
 class Initializer {
  public:
   Initializer(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
       : rig_(rig), noise_(noise), config_(config) {}
 
-  /// Inputs in time order, each already known to the standstill detector.
-  StartResult add(const EstimatorInput& input, const StandstillDetector& standstill);
+  /// Inputs in time order. rest, which knows the input already: for a start from rest; null where that is not wanted. A
+  /// start in motion must know the scale to most_scale_sigma.
+  StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma);
 
  private:
   bool buffer_view(const EstimatorInput& input);
+  bool view_due(const EstimatorInput& input) const;
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
   void make_room();
-  StartResult start_in_motion() const;
+  StartResult start_in_motion(double most_scale_sigma);
   Window aligned_window(const Alignment& alignment) const;
-  std::string doubt_about(Window& window) const;
-  std::string scale_text(double sigma) const;
+  void solve_start(Window& window) const;
+  void weigh_sights(Window& window) const;
+  std::string doubt_about(Window& window, double most_tilt_deg) const;
 
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
   std::vector<InitFrame> buffer_;       ///< views
   std::vector<ImuSample> pending_imu_;  ///< since the last view
+  Timestamp next_solve_;                ///< a refused window is not solved anew with every view
   std::string motion_lacks_ = "corners to follow";  ///< what kept the last view from starting in motion
 };
 

@@ -61,7 +61,8 @@ void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
 
-void triangulate_features(Window& window, const LandmarkConfig& config) {
+void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
+  const bool ended_too = tracks == Tracks::All;
   // Landmarks out of sight still hold the window together, but must not take the places of those in view.
   std::vector<int> landmarks(window.cameras.size(), 0), total(window.cameras.size(), 0);
   std::vector<Feature*> candidates;
@@ -69,7 +70,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
     if (feature.anchor) {
       ++total[feature.camera];
       if (window.alive(feature)) ++landmarks[feature.camera];
-    } else if (window.alive(feature)) {
+    } else if (ended_too || window.alive(feature)) {
       candidates.push_back(&feature);
     }
   }
@@ -77,8 +78,11 @@ void triangulate_features(Window& window, const LandmarkConfig& config) {
                    [](const Feature* a, const Feature* b) { return a->seen.size() > b->seen.size(); });
   for (Feature* feature : candidates) {
     const std::size_t camera = feature->camera;
-    if (landmarks[camera] >= config.max_per_camera || total[camera] >= 2 * config.max_per_camera) continue;
-    if (triangulate_feature(window, *feature, config)) ++landmarks[camera], ++total[camera];
+    const bool alive = window.alive(*feature);
+    if (total[camera] >= 2 * config.max_per_camera || (alive && landmarks[camera] >= config.max_per_camera)) continue;
+    if (!triangulate_feature(window, *feature, config)) continue;
+    ++total[camera];
+    if (alive) ++landmarks[camera];
   }
 }
 
@@ -129,18 +133,20 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   return wrong;
 }
 
-std::optional<double> median_residual(const Window& window, std::size_t camera) {
+std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights) {
   constexpr std::size_t kMinSights = 12;
+  constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.states.rbegin()->first;
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features) {
     if (feature.camera != camera || !feature.anchor) continue;
-    if (feature.seen.contains(newest) && newest != *feature.anchor) {
-      residuals.push_back(residual_sigmas(window, feature, newest));
+    for (const auto& [state, sight] : feature.seen) {
+      if (state == *feature.anchor || (sights == Sights::Newest && state != newest)) continue;
+      residuals.push_back(residual_sigmas(window, feature, state));
     }
   }
   if (residuals.size() < kMinSights) return std::nullopt;
-  return median(std::move(residuals));
+  return median(std::move(residuals)) / kMedianOfNorm;
 }
 
 bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config) {

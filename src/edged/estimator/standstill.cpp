@@ -13,18 +13,30 @@
 namespace edged {
 namespace {
 
-constexpr int kBlocks = 8;              // the window's readings are averaged in blocks: white noise goes, motion stays
+constexpr std::size_t kBlocks = 8;      // the window's readings are averaged in blocks: white noise goes, motion stays
 constexpr std::size_t kMinCorners = 8;  // fewer common corners say nothing about image motion
+constexpr double kGlideStretch = 3.0;   // of the quiet window, where the whole picture glides
+constexpr double kGlideShare = 0.7;     // of the corners, that travel as their median does
+
+Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& v : vectors) x.push_back(v.x()), y.push_back(v.y());
+  return {median(std::move(x)), median(std::move(y))};
+}
 
 }  // namespace
 
 void StandstillConfig::visit(ConfigFields& fields) {
-  fields.add("window_s", window_s, {"s", 0.1, 5.0, "rest must last this long to be believed"});
-  fields.add("max_gyro", max_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate at rest"});
-  fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration at rest"});
+  fields.add("window_s", window_s, {"s", 0.1, 5.0, "calm of the IMU that a still picture confirms must last this long"});
+  fields.add("max_gyro", max_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when calm"});
+  fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when calm"});
   fields.add("max_gyro_mean", max_gyro_mean, {"rad/s", 1e-3, 1.0, "a mean rate above this is motion, not gyro bias"});
   fields.add("max_image_motion", max_image_motion,
              {"rad", 1e-5, 0.1, "largest median travel of the corners over the window at rest"});
+  fields.add("quiet_window_s", quiet_window_s,
+             {"s", 0.1, 10.0, "an IMU as quiet as its own noise for this long is at rest, whatever the cameras see"});
+  fields.add("quiet_gyro", quiet_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when quiet"});
+  fields.add("quiet_accel", quiet_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when quiet"});
 }
 
 void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
@@ -33,75 +45,115 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
   for (const ImuSample& sample : imu) {
     if (imu_.empty() || sample.t > imu_.back().t) imu_.push_back(sample);
   }
-  View view{imu.back().t, {}, events_quiet};
+  View view{imu_.back().t, {}, events_quiet};
   for (const CameraObservations& camera : observations) {
     for (const FeatureObservation& f : camera.features) view.points.emplace(f.id, f.point);
   }
   views_.push_back(std::move(view));
 
-  const Timestamp begin = imu_.back().t - duration_from_seconds(config_.window_s);
   // One sample and one view at or before the window's begin are kept, so that the window is covered.
-  while (imu_.size() > 1 && imu_[1].t <= begin) imu_.pop_front();
-  while (views_.size() > 1 && views_[1].t <= begin) views_.pop_front();
-  const double covered = to_seconds(imu_.back().t - imu_.front().t);
-  if (covered < 0.98 * config_.window_s || imu_.size() < 2 * kBlocks) {
-    still_ = false;
-    reason_ = fmt::format("{:.2f} of {:.2f} s of IMU", covered, config_.window_s);
-    return;
-  }
-  still_ = imu_still() && image_still();
+  const Timestamp now = imu_.back().t;
+  const double longest_s = std::max(config_.window_s, kGlideStretch * config_.quiet_window_s);
+  while (imu_.size() > 1 && imu_[1].t <= now - duration_from_seconds(longest_s)) imu_.pop_front();
+  while (views_.size() > 1 && views_[1].t <= now - duration_from_seconds(config_.window_s)) views_.pop_front();
+  const Spread spread = spread_over(config_.window_s);
+  still_ = quiet_ = false;
+  if (!imu_calm(spread)) return;
+  quiet_ = imu_quiet(config_.quiet_window_s * (image_glides() ? kGlideStretch : 1.0));
+  still_ = image_still() || quiet_;
+  if (still_) reason_.clear();
 }
 
-bool StandstillDetector::imu_still() {
-  const std::size_t n = imu_.size() / kBlocks;
+StandstillDetector::Spread StandstillDetector::spread_over(double window_s) const {
+  const Timestamp begin = imu_.back().t - duration_from_seconds(window_s);
+  auto first = std::upper_bound(imu_.begin(), imu_.end(), begin, [](Timestamp t, const ImuSample& s) { return t < s.t; });
+  if (first != imu_.begin()) --first;
+  Spread out;
+  out.covered_s = to_seconds(imu_.back().t - first->t);
+  const std::size_t n = static_cast<std::size_t>(imu_.end() - first) / kBlocks;
+  if (n < 2) return {};
   constexpr double kHuge = std::numeric_limits<double>::max();
   Eigen::Vector3d gyro_min = Eigen::Vector3d::Constant(kHuge), accel_min = gyro_min;
   Eigen::Vector3d gyro_max = -gyro_min, accel_max = -gyro_min;
-  mean_gyro_.setZero();
-  mean_accel_.setZero();
   for (std::size_t block = 0; block < kBlocks; ++block) {
     Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
-    for (std::size_t i = block * n; i < (block + 1) * n; ++i) gyro += imu_[i].gyro_B, accel += imu_[i].accel_B;
+    for (std::size_t i = 0; i < n; ++i, ++first) gyro += first->gyro_B, accel += first->accel_B;
     gyro /= static_cast<double>(n);
     accel /= static_cast<double>(n);
-    mean_gyro_ += gyro / kBlocks;
-    mean_accel_ += accel / kBlocks;
+    out.mean_gyro += gyro / kBlocks;
+    out.mean_accel += accel / kBlocks;
     gyro_min = gyro_min.cwiseMin(gyro).eval();
     gyro_max = gyro_max.cwiseMax(gyro).eval();
     accel_min = accel_min.cwiseMin(accel).eval();
     accel_max = accel_max.cwiseMax(accel).eval();
   }
-  const double gyro_spread = (gyro_max - gyro_min).maxCoeff(), accel_spread = (accel_max - accel_min).maxCoeff();
-  if (gyro_spread > config_.max_gyro || mean_gyro_.norm() > config_.max_gyro_mean) {
-    reason_ = fmt::format("turning: gyro spread {:.3f} of {:.3f} rad/s, mean {:.3f} of {:.3f} rad/s", gyro_spread,
+  out.gyro = (gyro_max - gyro_min).maxCoeff();
+  out.accel = (accel_max - accel_min).maxCoeff();
+  return out;
+}
+
+bool StandstillDetector::imu_calm(const Spread& spread) {
+  mean_gyro_ = spread.mean_gyro;
+  mean_accel_ = spread.mean_accel;
+  if (spread.covered_s < 0.98 * config_.window_s) {
+    reason_ = fmt::format("{:.2f} of {:.2f} s of IMU", spread.covered_s, config_.window_s);
+    return false;
+  }
+  if (spread.gyro > config_.max_gyro || mean_gyro_.norm() > config_.max_gyro_mean) {
+    reason_ = fmt::format("turning: gyro spread {:.3f} of {:.3f} rad/s, mean {:.3f} of {:.3f} rad/s", spread.gyro,
                           config_.max_gyro, mean_gyro_.norm(), config_.max_gyro_mean);
     return false;
   }
-  if (accel_spread > config_.max_accel) {
-    reason_ = fmt::format("accelerating: spread {:.3f} of {:.3f} m/s^2", accel_spread, config_.max_accel);
+  if (spread.accel > config_.max_accel) {
+    reason_ = fmt::format("accelerating: spread {:.3f} of {:.3f} m/s^2", spread.accel, config_.max_accel);
     return false;
   }
   return true;
 }
 
-bool StandstillDetector::image_still() {
-  std::vector<double> travel;
+bool StandstillDetector::imu_quiet(double window_s) {
+  const Spread spread = spread_over(window_s);
+  if (spread.covered_s < 0.98 * window_s || spread.gyro > config_.quiet_gyro || spread.accel > config_.quiet_accel) {
+    return false;
+  }
+  mean_gyro_ = spread.mean_gyro;
+  mean_accel_ = spread.mean_accel;
+  return true;
+}
+
+/// How far the corners that the window's first and last views share have travelled on the unit plane.
+std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
+  std::vector<Eigen::Vector2d> travels;
   for (const auto& [id, point] : views_.back().points) {
     const auto before = views_.front().points.find(id);
-    if (before != views_.front().points.end()) travel.push_back((point - before->second).norm());
+    if (before != views_.front().points.end()) travels.push_back(point - before->second);
   }
-  if (travel.size() < kMinCorners) {
+  return travels;
+}
+
+/// Whether nearly all corners travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps seldom do.
+bool StandstillDetector::image_glides() const {
+  const std::vector<Eigen::Vector2d> all = travels();
+  if (all.size() < kMinCorners) return false;
+  const Eigen::Vector2d middle = median_of(all);
+  if (middle.norm() <= config_.max_image_motion) return false;
+  const auto alike = std::count_if(all.begin(), all.end(), [&](const Eigen::Vector2d& travel) {
+    return (travel - middle).norm() < 0.5 * middle.norm();
+  });
+  return static_cast<double>(alike) > kGlideShare * static_cast<double>(all.size());
+}
+
+bool StandstillDetector::image_still() {
+  std::vector<double> lengths;
+  for (const Eigen::Vector2d& travel : travels()) lengths.push_back(travel.norm());
+  if (lengths.size() < kMinCorners) {
     const bool quiet = std::all_of(views_.begin(), views_.end(), [](const View& v) { return v.events_quiet; });
-    reason_ = quiet ? "" : fmt::format("{} of {} corners to tell rest from steady motion", travel.size(), kMinCorners);
+    reason_ = fmt::format("{} of {} corners to tell rest from steady motion", lengths.size(), kMinCorners);
     return quiet;
   }
-  const double middle = median(std::move(travel));
-  if (middle <= config_.max_image_motion) {
-    reason_.clear();
-    return true;
-  }
+  const double middle = median(std::move(lengths));
   reason_ = fmt::format("corners move {:.4f} of {:.4f} rad", middle, config_.max_image_motion);
-  return false;
+  return middle <= config_.max_image_motion;
 }
 
 }  // namespace edged

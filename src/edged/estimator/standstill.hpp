@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Tells whether the body rests, from the spread of the IMU readings and from what the cameras see; both must agree.
+// Tells whether the body rests. The IMU's word alone counts where it has been as quiet as its own noise for a while: a camera
+// at rest may see nothing but what moves by itself (walkers, a lamp). Where the IMU has only been calm, for a shorter time,
+// a still picture must confirm it.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +22,9 @@ struct StandstillConfig {
   double max_accel = 0.25;         ///< spread of the acceleration's block means [m/s^2]
   double max_gyro_mean = 0.15;     ///< a mean rate above this is motion, not bias [rad/s]
   double max_image_motion = 4e-3;  ///< median travel of the corners over the window, on the unit plane [rad]
+  double quiet_window_s = 0.7;     ///< quiet for so long, the IMU needs no picture
+  double quiet_gyro = 0.008;       ///< spread then, near a sensor's own noise [rad/s]
+  double quiet_accel = 0.1;        ///< [m/s^2]
   void visit(ConfigFields& fields);
 };
 
@@ -32,6 +37,8 @@ class StandstillDetector {
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
+  /// True when the IMU alone is sure of it, whatever the cameras see and the estimate says.
+  bool still_by_imu() const { return quiet_; }
   /// What keeps it from being called rest, with numbers; empty when still.
   const std::string& reason() const { return reason_; }
   /// Means over the window; meaningful when still.
@@ -39,8 +46,18 @@ class StandstillDetector {
   const Eigen::Vector3d& mean_accel_B() const { return mean_accel_; }
 
  private:
-  bool imu_still();
+  /// The means of the readings over the last part of the window, and how far those of its blocks spread.
+  struct Spread {
+    double covered_s = 0.0;
+    double gyro = 0.0, accel = 0.0;  ///< [rad/s], [m/s^2]
+    Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
+  };
+  Spread spread_over(double window_s) const;
+  bool imu_calm(const Spread& spread);
+  bool imu_quiet(double window_s);
   bool image_still();
+  bool image_glides() const;
+  std::vector<Eigen::Vector2d> travels() const;
 
   struct View {
     Timestamp t;
@@ -51,7 +68,7 @@ class StandstillDetector {
   StandstillConfig config_;
   std::deque<ImuSample> imu_;
   std::deque<View> views_;
-  bool still_ = false;
+  bool still_ = false, quiet_ = false;
   std::string reason_;
   Eigen::Vector3d mean_gyro_ = Eigen::Vector3d::Zero(), mean_accel_ = Eigen::Vector3d::Zero();
 };

@@ -12,10 +12,10 @@
 namespace edged {
 
 struct KltConfig {
-  int window_px = 21;
+  int window_px = 15;
   int levels = 3;
   int iterations = 20;
-  double epsilon_px = 0.03;
+  double epsilon_px = 0.005;
   double min_gradient = 1.0;
 
   void visit(ConfigFields& fields);

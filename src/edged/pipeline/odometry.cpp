@@ -96,6 +96,7 @@ struct Odometry::Impl {
   StatusJudge judge;
   FeatureId next_feature = 1;
   BodyMotion body;              ///< predicted, then optimised
+  DimImageStretch dim_frames;
   bool gyro_saturated = false;  ///< since the last keyframe
   bool quiet = false;           ///< the event camera sees nothing move
   SceneDepth depth;
@@ -116,6 +117,7 @@ Odometry::Impl::Impl(const Rig& rig, const ImuNoise& imu_noise, Mode used_mode, 
       estimator(used_rig, imu_noise, used_config.estimator),
       judge(used_config.status),
       body(imu_noise, duration_from_seconds(used_config.packets.max_age_s)),
+      dim_frames(used_config.dim_frames),
       depth(used_config.depth, used_rig.cameras.front(), used_config.estimator.depth_factor.enabled, inference) {
   config.validate();
   for (const RigCamera& camera : used_rig.cameras) {
@@ -235,7 +237,7 @@ DepthGrid Odometry::Impl::event_depths() const {
 
 void Odometry::Impl::take_frame(const Packet& packet) {
   if (mode == Mode::Events) return;
-  const cv::Mat image = packet.frame ? packet.frame->image : cv::Mat();
+  const cv::Mat image = packet.frame ? dim_frames(packet.frame->image) : cv::Mat();
   channels.back().show(image, image);
   if (packet.frame) last_frame = packet.t;
 }
@@ -302,12 +304,11 @@ EstimatorResult Odometry::Impl::estimate(const Packet& packet, bool keyframe) {
     channel.T_W_Blast = T_W_B_of(channel);
     input.observations.push_back(channel.observations());
   }
-  const bool started = estimator.initialized();
   const EstimatorResult result = estimator.add(input);
   for (Channel& channel : channels) channel.tracker.remove(result.outliers);
   if (!estimator.initialized()) return result;
   const SE3 correction = body.correct(estimator.newest());
-  if (!started) start_frame(correction);
+  if (result.new_frame) start_frame(correction);
   calibrate();
   for (Channel& channel : channels) {
     if (channel.has_image()) channel.settle(T_W_B_of(channel), keyframe);

@@ -21,6 +21,7 @@ void OdometryConfig::visit(ConfigFields& fields) {
                         "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
   fields.add("alignment_max_px", alignment.max_px, {"px", 0, 50, "bound of that correction"});
   fields.group("health", health);
+  fields.group("dim_frames", dim_frames);
   fields.group("event_tracker", event_tracker);
   fields.group("frame_tracker", frame_tracker);
   fields.group("keyframes", keyframes);

@@ -8,6 +8,7 @@
 #include "edged/estimator/estimator.hpp"
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
+#include "edged/frontend/dim_image.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/tracker.hpp"
 #include "edged/live/measurement_queue.hpp"
@@ -27,6 +28,7 @@ struct OdometryConfig {
   bool enhance_track = false;  ///< follow them on it too
   AlignmentConfig alignment;      ///< of the event frames
   HealthConfig health;            ///< of each camera
+  DimImageConfig dim_frames;      ///< standard frames in the dark
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;

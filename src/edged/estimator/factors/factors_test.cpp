@@ -203,6 +203,27 @@ TEST(DepthFactor, RefusesALandmarkBehindTheCamera) {
   EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
 }
 
+TEST(RestPrior, IsWhatAnAccelerometerAtRestReadsToFirstOrder) {
+  const Eigen::Vector3d accel_B(0.4, -0.3, 9.9);
+  const SE3 upright(Eigen::Quaterniond::FromTwoVectors(accel_B, Eigen::Vector3d::UnitZ()), {1.0, 2.0, 3.0});
+  const MotionBlock unbiased{};
+  const LinearPrior prior =
+      rest_prior({BlockKind::Pose, 0}, to_block(upright), {BlockKind::Motion, 0}, unbiased, accel_B, 0.5);
+  const LinearPriorFactor factor(prior);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d small = 1e-4 * Eigen::Vector3d::Unit(axis);
+    const SE3 tilted(upright.rotation() * so3::exp(small), upright.translation());
+    MotionBlock biased = unbiased;
+    biased[static_cast<std::size_t>(6 + (axis + 1) % 3)] = 0.05;
+    const PoseBlock pose = to_block(tilted);
+    const double* blocks[] = {pose.data(), biased.data()};
+    Eigen::Vector3d r;
+    ASSERT_TRUE(factor.Evaluate(blocks, r.data(), nullptr));
+    const Eigen::Vector3d bias = Eigen::Map<const Eigen::Vector3d>(biased.data() + 6);
+    EXPECT_LT((r - (tilted.R().transpose() * -kGravity_W + bias - accel_B) / 0.5).norm(), 1e-6);
+  }
+}
+
 TEST(LinearPriorFactor, JacobiansMatchCentralDifferencesAwayFromItsLinearisationPoint) {
   std::mt19937_64 random(7);
   const auto number = [&] { return static_cast<double>(random() >> 11) * 0x1p-53 - 0.5; };

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "edged/core/types.hpp"
+
 namespace edged {
 
 LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma) {
@@ -25,6 +27,20 @@ LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::
   prior.J = Eigen::MatrixXd::Zero(9, 9);
   for (int i = 0; i < 9; ++i) prior.J(i, i) = std::isinf(sigmas[i / 3]) ? 0.0 : 1.0 / sigmas[i / 3];
   prior.r = Eigen::VectorXd::Zero(9);
+  return prior;
+}
+
+LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, const MotionBlock& mean,
+                       const Eigen::Vector3d& accel_B, double sigma) {
+  const Eigen::Vector3d reaction_B = pose_of(at.data()).R().transpose() * -kGravity_W;
+  LinearPrior prior;
+  prior.blocks = {pose, motion};
+  prior.x0 = {{at.begin(), at.end()}, {mean.begin(), mean.end()}};
+  prior.J = Eigen::MatrixXd::Zero(3, 15);
+  // R Exp(phi) turns what the body reads by -phi.
+  prior.J.middleCols<3>(3) = skew(reaction_B) / sigma;
+  prior.J.rightCols<3>().diagonal().setConstant(1.0 / sigma);
+  prior.r = (reaction_B + Eigen::Map<const Eigen::Vector3d>(mean.data() + 6) - accel_B) / sigma;
   return prior;
 }
 

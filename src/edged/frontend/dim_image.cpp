@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/frontend/dim_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace edged {
+namespace {
+
+constexpr double kDarkEnd = 0.02, kBrightEnd = 0.98;  // quantiles
+constexpr double kHoldGain = 1.3;                     // the gain follows the light when it is off by this factor
+constexpr double kHoldBlack = 0.15;                   // the black level by this share of the target range
+constexpr double kFloor = 16.0;                       // grey level of the dark end: noise below it is not clipped
+
+struct Range {
+  double dark = 0.0, bright = 0.0;
+};
+
+Range grey_range(const cv::Mat& image) {
+  std::array<std::size_t, 256> histogram{};
+  for (int row = 0; row < image.rows; ++row) {
+    const std::uint8_t* pixel = image.ptr<std::uint8_t>(row);
+    for (int column = 0; column < image.cols; ++column) ++histogram[pixel[column]];
+  }
+  const auto quantile = [&](double share) {
+    double left = share * static_cast<double>(image.total());
+    std::size_t level = 0;
+    while (level < 255 && left > static_cast<double>(histogram[level])) left -= static_cast<double>(histogram[level++]);
+    return static_cast<double>(level);
+  };
+  return {quantile(kDarkEnd), quantile(kBrightEnd)};
+}
+
+}  // namespace
+
+void DimImageConfig::visit(ConfigFields& fields) {
+  fields.add("below_range", below_range,
+             {"grey", 0, 255, "frames with a smaller range of grey levels are smoothed and stretched; 0: none"});
+  fields.add("target_range", target_range, {"grey", 10, 230, "range of grey levels they are stretched to"});
+  fields.add("max_gain", max_gain, {"", 1, 100, "strongest stretch"});
+  fields.add("smoothing_px", smoothing_px, {"px", 0.3, 10, "blur before the stretch, standard deviation"});
+}
+
+cv::Mat DimImageStretch::operator()(const cv::Mat& image) {
+  if (image.empty() || image.type() != CV_8UC1) return image;  // the tracker says what it wants
+  const Range range = grey_range(image);
+  const double width = std::max(range.bright - range.dark, 1.0);
+  if (width >= config_.below_range) {
+    gain_ = 1.0;
+    return image;
+  }
+  const double wanted = std::clamp(config_.target_range / width, 1.0, config_.max_gain);
+  const bool other_light = std::max(wanted / gain_, gain_ / wanted) > kHoldGain;
+  if (other_light || gain_ * std::abs(range.dark - black_) > kHoldBlack * config_.target_range) {
+    gain_ = wanted;
+    black_ = range.dark;
+  }
+  cv::Mat smooth, stretched;
+  image.convertTo(smooth, CV_32F, gain_, kFloor - gain_ * black_);
+  cv::GaussianBlur(smooth, smooth, cv::Size(), config_.smoothing_px);
+  smooth.convertTo(stretched, CV_8U);
+  return stretched;
+}
+
+}  // namespace edged

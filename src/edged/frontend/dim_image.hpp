@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Images in the dark: a few grey levels, noise among them, made fit for corners and optical flow.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "edged/core/config.hpp"
+
+namespace edged {
+
+struct DimImageConfig {
+  double below_range = 80.0;    ///< grey levels between the image's dark and bright ends; fewer are stretched
+  double target_range = 160.0;  ///< to so many
+  double max_gain = 12.0;
+  double smoothing_px = 1.0;    ///< standard deviation of the blur before it
+  void visit(ConfigFields& fields);
+};
+
+/// Brightens the images of one camera where they are dim. They are smoothed before they are stretched: the mean of a few
+/// noisy pixels has more grey levels than any of them. One gain for the whole image, held until the light has changed:
+/// optical flow takes brightness for constant.
+class DimImageStretch {
+ public:
+  explicit DimImageStretch(const DimImageConfig& config) : config_(config) {}
+
+  /// image: CV_8UC1, not changed; itself when it is not dim.
+  cv::Mat operator()(const cv::Mat& image);
+
+ private:
+  DimImageConfig config_;
+  double gain_ = 1.0, black_ = 0.0;
+};
+
+}  // namespace edged
