@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/sim/disturbance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,12 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kCovering_s = 0.06;
 constexpr double kStopping_s = 0.5, kTurningRound_s = 1.5;
 constexpr double kShake_hz = 4.0;
+// Of knocks: a ring of 33 Hz that is over after a tenth of a second, and turns the body a little.
+constexpr double kRing_hz = 33.0, kDecay_s = 0.022, kRing_s = 0.1, kBlow_s = 0.006, kKnockTurn_rad = 0.004;
+constexpr double kLowering_s = 0.5;
+constexpr double kStandardGravity = 9.80665;
+
+constexpr double kToTheEnd = -1.0;
 
 struct Usual {
   double length_s, strength;
@@ -39,16 +46,62 @@ Usual usual(DisturbanceKind kind) {
       return {1.0, 400.0};  // peak rate [deg/s]
     case DisturbanceKind::Person:
       return {2.5, 0.0};
+    case DisturbanceKind::Walkers:
+      return {kToTheEnd, 0.4};  // share of the view
+    case DisturbanceKind::WanderingLamp:
+    case DisturbanceKind::SwitchingLamp:
+      return {kToTheEnd, 7.5};  // times the light of a well lit room
     case DisturbanceKind::BlankWall:
       return {4.0, 0.0};
     case DisturbanceKind::PureRotation:
       return {5.0, 0.0};
     case DisturbanceKind::Standstill:
       return {60.0, 0.0};
+    case DisturbanceKind::PutDown:
+      return {10.0, 2.0};  // peak of the knocks [g]
     case DisturbanceKind::EventStorm:
       return {0.3, 20.0};  // million events a second
   }
   return {0.0, 0.0};
+}
+
+/// A function of time with two derivatives [1/s, 1/s^2].
+struct Jet {
+  double value = 0.0, rate = 0.0, change = 0.0;
+
+  Jet operator+(const Jet& b) const { return {value + b.value, rate + b.rate, change + b.change}; }
+  Jet operator*(const Jet& b) const {
+    return {value * b.value, rate * b.value + value * b.rate,
+            change * b.value + 2.0 * rate * b.rate + value * b.change};
+  }
+  Jet operator*(double s) const { return {value * s, rate * s, change * s}; }
+};
+
+Jet to_jet(const Ramp& ramp, double t, double length_s) {
+  const double x = t / length_s;
+  const bool within = x > 0.0 && x < 1.0;
+  return {ramp.value, ramp.slope, within ? 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (length_s * length_s) : 0.0};
+}
+
+/// Rings out after t = 0: what a hard contact does to a light body. The phase of the sine is 0 there.
+Jet ring(double t) {
+  if (t <= 0.0 || t >= kRing_s) return {};
+  constexpr double kOmega = 2.0 * kPi * kRing_hz;
+  const double e = std::exp(-t / kDecay_s), s = std::sin(kOmega * t), c = std::cos(kOmega * t);
+  const Jet decay{e, -e / kDecay_s, e / (kDecay_s * kDecay_s)};
+  const Jet sine{s, kOmega * c, -kOmega * kOmega * s};
+  const Jet fading = to_jet(ramp(t - 0.5 * kRing_s, 0.5 * kRing_s), t - 0.5 * kRing_s, 0.5 * kRing_s) * -1.0;
+  return decay * sine * (Jet{1.0} + fading);
+}
+
+/// The same of a body that was at rest: the blow takes a few milliseconds.
+Jet hit(double t) { return ring(t) * to_jet(ramp(t, kBlow_s), t, kBlow_s); }
+
+/// Largest second derivative.
+double peak_change(Jet (*jet)(double)) {
+  double peak = 0.0;
+  for (double t = 0.0; t < kRing_s; t += 1e-4) peak = std::max(peak, std::abs(jet(t).change));
+  return peak;
 }
 
 /// From 0 up to 1 after begin_s, and down again after end_s.
@@ -70,22 +123,29 @@ void Disturbance::visit(ConfigFields& fields) {
                  {"gyro-saturation", DisturbanceKind::GyroSaturation},
                  {"shake", DisturbanceKind::Shake},
                  {"person", DisturbanceKind::Person},
+                 {"walkers", DisturbanceKind::Walkers},
+                 {"wandering-lamp", DisturbanceKind::WanderingLamp},
+                 {"switching-lamp", DisturbanceKind::SwitchingLamp},
                  {"blank-wall", DisturbanceKind::BlankWall},
                  {"pure-rotation", DisturbanceKind::PureRotation},
                  {"standstill", DisturbanceKind::Standstill},
+                 {"put-down", DisturbanceKind::PutDown},
                  {"event-storm", DisturbanceKind::EventStorm}},
                 {.effect = "one thing that goes wrong"});
   fields.add("at_s", at_s, {"s", 0, 3600, "when it begins, on the camera's clock"});
   fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: as usual for its kind"});
-  fields.add("strength", strength,
-             {"", 0, 1e4,
-              "0: as usual. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's range; "
-              "shake: peak rate in deg/s; event-storm: million events a second"});
+  fields.add(
+      "strength", strength,
+      {"", 0, 1e4,
+       "0: as usual. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's range; "
+       "shake: peak rate in deg/s; event-storm: million events a second; walkers: share of the view; lamps: their "
+       "light over that of a well lit room; put-down: peak of the knocks in g"});
 }
 
-Disturbance Disturbance::filled_in() const {
+Disturbance Disturbance::filled_in(double recording_s) const {
   Disturbance filled = *this;
   if (length_s == 0.0) filled.length_s = usual(kind).length_s;
+  if (filled.length_s == kToTheEnd) filled.length_s = std::max(0.0, recording_s - at_s);
   if (strength == 0.0) filled.strength = usual(kind).strength;
   return filled;
 }
@@ -100,6 +160,7 @@ double Disturbance::light(double t_s) const {
 Kinematics DisturbedTrajectory::at(double t) const {
   Kinematics k = on_stopped_clock(t);
   const Turn extra = turn(t);
+  if (disturbance_.kind == DisturbanceKind::PutDown) knock(t, k);
   if (extra.angle == 0.0 && extra.rate == 0.0) return k;
   const Eigen::Quaterniond R = so3::exp(extra.angle * axis_B_);
   k.T_W_B = SE3(k.T_W_B.rotation() * R, k.T_W_B.translation());
@@ -110,7 +171,8 @@ Kinematics DisturbedTrajectory::at(double t) const {
 Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
   const Kinematics moving = trajectory_.at(t);
   const bool rotates = disturbance_.kind == DisturbanceKind::PureRotation;
-  if (!rotates && disturbance_.kind != DisturbanceKind::Standstill) return moving;
+  const bool stands = disturbance_.kind == DisturbanceKind::Standstill || disturbance_.kind == DisturbanceKind::PutDown;
+  if (!rotates && !stands) return moving;
   // The clock of the path is t less the time it stood still.
   const Ramp still = plateau(t, disturbance_.at_s - kStopping_s, disturbance_.end_s(), kStopping_s);
   const double rate = 1.0 - still.value;
@@ -125,11 +187,34 @@ Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
   return k;
 }
 
+void DisturbedTrajectory::knock(double t, Kinematics& k) const {
+  const Disturbance& d = disturbance_;
+  const double peak = d.strength * kStandardGravity;
+  // It is lowered at the speed that the contact ends, into a ring with the wanted peak, and taken up by a blow.
+  static const double ring_peak = peak_change(ring), hit_peak = peak_change(hit);
+  constexpr double kOmega = 2.0 * kPi * kRing_hz;
+  const double reach_m = peak / ring_peak, speed = reach_m * kOmega;
+  const Ramp sinking = ramp(t - (d.at_s - kLowering_s), kLowering_s);
+  Jet height = ring(t - d.at_s) * -reach_m + hit(t - d.end_s()) * (peak / hit_peak);
+  if (t < d.at_s) height = height + Jet{-speed * sinking.integral_s, -speed * sinking.value, -speed * sinking.slope};
+  if (t >= d.at_s) {
+    const double depth_m = speed * ramp(kLowering_s, kLowering_s).integral_s, since_s = t - d.end_s();
+    height = height + (Jet{1.0} + to_jet(ramp(since_s, kLowering_s), since_s, kLowering_s) * -1.0) * -depth_m;
+  }
+  k.T_W_B = SE3(k.T_W_B.rotation(), k.T_W_B.translation() + height.value * Eigen::Vector3d::UnitZ());
+  k.v_W.z() += height.rate;
+  k.a_W.z() += height.change;
+}
+
 DisturbedTrajectory::Turn DisturbedTrajectory::turn(double t) const {
   const Disturbance& d = disturbance_;
   if (d.kind == DisturbanceKind::BlankWall) {
     const Ramp turned = plateau(t, d.at_s - kTurningRound_s, d.end_s(), kTurningRound_s);
     return {kPi * turned.value, kPi * turned.slope};
+  }
+  if (d.kind == DisturbanceKind::PutDown) {
+    const Jet ring = hit(t - d.at_s) + hit(t - d.end_s());
+    return {kKnockTurn_rad * d.strength * ring.value, kKnockTurn_rad * d.strength * ring.rate};
   }
   const double x = (t - d.at_s) / d.length_s;
   if (x <= 0.0 || x >= 1.0) return {};

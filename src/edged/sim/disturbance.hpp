@@ -9,9 +9,11 @@
 namespace edged {
 
 /// Of the sensors: LensCovered, FramesMissing, EventsMissing, ImuGap and EventStorm (noise on the whole array). Of the
-/// scene: LightsOff, Person (walks past right before the camera) and BlankWall (half of the room is painted white and
-/// bare, and the camera turns round to it). Of the motion: GyroSaturation (a turn beyond the gyro's range and back),
-/// Shake, PureRotation and Standstill.
+/// scene: LightsOff, Person (walks past right before the camera), Walkers (two people cross the view again and again),
+/// WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the scene; the latter's also
+/// goes on and off) and BlankWall (half of the room is painted white and bare, and the camera turns round to it). Of
+/// the motion: GyroSaturation (a turn beyond the gyro's range and back), Shake, PureRotation, Standstill and PutDown (a
+/// standstill that begins and ends with a knock).
 enum class DisturbanceKind {
   None,
   LensCovered,
@@ -22,9 +24,13 @@ enum class DisturbanceKind {
   GyroSaturation,
   Shake,
   Person,
+  Walkers,
+  WanderingLamp,
+  SwitchingLamp,
   BlankWall,
   PureRotation,
   Standstill,
+  PutDown,
   EventStorm
 };
 
@@ -37,8 +43,8 @@ struct Disturbance {
 
   void visit(ConfigFields& fields);
 
-  /// With the usual length and strength in place of zeros.
-  Disturbance filled_in() const;
+  /// With the usual length and strength in place of zeros, in a recording of this length.
+  Disturbance filled_in(double recording_s) const;
 
   double end_s() const { return at_s + length_s; }
   double middle_s() const { return at_s + 0.5 * length_s; }
@@ -51,8 +57,8 @@ struct Disturbance {
 };
 
 /// A motion with what a disturbance (filled in) makes of it: the clock of the path is stopped, for the position alone
-/// in pure rotation; or the body turns about an axis of its own on top of it. What takes up time, as slowing down or
-/// turning round to a wall, is done before the disturbance and undone after it.
+/// in pure rotation; or the body turns about an axis of its own on top of it; or it is knocked. What takes up time, as
+/// slowing down or turning round to a wall, is done before the disturbance and undone after it.
 class DisturbedTrajectory {
  public:
   /// gyro_range [rad/s]; axis_B: of the turns, unit.
@@ -70,6 +76,7 @@ class DisturbedTrajectory {
   };
   Kinematics on_stopped_clock(double t) const;
   Turn turn(double t) const;
+  void knock(double t, Kinematics& k) const;
 
   ContinuousTrajectory trajectory_;
   Disturbance disturbance_;

@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <map>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "edged/core/check.hpp"
 #include "edged/sim/test_recording.hpp"
@@ -65,10 +69,10 @@ TEST(Disturbance, HasAUsualLengthAndStrengthForEveryKind) {
   for (int kind = 1; kind <= static_cast<int>(DisturbanceKind::EventStorm); ++kind) {
     Disturbance disturbance;
     disturbance.kind = static_cast<DisturbanceKind>(kind);
-    EXPECT_GT(disturbance.filled_in().length_s, 0.0) << kind;
+    EXPECT_GT(disturbance.filled_in(30.0).length_s, 0.0) << kind;
     disturbance.length_s = 0.7, disturbance.strength = 0.6;
-    EXPECT_EQ(disturbance.filled_in().length_s, 0.7);
-    EXPECT_EQ(disturbance.filled_in().strength, 0.6);
+    EXPECT_EQ(disturbance.filled_in(30.0).length_s, 0.7);
+    EXPECT_EQ(disturbance.filled_in(30.0).strength, 0.6);
   }
 }
 
@@ -165,18 +169,30 @@ double differing_share(const Rendering& a, const Rendering& b) {
   return static_cast<double>(count) / static_cast<double>(a.inverse_depth.size());
 }
 
-TEST(Person, FillsAThirdToTwoThirdsOfTheViewInPassing) {
-  SimulatorConfig config = disturbed("person", 2.5);
+/// By the time of frames [s], the share of the view that the disturbance covers.
+std::map<double, double> covered_shares(SimulatorConfig config) {
   config.max_motion_px = 3.0;
   Simulator with(config), without_one(undisturbed(config));
-  double largest = 0.0;
+  std::map<double, double> shares;
   // The same pictures: they are taken at the latest every 3 ms, and at the frames' exposures in any case.
   while (const auto measurement = with.next()) {
     if (!std::holds_alternative<Frame>(*measurement)) continue;
     while (!std::holds_alternative<Frame>(*without_one.next())) continue;
     if (with.rendered_until() != without_one.rendered_until()) continue;
-    largest = std::max(largest, differing_share(with.last_rendering(), without_one.last_rendering()));
+    shares[to_seconds(with.rendered_until())] = differing_share(with.last_rendering(), without_one.last_rendering());
   }
+  return shares;
+}
+
+double largest_between(const std::map<double, double>& shares, double from_s, double to_s) {
+  double largest = 0.0;
+  for (const auto& [t, share] : shares)
+    if (t >= from_s && t < to_s) largest = std::max(largest, share);
+  return largest;
+}
+
+TEST(Person, FillsAThirdToTwoThirdsOfTheViewInPassing) {
+  const double largest = largest_between(covered_shares(disturbed("person", 2.5)), 0.0, 10.0);
   EXPECT_GT(largest, 0.3);
   EXPECT_LT(largest, 0.65);
 }
@@ -191,6 +207,73 @@ TEST(Person, WalksSoThatThePicturesMoveByNoMoreThanAllowed) {
   // 0.65 m/s seen from 0.85 m with a focal length of 100 px.
   const double person_px = 0.65 / 0.85 * 100.0 * (to_seconds(simulator.rendered_until()) - from_s);
   EXPECT_GT(static_cast<double>(simulator.renderings() - before), person_px / config.max_motion_px);
+}
+
+TEST(Walkers, CoverTheirShareOfTheViewWhileTheCameraRests) {
+  for (const double strength : {0.3, 0.7}) {
+    SimulatorConfig config = disturbed("walkers", 0.0, 3.5);
+    config.motion.rest_s = config.duration_s;
+    config.disturbance.at_s = 0.0, config.disturbance.strength = strength;
+    const std::map<double, double> shares = covered_shares(config);
+    EXPECT_NEAR(largest_between(shares, 0.0, 5.0), strength, 0.3 * strength);
+    // Nor is the view ever long without them.
+    for (const double t : {0.0, 1.2, 2.4}) EXPECT_GT(largest_between(shares, t, t + 1.2), 0.25 * strength);
+    EXPECT_GT(event_rate(record(config), 0.2, 4.0), 10.0 * kNoise_hz);
+  }
+}
+
+TEST(Walkers, AreAwayBeforeAndAfterTheirTime) {
+  SimulatorConfig config = disturbed("walkers", 1.0, 1.5);
+  config.disturbance.at_s = 1.5;
+  config.motion.rest_s = config.duration_s = 4.0;
+  const std::map<double, double> shares = covered_shares(config);
+  EXPECT_EQ(largest_between(shares, 0.0, 0.5), 0.0);
+  EXPECT_GT(largest_between(shares, 1.5, 2.5), 0.2);
+  EXPECT_EQ(largest_between(shares, 3.5, 4.0), 0.0);
+}
+
+/// Middle of what is as bright as half of the brightest [px], nothing where all is dark.
+std::optional<Eigen::Vector2d> spot_of(const cv::Mat& image) {
+  cv::Mat blurred;
+  cv::GaussianBlur(image, blurred, cv::Size(), 4.0);
+  double brightest = 0.0;
+  cv::minMaxLoc(blurred, nullptr, &brightest);
+  if (brightest < 60.0) return std::nullopt;
+  const cv::Moments m = cv::moments(blurred > 0.5 * brightest, true);
+  return Eigen::Vector2d(m.m10 / m.m00, m.m01 / m.m00);
+}
+
+SimulatorConfig lamp_over_a_dark_room(const std::string& kind) {
+  SimulatorConfig config = small("spot", 3.0);
+  config.motion.rest_s = config.duration_s;
+  ConfigFields::of(config).set("disturbance.kind", kind);
+  return config;
+}
+
+TEST(WanderingLamp, LetsABrightSpotWanderOverADarkRoomThatRests) {
+  const Recorded recorded = record(lamp_over_a_dark_room("wandering-lamp"));
+  Eigen::AlignedBox2d places;
+  int seen = 0;
+  for (const cv::Mat& image : frames(recorded, 0.0, 3.0)) {
+    const auto spot = spot_of(image);
+    if (!spot) continue;
+    places.extend(*spot), ++seen;
+    cv::Mat rest = image.clone();
+    cv::circle(rest, cv::Point(static_cast<int>(spot->x()), static_cast<int>(spot->y())), 45, cv::Scalar(0), -1);
+    EXPECT_LT(cv::mean(rest)[0], 25.0);
+  }
+  EXPECT_GT(seen, 40);  // of 72 frames: at times it is beside the view
+  EXPECT_GT(places.sizes().maxCoeff(), 40.0);
+  EXPECT_GT(event_rate(recorded, 0.5, 3.0), 30.0 * kNoise_hz);
+}
+
+TEST(SwitchingLamp, GoesOnAndOff) {
+  const Recorded recorded = record(lamp_over_a_dark_room("switching-lamp"));
+  int changes = 0;
+  std::vector<bool> lit;
+  for (const cv::Mat& image : frames(recorded, 0.0, 3.0)) lit.push_back(spot_of(image).has_value());
+  for (std::size_t i = 1; i < lit.size(); ++i) changes += lit[i] != lit[i - 1] ? 1 : 0;
+  EXPECT_GE(changes, 3);
 }
 
 TEST(BlankWall, ShowsNothingWhileTheCameraLooksAtIt) {
@@ -231,6 +314,45 @@ TEST(Standstill, StopsAllMotionAndGoesOnAfterIt) {
   EXPECT_GT(event_rate(recorded, 2.5, 2.8), 4.0 * kNoise_hz);
 }
 
+TEST(PutDown, KnocksAsHardAsItSaysAndRestsInBetween) {
+  for (const double strength : {1.0, 4.0}) {
+    SimulatorConfig config = disturbed("put-down", 1.0, 0.8);
+    config.disturbance.strength = strength;
+    const Simulator simulator(config);
+    // Of the acceleration that the knock adds, in g.
+    const auto peak_g = [&](double from_s, double to_s) {
+      double peak = 0.0;
+      for (double t = from_s; t < to_s; t += 5e-4)
+        peak = std::max(peak, std::abs(simulator.trajectory().at(t).a_W.z()));
+      return peak / 9.80665;
+    };
+    EXPECT_NEAR(peak_g(1.0, 1.1), strength, 0.02 * strength);
+    EXPECT_NEAR(peak_g(2.0, 2.02), strength, 0.05 * strength);
+    for (const double t : {1.11, 1.5, 1.99}) {
+      const Kinematics k = simulator.trajectory().at(t);
+      EXPECT_LT(k.v_W.norm() + k.a_W.norm() + k.omega_B.norm(), 1e-9);
+    }
+    // It is lowered until the contact, which gives way by a few millimetres, and has no jump.
+    const double above = simulator.trajectory().at(0.5).T_W_B.translation().z();
+    const double contact = simulator.trajectory().at(1.0).T_W_B.translation().z();
+    EXPECT_GT(above - contact, 0.005 * strength);
+    double lowest = contact;
+    for (double t = 1.0; t < 1.1; t += 1e-3)
+      lowest = std::min(lowest, simulator.trajectory().at(t).T_W_B.translation().z());
+    EXPECT_GT(contact - lowest, 1e-4 * strength);
+    EXPECT_LT(contact - lowest, 4e-3);
+  }
+}
+
+TEST(PutDown, IsCutByTheAccelerometersRange) {
+  SimulatorConfig config = disturbed("put-down", 0.6, 0.6);
+  config.disturbance.strength = 4.0;
+  config.imu.accel_range = 25.0;
+  double largest = 0.0;
+  for (const ImuSample& sample : record(config).imu) largest = std::max(largest, sample.accel_B.cwiseAbs().maxCoeff());
+  EXPECT_EQ(largest, 25.0);
+}
+
 TEST(EventStorm, FiresAsOftenAsItSaysAllOverTheArray) {
   const SimulatorConfig config = disturbed("event-storm", 0.1);
   const Recorded recorded = record(config), calm = record(undisturbed(config));
@@ -246,7 +368,7 @@ TEST(EventStorm, FiresAsOftenAsItSaysAllOverTheArray) {
 }
 
 TEST(DisturbedTrajectory, DerivativesAgreeWithDifferences) {
-  for (const char* kind : {"gyro-saturation", "shake", "blank-wall", "pure-rotation", "standstill"}) {
+  for (const char* kind : {"gyro-saturation", "shake", "blank-wall", "pure-rotation", "standstill", "put-down"}) {
     const Simulator simulator(disturbed(kind, 1.0, 1.6));
     constexpr double h = 1e-5;
     for (double t = 0.4013; t < 3.0; t += 0.0737) {

@@ -5,16 +5,30 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace edged {
 namespace {
 
 constexpr double kPanel_m = 0.3;
 constexpr double kSunWidth_rad = 0.0093;
+// Of a spotlight: how far and how fast it wanders; the cone's edge goes from full light to none.
+constexpr double kYaw_rad = 0.5, kPitch_rad = 0.3, kYaw_hz = 0.23, kPitch_hz = 0.37;
+constexpr float kFullCosine = 0.951F, kOuterCosine = 0.848F;  // 18 and 32 deg
+constexpr float kPowerDistance_m = 2.0F;
 
 double smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);
+}
+
+/// On at first, and switched at these instants.
+double switched_level(const std::vector<double>& switch_s, double t_s) {
+  const auto next = std::upper_bound(switch_s.begin(), switch_s.end(), t_s);
+  const auto count = next - switch_s.begin();
+  if (count == 0) return 1.0;
+  const double share = smooth((t_s - *(next - 1)) / kSwitching_s);
+  return count % 2 == 0 ? share : 1.0 - share;
 }
 
 Lamp side_lamp(const Eigen::Vector3d& towards_wall, const Eigen::Vector3d& size, double duration_s, Random& random) {
@@ -62,19 +76,39 @@ std::optional<Lighting> make_lighting(LightingKind kind, const Eigen::Vector3d& 
   return lighting;
 }
 
-double lamp_level(const Lamp& lamp, double t_s) {
-  const auto next = std::upper_bound(lamp.switch_s.begin(), lamp.switch_s.end(), t_s);
-  const auto count = next - lamp.switch_s.begin();
-  if (count == 0) return 1.0;
-  const double share = smooth((t_s - *(next - 1)) / kSwitching_s);
-  return count % 2 == 0 ? share : 1.0 - share;
-}
+double lamp_level(const Lamp& lamp, double t_s) { return switched_level(lamp.switch_s, t_s); }
 
 double lamp_light(const Lamp& lamp, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) {
   const Eigen::Vector3d ray = p_W - lamp.centre_W;
   const double squared = std::max(ray.squaredNorm(), 1e-12);
   const double cosines = std::max(0.0, lamp.axis_W.dot(ray)) * std::max(0.0, -n_W.dot(ray)) / squared;
   return lamp.power * cosines / (squared + kPanel_m * kPanel_m);
+}
+
+Beam beam_at(const Spotlight& spot, double t_s) {
+  const double yaw_w = 2.0 * std::numbers::pi * kYaw_hz, pitch_w = 2.0 * std::numbers::pi * kPitch_hz;
+  const double yaw = kYaw_rad * std::sin(yaw_w * t_s + spot.phase_yaw);
+  const double pitch = kPitch_rad * std::sin(pitch_w * t_s + spot.phase_pitch);
+  const Eigen::Vector3d side = Eigen::Vector3d::UnitZ().cross(spot.axis_W).normalized();
+  // It goes on within the time of a switch before its begin, so that it shines when its time begins.
+  const double there = smooth((t_s - spot.begin_s) / kSwitching_s + 1.0) - smooth((t_s - spot.end_s) / kSwitching_s);
+  const double level = there * switched_level(spot.switch_s, t_s);
+  const double rate = kYaw_rad * yaw_w * std::abs(std::cos(yaw_w * t_s + spot.phase_yaw)) +
+                      kPitch_rad * pitch_w * std::abs(std::cos(pitch_w * t_s + spot.phase_pitch));
+  return {spot.centre_W,
+          Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * (Eigen::AngleAxisd(pitch, side) * spot.axis_W),
+          spot.power * level, level == 0.0 ? 0.0 : rate};
+}
+
+float beam_light(const Beam& beam, const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
+  const Eigen::Vector3f ray = p - beam.centre.cast<float>();
+  const float squared = std::max(ray.squaredNorm(), 1e-6F), distance = std::sqrt(squared);
+  const float cosine = beam.axis.cast<float>().dot(ray) / distance;
+  const float incidence = -n.dot(ray) / distance;
+  if (cosine <= kOuterCosine || incidence <= 0.0F) return 0.0F;
+  const float x = std::min(1.0F, (cosine - kOuterCosine) / (kFullCosine - kOuterCosine));
+  return static_cast<float>(beam.power) * x * x * (3.0F - 2.0F * x) * incidence * kPowerDistance_m * kPowerDistance_m /
+         squared;
 }
 
 double sun_light(const SunWindow& sun, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W) {

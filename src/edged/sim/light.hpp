@@ -26,6 +26,27 @@ struct SunWindow {
   double power = 1.0;                  ///< radiance of a white surface square to the rays
 };
 
+/// A lamp with a narrow beam, held at one place, that somebody lets wander.
+struct Spotlight {
+  Eigen::Vector3d centre_W, axis_W;  ///< axis: unit, about which the beam wanders
+  double power = 1.0;                ///< radiance of a white surface square to the middle of the beam at 2 m
+  double phase_yaw = 0.0, phase_pitch = 0.0;
+  double begin_s = 0.0, end_s = 1e9;  ///< it is dark before and after
+  std::vector<double> switch_s;       ///< instants in between at which it is switched, increasing
+};
+
+/// The beam of one instant.
+struct Beam {
+  Eigen::Vector3d centre, axis;  ///< unit axis
+  double power = 0.0;            ///< as it shines now
+  double rate = 0.0;             ///< how fast the axis turns, at most [rad/s]; 0 where it is dark
+};
+Beam beam_at(const Spotlight& spot, double t_s);
+
+/// Radiance of a white matt surface at p with unit normal n in the beam, all in one frame: soft at the edge of the
+/// cone.
+float beam_light(const Beam& beam, const Eigen::Vector3f& p, const Eigen::Vector3f& n);
+
 /// Nothing casts a shadow but the wall around the window.
 struct Lighting {
   double ambient = 1.0;  ///< radiance of a white surface by what all others reflect

@@ -111,6 +111,38 @@ TEST(Renderer, ShowsAGlowingFaceWithItsLamp) {
   EXPECT_NEAR(renderer.render(above(2.0), 2.0).radiance[40 * 101 + 50], 0.0, 1e-3);
 }
 
+TEST(BeamLight, IsBrightestInItsMiddleAndFallsWithTheSquareOfTheDistance) {
+  const Beam beam{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), 3.0, 0.0};
+  const Eigen::Vector3f towards(0.0F, 0.0F, -1.0F);
+  EXPECT_FLOAT_EQ(beam_light(beam, {0.0F, 0.0F, 2.0F}, towards), 3.0F);
+  EXPECT_FLOAT_EQ(beam_light(beam, {0.0F, 0.0F, 4.0F}, towards), 0.75F);
+  EXPECT_EQ(beam_light(beam, {0.0F, 0.0F, 2.0F}, -towards), 0.0F);
+  float last = 3.0F;
+  for (float x = 0.1F; x < 2.0F; x += 0.1F) {
+    const float light = beam_light(beam, {x, 0.0F, 2.0F}, towards);
+    EXPECT_LE(light, last) << x;
+    last = light;
+  }
+  EXPECT_EQ(last, 0.0F);
+}
+
+TEST(BeamAt, ShinesFromItsBeginToItsEndAndTurnsNoFasterThanItSays) {
+  Spotlight spot;
+  spot.centre_W.setZero(), spot.axis_W = Eigen::Vector3d::UnitX();
+  spot.power = 2.0, spot.begin_s = 1.0, spot.end_s = 3.0, spot.switch_s = {2.0};
+  EXPECT_EQ(beam_at(spot, 0.9).power, 0.0);
+  EXPECT_EQ(beam_at(spot, 1.0).power, 2.0);
+  EXPECT_EQ(beam_at(spot, 2.1).power, 0.0);
+  spot.switch_s.clear();
+  EXPECT_EQ(beam_at(spot, 2.1).power, 2.0);
+  EXPECT_EQ(beam_at(spot, 3.1).power, 0.0);
+  for (double t = 1.1; t < 2.9; t += 0.05) {
+    const Beam beam = beam_at(spot, t);
+    const double turned = (beam_at(spot, t + 1e-4).axis - beam.axis).norm() / 1e-4;
+    EXPECT_LE(turned, beam.rate + 1e-3) << t;
+  }
+}
+
 TEST(MakeLighting, SwitchesItsSideLampsAtRandomTimesOfTheSeed) {
   const auto switched = [](std::uint64_t seed) {
     Random random(seed, 1);

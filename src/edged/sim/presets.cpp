@@ -104,7 +104,8 @@ const std::vector<std::string>& flight_presets() {
 
 const std::vector<std::string>& simulator_presets() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all{"room", "poster", "shapes", "handheld-fast", "dark"};
+    std::vector<std::string> all{"room",          "poster",  "shapes", "handheld-fast",
+                                 "handheld-wild", "walkers", "dark",   "spot"};
     all.insert(all.end(), flight_presets().begin(), flight_presets().end());
     return all;
   }();
@@ -127,6 +128,33 @@ SimulatorConfig simulator_preset(const std::string& name) {
     config.motion.max_speed = 2.0;
     config.motion.max_angle_deg = 45.0;
     config.motion.max_rate_deg_s = 180.0;
+    return config;
+  }
+  if (name == "handheld-wild") {
+    config.motion.extent_m = 0.7;
+    config.motion.max_speed = 1.5;
+    config.motion.max_angle_deg = 60.0;
+    config.motion.max_rate_deg_s = 573.0;
+    // Pixels that are too slow for the finest texture at that speed.
+    config.events.threshold_on = config.events.threshold_off = 0.4;
+    config.events.bandwidth_hz = 20.0;
+    config.events.bandwidth_per_radiance_hz = 600.0;
+    return config;
+  }
+  if (name == "walkers") {
+    config.disturbance = {.kind = DisturbanceKind::Walkers, .at_s = 0.0};
+    return config;
+  }
+  if (name == "spot") {
+    // 2.5 lux, where a well lit room has 200.
+    config.scene.kind = SceneKind::Poster;
+    config.scene.light = 0.0125;
+    config.events.bandwidth_hz = 20.0;
+    config.events.bandwidth_per_radiance_hz = 2000.0;
+    config.events.shot_hz = 0.8;
+    config.frames.auto_exposure = true;
+    config.frames.target_level = 40.0;  // as much of the view is dark
+    config.disturbance = {.kind = DisturbanceKind::WanderingLamp, .at_s = 0.0};
     return config;
   }
   if (name == "dark") {

@@ -95,9 +95,19 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   std::fill(out_.inverse_depth.begin(), out_.inverse_depth.end(), 0.0F);
   const SE3 T_C_W = T_W_C.inverse();
   const Eigen::Matrix3d R_C_W = T_C_W.R();
+  if (scene_.spotlight) {
+    beam_ = beam_at(*scene_.spotlight, t_s);
+    beam_.centre = T_C_W * beam_.centre;
+    beam_.axis = R_C_W * beam_.axis;
+  }
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
     Face face = scene_.faces[i];
-    face.centre_W += t_s * face.velocity_W;
+    Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();
+    if (face.mover >= 0) {
+      const Mover& mover = scene_.movers[static_cast<std::size_t>(face.mover)];
+      face.centre_W += mover.displacement(t_s);
+      velocity_W = mover.velocity(t_s);
+    }
     const double distance = face.normal_W.dot(T_W_C.translation() - face.centre_W);
     if (distance <= 1e-6) continue;
     const PixelBox box = bounds(face, T_C_W);
@@ -108,7 +118,8 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     views_[i] = {a.cast<float>(),
                  (u_C - u_C.dot(c_C) * a).cast<float>(),
                  (v_C - v_C.dot(c_C) * a).cast<float>(),
-                 (R_C_W * face.velocity_W).cast<float>(),
+                 (R_C_W * velocity_W).cast<float>(),
+                 (R_C_W * face.normal_W).cast<float>(),
                  static_cast<float>(face.half_u),
                  static_cast<float>(face.half_v),
                  static_cast<float>(distance)};
@@ -156,9 +167,18 @@ void Renderer::shade() {
     const float area = pitch * pitch * std::sqrt(b.squaredNorm()) * z / view.distance;
     const Texture& texture = scene_.textures[face.texture];
     const float u = view.u.dot(b) * z, v = view.v.dot(b) * z;
-    scratch_[i] = face.brightness * light_.at(index, u, v) *
+    float light = light_.at(index, u, v);
+    if (beam_.power > 0.0 && !face.glows) light += beam_light(beam_, z * b, view.normal);
+    scratch_[i] = face.brightness * light *
                   texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
   }
+}
+
+float Renderer::squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const {
+  if (beam_.rate == 0.0 || inverse_depth == 0.0F) return 0.0F;
+  const float from_lamp = (bearing / inverse_depth - beam_.centre.cast<float>()).norm();
+  const float speed = static_cast<float>(beam_.rate) * from_lamp * inverse_depth * focal_;
+  return speed * speed;
 }
 
 void Renderer::blur() {
@@ -193,6 +213,7 @@ double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector
       const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
       const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
       fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
+      fastest = std::max(fastest, squared_beam_speed(b, out_.inverse_depth[i]));
     }
   }
   return std::sqrt(static_cast<double>(fastest));

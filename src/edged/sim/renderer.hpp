@@ -28,7 +28,7 @@ class Renderer {
   const Rendering& last() const { return out_; }
 
   /// Fastest image motion [px/s] in the last picture, for a camera that moves with v_C [m/s] and turns with omega_C
-  /// [rad/s], both in its own frame; looked at on every fourth pixel.
+  /// [rad/s], both in its own frame; of surfaces and of the edge of a wandering light; looked at on every fourth pixel.
   double max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector3d& omega_C) const;
 
   int width() const { return width_; }
@@ -40,6 +40,7 @@ class Renderer {
   struct View {
     Eigen::Vector3f inverse_depth, u, v;
     Eigen::Vector3f velocity;  // [m/s]
+    Eigen::Vector3f normal;
     float half_u, half_v;
     float distance;  // of the camera from the plane [m]
   };
@@ -50,6 +51,8 @@ class Renderer {
   PixelBox bounds(const Face& face, const SE3& T_C_W) const;
   void cast(const View& view, const PixelBox& box, int index);
   void shade();
+  /// Of the edge of the light [px^2/s^2], at most.
+  float squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const;
   void blur();
 
   int width_, height_;
@@ -60,6 +63,7 @@ class Renderer {
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
   std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row
   std::vector<View> views_;
+  Beam beam_;              // of the spotlight in the camera frame; dark where there is none
   std::vector<int> seen_;  // face at each pixel, -1 for none
   std::vector<float> scratch_;
   Rendering out_;

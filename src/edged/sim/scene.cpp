@@ -78,22 +78,117 @@ void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   scene.textures.emplace_back(cv::Mat(1, 1, CV_8UC1, cv::Scalar(180)));
 }
 
+/// Of the faces from `first` on: with the newest mover, and lit by themselves: where they come from may be no light
+/// map.
+void set_moving(Scene& scene, std::size_t first) {
+  for (std::size_t i = first; i < scene.faces.size(); ++i) {
+    Face& face = scene.faces[i];
+    face.mover = static_cast<int>(scene.movers.size()) - 1;
+    face.texture %= scene.textures.size();
+    face.glows = true;
+  }
+}
+
 /// Upright and 1 m ahead when the camera is at T_W_C, walking to its left, 0.65 m/s.
 void add_person(Scene& scene, const SE3& T_W_C, double at_s, double light, Random random) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d left = up.cross(T_W_C.rotation() * Eigen::Vector3d::UnitZ()).normalized();
   Eigen::Matrix3d R_W_P;
   R_W_P << left, up.cross(left), up;
-  const Eigen::Vector3d velocity_W = 0.65 * left;
+  scene.movers.push_back({.velocity_W = 0.65 * left});
+  const Eigen::Vector3d met_by_s = at_s * scene.movers.back().velocity_W;
   const Eigen::Vector3d met_W = T_W_C.translation() + left.cross(up) - 0.35 * up;
   const std::size_t first = scene.faces.size();
-  add_cuboid(scene, {SE3(Eigen::Quaterniond(R_W_P), met_W - at_s * velocity_W), {0.3, 0.15, 0.85}}, light, random);
-  for (std::size_t i = first; i < scene.faces.size(); ++i) {
-    Face& face = scene.faces[i];
-    face.velocity_W = velocity_W;
-    face.texture %= scene.textures.size();
-    face.glows = true;  // where it comes from there may be no light
+  add_cuboid(scene, {SE3(Eigen::Quaterniond(R_W_P), met_W - met_by_s), {0.3, 0.15, 0.85}}, light, random);
+  set_moving(scene, first);
+}
+
+/// Where a camera is and looks on average.
+struct Outlook {
+  Eigen::Vector3d mean_W = Eigen::Vector3d::Zero(), left_W;
+  Eigen::Vector3d ahead_W = Eigen::Vector3d::Zero();  // level
+  double slope = 0.0;                                 // of its axis, upwards
+  double foremost_m = 0.0;                            // how far ahead of its mean place it comes
+};
+
+Outlook outlook(std::span<const SE3> path_W_C) {
+  Outlook out;
+  for (const SE3& T_W_C : path_W_C) {
+    out.mean_W += T_W_C.translation() / static_cast<double>(path_W_C.size());
+    out.ahead_W += T_W_C.rotation() * Eigen::Vector3d::UnitZ();
   }
+  out.slope = out.ahead_W.z() / out.ahead_W.head<2>().norm();
+  out.ahead_W.z() = 0.0;
+  out.ahead_W.normalize();
+  out.left_W = Eigen::Vector3d::UnitZ().cross(out.ahead_W);
+  for (const SE3& T_W_C : path_W_C)
+    out.foremost_m = std::max(out.foremost_m, out.ahead_W.dot(T_W_C.translation() - out.mean_W));
+  return out;
+}
+
+/// Head, trunk and two legs that stride; the trunk is as broad as wanted.
+void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const Mover& walk, double light, Random& random) {
+  struct Part {
+    double z, half_breadth, half_height, stride_m;
+  };
+  constexpr double kStep_rad_s = 2.0 * std::numbers::pi * 0.9;
+  const double half = 0.5 * breadth_m;
+  for (const Part& part : {Part{0.0, std::clamp(half, 0.07, 0.11), 0.13, 0.0}, Part{-0.45, half, 0.32, 0.0},
+                           Part{-1.19, 0.4 * half, 0.42, 0.2}, Part{-1.19, 0.4 * half, 0.42, -0.2}}) {
+    Mover mover = walk;
+    if (part.stride_m != 0.0)
+      mover.swings.push_back({part.stride_m * T_W_P.R().col(0), kStep_rad_s, walk.swings[0].phase});
+    scene.movers.push_back(mover);
+    const std::size_t first = scene.faces.size();
+    const SE3 T_W_part(T_W_P.rotation(), T_W_P * Eigen::Vector3d(0.0, 0.0, part.z));
+    add_cuboid(scene, {T_W_part, {part.half_breadth, 0.06, part.half_height}}, light, random);
+    set_moving(scene, first);
+    // Clothes: coarser than the walls, and lighter or darker.
+    const float brightness = static_cast<float>(light * random.uniform(0.3, 1.3));
+    for (std::size_t i = first; i < scene.faces.size(); ++i)
+      scene.faces[i].texels_per_m = 180.0F, scene.faces[i].brightness = brightness;
+  }
+}
+
+/// Two people who cross the view again and again, one behind the other, from the moment the disturbance begins.
+/// Together they cover about its strength of the view when both are in it.
+void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance& disturbance, double light,
+                 Random random) {
+  constexpr double kClearance_m = 0.9, kBehind_m = 0.35, kReach_m = 1.1, kAway_m_s = 2.0;
+  constexpr double kViewPerDepth = 1.2;    // width of what a usual camera sees
+  constexpr double kHeightCovered = 0.85;  // by somebody who stands before it
+  const Outlook view = outlook(path_W_C);
+  Eigen::Matrix3d R_W_P;
+  R_W_P << view.left_W, -view.ahead_W, Eigen::Vector3d::UnitZ();
+  for (int i = 0; i < 2; ++i) {
+    const double depth = view.foremost_m + kClearance_m + i * kBehind_m;
+    const double omega = 2.0 * std::numbers::pi / random.uniform(4.2, 5.6);
+    // They come towards each other, so that the middle of the view is not left alone for long.
+    const double phase = (i == 0 ? 0.0 : std::numbers::pi) + random.uniform(-0.4, 0.4) - omega * disturbance.at_s;
+    const Mover walk{.swings = {{kReach_m * view.left_W, omega, phase}},
+                     .from_s = disturbance.at_s,
+                     .to_s = disturbance.end_s(),
+                     .away_W = (i == 0 ? -kAway_m_s : kAway_m_s) * view.left_W};
+    const Eigen::Vector3d head_W =
+        view.mean_W + depth * view.ahead_W + (0.45 + view.slope * depth) * Eigen::Vector3d::UnitZ();
+    add_walker(scene, SE3(Eigen::Quaterniond(R_W_P), head_W),
+               0.5 * disturbance.strength / kHeightCovered * kViewPerDepth * depth, walk, light, random);
+  }
+}
+
+/// Held beside the camera's mean place, aimed at what it looks at.
+/// unit: radiance of the light 1 of the scene's faces.
+Spotlight make_spotlight(std::span<const SE3> path_W_C, const Disturbance& disturbance, double unit, Random random) {
+  const Outlook view = outlook(path_W_C);
+  Spotlight spot;
+  spot.centre_W = view.mean_W + 0.7 * view.left_W + 0.4 * Eigen::Vector3d::UnitZ();
+  spot.axis_W = (view.mean_W + 1.8 * view.ahead_W - spot.centre_W).normalized();
+  spot.power = disturbance.strength / unit;
+  spot.begin_s = disturbance.at_s, spot.end_s = disturbance.end_s();
+  spot.phase_yaw = random.uniform(-0.5, 0.5), spot.phase_pitch = random.uniform(0.0, 2.0 * std::numbers::pi);
+  if (disturbance.kind == DisturbanceKind::SwitchingLamp)
+    for (double t = spot.begin_s; t < spot.end_s; t += random.uniform(0.25, 1.2)) spot.switch_s.push_back(t);
+  return spot;
 }
 
 void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random, bool half_blank) {
@@ -200,6 +295,18 @@ void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
 
 }  // namespace
 
+Eigen::Vector3d Mover::displacement(double t_s) const {
+  Eigen::Vector3d d = t_s * velocity_W + (std::max(0.0, from_s - t_s) + std::max(0.0, t_s - to_s)) * away_W;
+  for (const Swing& swing : swings) d += std::sin(swing.omega * t_s + swing.phase) * swing.reach_W;
+  return d;
+}
+
+Eigen::Vector3d Mover::velocity(double t_s) const {
+  Eigen::Vector3d v = velocity_W + (t_s < from_s ? -1.0 : t_s > to_s ? 1.0 : 0.0) * away_W;
+  for (const Swing& swing : swings) v += swing.omega * std::cos(swing.omega * t_s + swing.phase) * swing.reach_W;
+  return v;
+}
+
 void SceneConfig::visit(ConfigFields& fields) {
   fields.choice(
       "kind", kind,
@@ -249,6 +356,10 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
   }
   if (disturbance.kind == DisturbanceKind::Person)
     add_person(scene, T_W_C_meeting, disturbance.middle_s(), config.light, Random(seed, 10));
+  if (disturbance.kind == DisturbanceKind::Walkers)
+    add_walkers(scene, path_W_C, disturbance, config.light, Random(seed, 11));
+  if (disturbance.kind == DisturbanceKind::WanderingLamp || disturbance.kind == DisturbanceKind::SwitchingLamp)
+    scene.spotlight = make_spotlight(path_W_C, disturbance, scene.lighting ? 1.0 : config.light, Random(seed, 12));
   return scene;
 }
 

@@ -18,7 +18,7 @@ constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(SimulatorConfig config) {
   Disturbance& disturbance = config.disturbance;
-  disturbance = disturbance.filled_in();
+  disturbance = disturbance.filled_in(config.duration_s);
   if (disturbance.kind != DisturbanceKind::None && disturbance.end_s() > config.duration_s)
     throw InputError::format(
         "option 'disturbance.length_s': the disturbance ends at {} s, but the recording at {} s; raise duration_s",

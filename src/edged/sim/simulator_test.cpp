@@ -69,7 +69,8 @@ TEST(Simulator, BlursFramesInMotionButNotAtRest) {
 TEST(Simulator, PresetsLookLikeTheirNames) {
   EXPECT_THROW(simulator_preset("submarine"), InputError);
   std::map<std::string, double> brightness, rate;
-  for (const std::string name : {"room", "poster", "shapes", "handheld-fast", "dark"}) {
+  for (const std::string name :
+       {"room", "poster", "shapes", "handheld-fast", "handheld-wild", "walkers", "dark", "spot"}) {
     const Recorded recorded = record(small(name, 1.5));
     brightness[name] = cv::mean(recorded.frames.back().image)[0];
     rate[name] = static_cast<double>(recorded.events.size()) / 1.2;
@@ -80,6 +81,14 @@ TEST(Simulator, PresetsLookLikeTheirNames) {
   EXPECT_GT(brightness["room"], 40.0);
   EXPECT_LT(brightness["dark"], 20.0);
   EXPECT_GT(rate["handheld-fast"], rate["room"]);
+  EXPECT_LT(brightness["spot"], brightness["room"]);
+}
+
+TEST(Simulator, ThePresetHandheldWildTurnsByUpToTenRadiansASecond) {
+  const Simulator simulator(simulator_preset("handheld-wild"));
+  double fastest = 0.0;
+  for (double t = 0.0; t < 20.0; t += 0.01) fastest = std::max(fastest, simulator.trajectory().at(t).omega_B.norm());
+  EXPECT_NEAR(fastest, 10.0, 1.0);
 }
 
 TEST(Simulator, PresetsOfFlightsAreTheElevenOfThePaper) {
