@@ -25,6 +25,15 @@ Flight disturbed_flight(DisturbanceKind kind, double length_s, const std::vector
   return simulate_flight(config);
 }
 
+/// Disturbed all along, or in motion from its first moment: the preset says how, and the settings.
+Flight flight_of(const std::string& preset, double duration_s, const std::vector<std::string>& settings = {}) {
+  SimulatorConfig config = simulator_preset(preset);
+  config.duration_s = duration_s;
+  ConfigFields fields = ConfigFields::of(config);
+  for (const std::string& setting : settings) fields.set(setting);
+  return simulate_flight(config);
+}
+
 bool ever(const FlightRun& run, TrackingStatus status) {
   const auto first_good = std::find_if(run.outputs.begin(), run.outputs.end(), [](const OdometryOutput& output) {
     return output.status == TrackingStatus::Good;
@@ -42,6 +51,10 @@ bool stays_good(const FlightRun& run) {
 /// divergence.
 FlightRun withstand(const Flight& flight, Mode mode) {
   FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
+  if (!run.statistics.first_good_s()) {
+    ADD_FAILURE() << to_string(mode) << ": never good, waits for " << run.outputs.back().waiting_for;
+    return run;
+  }
   const FlightScore result = score(flight, run);
   std::cout << to_string(mode) << ": " << describe(result, run.statistics) << '\n';
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
@@ -52,6 +65,14 @@ FlightRun withstand(const Flight& flight, Mode mode) {
               << '\n';
   }
   EXPECT_TRUE(result.consistency.silent.empty());
+  return run;
+}
+
+/// The same, Good in time, and never lost.
+FlightRun start_and_withstand(const Flight& flight, Mode mode, double within_s) {
+  FlightRun run = withstand(flight, mode);
+  EXPECT_LT(run.statistics.first_good_s().value_or(1e9), within_s) << to_string(mode);
+  EXPECT_EQ(run.statistics.times_lost(), 0U) << to_string(mode);
   return run;
 }
 
@@ -148,6 +169,13 @@ TEST(Stress, AStormOfTwentyMillionEventsASecondIsSurvived) {
   const Flight flight = disturbed_flight(DisturbanceKind::EventStorm, 0.3);
   EXPECT_TRUE(stays_good(withstand(flight, Mode::Fused)));
   EXPECT_EQ(withstand(flight, Mode::Events).statistics.times_lost(), 0U);
+}
+
+constexpr double kFromRest_s = 1.5;  // until Good
+
+TEST(Stress, TenRadiansASecondAreSurvived) {
+  const Flight flight = flight_of("handheld-wild", 4.0);
+  for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kFromRest_s);
 }
 
 }  // namespace
