@@ -13,6 +13,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
+#include "log.hpp"
 #include "survey_run.hpp"
 #include "survey_text.hpp"
 
@@ -37,14 +38,20 @@ std::vector<RigCamera> cameras_to_check(const Recording& recording) {
   return cameras;
 }
 
+/// Everything that was said while reading counts as a finding, too: nothing is printed that the summary does not hold.
+void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
+  for (std::string& line : lines) findings.push_back({Severity::Warning, std::move(line), ""});
+}
+
 int run_doctor(const DoctorOptions& options) {
   catch_interrupts();
+  HeldWarnings held;
   const Recording recording = open_uncalibrated(options.source);
   std::vector<VisualTurns> visual;
   GyroIntegral gyro;
   const std::vector<RigCamera> cameras = cameras_to_check(recording);
   for (const RigCamera& camera : cameras) visual.emplace_back(camera);
-  const Survey survey = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
+  const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
     if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample);
     for (VisualTurns& turns : visual) turns.add(measurement);
   });
@@ -52,9 +59,12 @@ int run_doctor(const DoctorOptions& options) {
 
   std::vector<CameraCheck> checks;
   for (std::size_t i = 0; i < cameras.size(); ++i)
-    checks.push_back(
-        {cameras[i], recording.calibration->has_extrinsics, compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
-  const std::vector<Finding> findings = diagnose(survey, recording.calibration.has_value(), checks);
+    checks.push_back({cameras[i], recording.calibration->has_extrinsics,
+                      compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
+  std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
+  add_log(held.take(), findings);
+  if (read.damage)
+    findings.push_back({Severity::Error, *read.damage, "what is above tells of the recording up to there"});
   fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n" : to_text(findings));
   const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
   return ill ? kExitInput : kExitOk;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "edged/core/check.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
@@ -31,11 +32,12 @@ std::string calibration_text(const Recording& recording) {
 int run_info(const InfoOptions& options) {
   catch_interrupts();
   const Recording recording = open_uncalibrated(options.source);
-  const Survey survey = survey_recording(*recording.dataset, options.quiet, {});
+  const auto [survey, damage] = survey_recording(*recording.dataset, options.quiet, {});
   if (options.json)
     fmt::print("{}\n", json_text(to_json(survey)));
   else
     fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
+  if (damage) throw InputError(*damage);
   if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts reach as far as was read");
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log.hpp"
 
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "status_line.hpp"
 
@@ -41,5 +44,34 @@ void attach_log_file(const std::filesystem::path& file) {
   sinks.push_back(to_file);
   spdlog::flush_on(spdlog::level::info);
 }
+
+class HeldWarnings::Sink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  std::vector<std::string> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(lines_, {});
+  }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    lines_.emplace_back(message.payload.data(), message.payload.size());
+  }
+  void flush_() override {}
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+HeldWarnings::HeldWarnings() : sink_(std::make_shared<Sink>()), before_(spdlog::default_logger()->sinks()) {
+  sink_->set_level(spdlog::level::warn);
+  spdlog::default_logger()->sinks() = {sink_};
+}
+
+HeldWarnings::~HeldWarnings() {
+  spdlog::default_logger()->sinks() = before_;
+  for (const std::string& line : sink_->take()) spdlog::warn("{}", line);
+}
+
+std::vector<std::string> HeldWarnings::take() { return sink_->take(); }
 
 }  // namespace edged

@@ -4,6 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spdlog::sinks {
+class sink;
+}
 
 namespace edged {
 
@@ -12,5 +19,22 @@ void start_logging();
 
 /// From now on everything also goes to the file, the lines kept so far first.
 void attach_log_file(const std::filesystem::path& file);
+
+/// While it lives, warnings and errors are kept for a command that reports them itself. What is not taken is logged in
+/// the end.
+class HeldWarnings {
+ public:
+  HeldWarnings();
+  ~HeldWarnings();
+  HeldWarnings(const HeldWarnings&) = delete;
+  HeldWarnings& operator=(const HeldWarnings&) = delete;
+
+  std::vector<std::string> take();
+
+ private:
+  class Sink;
+  std::shared_ptr<Sink> sink_;
+  std::vector<std::shared_ptr<spdlog::sinks::sink>> before_;
+};
 
 }  // namespace edged

@@ -36,11 +36,13 @@ std::string histogram(const EventSurvey& events) {
   const auto& bands = EventSurvey::kRateBands;
   std::string text;
   for (std::size_t i = 0; i <= bands.size(); ++i) {
-    const std::string name = i == 0              ? fmt::format("below {}", si_number(bands.front()))
-                             : i == bands.size() ? fmt::format("above {}", si_number(bands.back()))
-                                                 : fmt::format("{} to {}", si_number(bands[i - 1]), si_number(bands[i]));
+    const std::string name = i == 0 ? fmt::format("below {}", si_number(bands.front()))
+                             : i == bands.size()
+                                 ? fmt::format("above {}", si_number(bands.back()))
+                                 : fmt::format("{} to {}", si_number(bands[i - 1]), si_number(bands[i]));
     const auto columns = static_cast<std::size_t>(kBarColumns * events.rate_shares[i] + 0.5);
-    text += line("", fmt::format("{:>22} ev/s {:5.1f} % {}", name, 100 * events.rate_shares[i], std::string(columns, '#')));
+    text +=
+        line("", fmt::format("{:>22} ev/s {:5.1f} % {}", name, 100 * events.rate_shares[i], std::string(columns, '#')));
   }
   return text;
 }
@@ -52,12 +54,13 @@ std::string events_text(const Survey& s) {
                                size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
                                100 * e.positive_share, 100 * e.active_share));
   text += line("", s.events.gaps == 0 ? "never silent for 0.1 s" : "silences of 0.1 s: " + gap_text(s.events));
-  text += line("", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
+  text +=
+      line("", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
-  std::string hot = fmt::format("{} hot pixels (above {:.0f} times the median), {:.1f} % of the events", e.hot_pixels,
-                                EventSurvey::kHotFactor, 100 * e.hot_share);
+  std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
   for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
-    hot += fmt::format("{} ({}, {})", i == 0 ? ":" : ",", e.hottest[i].x, e.hottest[i].y);
+    hot +=
+        fmt::format("{} ({}, {}) {:.0f} Hz", i == 0 ? ":" : ",", e.hottest[i].x, e.hottest[i].y, e.hottest[i].rate_hz);
   return text + line("", hot);
 }
 
@@ -66,27 +69,23 @@ std::string imu_text(const Survey& s) {
   std::string text = line("IMU", stream_text(s.imu)) + line("", gap_text(s.imu));
   text += line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
                                imu.mean_accel, imu.mean_gyro, imu.max_gyro));
-  if (!imu.calm) return text + line("", "noise: too few samples in any half second to tell");
-  const ImuCalm& calm = *imu.calm;
-  text += line("", fmt::format("noise {}: gyro {:.2g} rad/s/sqrt(Hz), accelerometer {:.2g} m/s^2/sqrt(Hz)",
-                               calm.at_rest ? fmt::format("at rest (at {:.1f} s)", to_seconds(calm.begin))
-                                            : "when calmest (never at rest, so too high)",
-                               calm.gyro_noise, calm.accel_noise));
-  if (calm.at_rest)
-    text += line("", fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
-                                 calm.gyro.x(), calm.gyro.y(), calm.gyro.z(), calm.accel.x(), calm.accel.y(),
-                                 calm.accel.z()));
-  return text;
+  if (!imu.rest) return text + line("", "never at rest for half a second: no figure for its noise");
+  const ImuRest& rest = *imu.rest;
+  text += line(
+      "", fmt::format(
+              "noise at rest ({:.1f} s at {:.1f} s): gyro {:.2g} rad/s/sqrt(Hz), accelerometer {:.2g} m/s^2/sqrt(Hz)",
+              to_seconds(rest.length), to_seconds(rest.begin), rest.gyro_noise, rest.accel_noise));
+  return text +
+         line("",
+              fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
+                          rest.gyro.x(), rest.gyro.y(), rest.gyro.z(), rest.accel.x(), rest.accel.y(), rest.accel.z()));
 }
 
 nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
   if (stream.count == 0) return {{"count", 0}};
-  nlohmann::ordered_json json = {{"count", stream.count},
-                                 {"begin_ns", to_ns(*stream.begin)},
-                                 {"end_ns", to_ns(*stream.end)},
-                                 {"rate_hz", stream.rate_hz()},
-                                 {"gaps", stream.gaps},
-                                 {"missing_s", to_seconds(stream.missing)}};
+  nlohmann::ordered_json json = {{"count", stream.count},        {"begin_ns", to_ns(*stream.begin)},
+                                 {"end_ns", to_ns(*stream.end)}, {"rate_hz", stream.rate_hz()},
+                                 {"gaps", stream.gaps},          {"missing_s", to_seconds(stream.missing)}};
   for (const Gap& gap : stream.longest)
     json["longest_gaps"].push_back({{"after_ns", to_ns(gap.after)}, {"length_s", to_seconds(gap.length)}});
   return json;
@@ -132,7 +131,8 @@ std::string to_text(const Survey& s) {
 
 nlohmann::ordered_json to_json(const Survey& s) {
   const EventSurvey& e = s.event_details;
-  nlohmann::ordered_json json = {{"name", s.info.name}, {"format", s.info.format}, {"overlap_s", to_seconds(s.overlap())}};
+  nlohmann::ordered_json json = {
+      {"name", s.info.name}, {"format", s.info.format}, {"overlap_s", to_seconds(s.overlap())}};
   json["streams"] = nlohmann::ordered_json::array();
   for (const StreamInfo& stream : s.info.streams)
     json["streams"].push_back(
@@ -151,22 +151,23 @@ nlohmann::ordered_json to_json(const Survey& s) {
                            {"hot_pixels", e.hot_pixels},
                            {"hot_share", e.hot_share}});
     for (const HotPixel& pixel : e.hottest)
-      json["events"]["hottest"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}});
+      json["events"]["hottest"].push_back(
+          {{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
   }
   json["frames"] = stream_json(s.frames);
   if (s.frames.count > 0)
-    json["frames"].update({{"width", s.image_size.width},
-                           {"height", s.image_size.height},
-                           {"mean_brightness", s.mean_brightness}});
+    json["frames"].update(
+        {{"width", s.image_size.width}, {"height", s.image_size.height}, {"mean_brightness", s.mean_brightness}});
   json["imu"] = stream_json(s.imu);
   if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0) {
     json["imu"].update({{"mean_accel", imu.mean_accel}, {"mean_gyro", imu.mean_gyro}, {"max_gyro", imu.max_gyro}});
-    if (imu.calm)
-      json["imu"].update({{"gyro_noise", imu.calm->gyro_noise},
-                          {"accel_noise", imu.calm->accel_noise},
-                          {"at_rest", imu.calm->at_rest},
-                          {"calm_gyro", numbers(imu.calm->gyro)},
-                          {"calm_accel", numbers(imu.calm->accel)}});
+    json["imu"]["at_rest"] = imu.rest.has_value();
+    if (imu.rest)
+      json["imu"].update({{"rest_s", to_seconds(imu.rest->length)},
+                          {"gyro_noise", imu.rest->gyro_noise},
+                          {"accel_noise", imu.rest->accel_noise},
+                          {"rest_gyro", numbers(imu.rest->gyro)},
+                          {"rest_accel", numbers(imu.rest->accel)}});
   }
   if (s.truth) {
     json["ground_truth"] = stream_json(s.truth->stream);

@@ -5,6 +5,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -31,10 +33,6 @@ class Findings {
   }
 };
 
-double degrees_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  return Eigen::AngleAxisd(a.transpose() * b).angle() * kDegPerRad;
-}
-
 bool sure(const GyroAgreement& found) { return found.unexplained < 0.5; }
 
 bool in_degrees(const CameraCheck& check) {
@@ -47,7 +45,8 @@ std::string interval(const char* name, const StreamSurvey& stream) {
 
 void judge_clocks(const Survey& s, Findings& out) {
   if (s.imu.count == 0)
-    return out.error("no IMU samples", "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
+    return out.error("no IMU samples",
+                     "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
   std::string all = interval("IMU", s.imu);
   Duration shortest = s.imu.length();
   for (const auto& [name, stream] : {std::pair("events", &s.events), std::pair("frames", &s.frames)}) {
@@ -72,7 +71,8 @@ void judge_imu_rate(const Survey& s, Findings& out) {
   if (s.imu.count == 0) return;
   const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
   if (rate < 100.0)
-    out.warn(fmt::format("IMU at {:.0f} Hz", rate), "record it at 200 Hz or more: between samples the motion is guessed");
+    out.warn(fmt::format("IMU at {:.0f} Hz", rate),
+             "record it at 200 Hz or more: between samples the motion is guessed");
   else
     out.good(fmt::format("IMU at {:.0f} Hz", rate));
   if (s.imu.gaps == 0) return;
@@ -80,13 +80,27 @@ void judge_imu_rate(const Survey& s, Findings& out) {
   const std::string text =
       fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", s.imu.gaps,
                   to_seconds(s.imu.missing), to_seconds(longest.length), to_seconds(longest.after));
-  const std::string remedy = "gaps are bridged by interpolation and trusted less; look for an overloaded USB bus or a full disk";
+  const std::string remedy =
+      "gaps are bridged by interpolation and trusted less; look for an overloaded USB bus or a full disk";
   to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
+}
+
+/// Gravity is in the gyro's columns, always there and steady where the body is, and not in those of the accelerometer.
+bool columns_swapped(const ImuSurvey& imu) {
+  const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
+  return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&
+         imu.mean_accel < 0.6 * imu.mean_gyro;
 }
 
 void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
   if (s.imu.count == 0) return;
   const ImuSurvey& imu = s.imu_details;
+  if (columns_swapped(imu))
+    return out.error(
+        fmt::format("gyro and accelerometer are swapped: the gyro has gravity (mean {:.2f}), the accelerometer a mean "
+                    "of {:.2f}",
+                    imu.mean_gyro, imu.mean_accel),
+        "exchange the columns: an imu.txt has t ax ay az gx gy gz, EuRoC's data.csv t gx gy gz ax ay az");
   const double g = imu.mean_accel;
   const double calm = imu.calm ? imu.calm->accel.norm() : g;  // a mean, so that motion does not count
   if (g > 0.7 && g < 2.5 && calm > 0.8 && calm < 1.25)
@@ -102,23 +116,23 @@ void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, F
     out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
 
   constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
+  const bool compared =
+      std::ranges::any_of(cameras, [](const CameraCheck& c) { return c.agreement && sure(*c.agreement); });
   if (std::ranges::any_of(cameras, in_degrees))
     out.error("gyro in deg/s: it turns 57 times as fast as the camera", "multiply it by pi / 180");
-  else if (imu.mean_gyro > kFastest)
+  else if (!compared && imu.mean_gyro > kFastest)
     out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
   else
     out.good(fmt::format("gyro with a mean of {:.2f}, highest {:.2f} rad/s{}", imu.mean_gyro, imu.max_gyro,
-                         std::ranges::any_of(cameras, [](const CameraCheck& c) { return c.agreement && sure(*c.agreement); })
-                             ? ""
-                             : " (its unit is not checked against a camera)"));
+                         compared ? "" : " (its unit is not checked against a camera)"));
 }
 
 void judge_events(const Survey& s, Findings& out) {
   if (s.events.count == 0) return;
   const EventSurvey& e = s.event_details;
   if (s.events.gaps > 0)
-    out.note(fmt::format("{} silences of the events of {:.2f} s together, the longest {:.2f} s at {:.3f} s", s.events.gaps,
-                         to_seconds(s.events.missing), to_seconds(s.events.longest.front().length),
+    out.note(fmt::format("{} silences of the events of {:.2f} s together, the longest {:.2f} s at {:.3f} s",
+                         s.events.gaps, to_seconds(s.events.missing), to_seconds(s.events.longest.front().length),
                          to_seconds(s.events.longest.front().after)),
              "a still scene, or lost data: compare with the motion");
   if (e.hot_share > 0.02)
@@ -128,7 +142,8 @@ void judge_events(const Survey& s, Findings& out) {
   if (e.positive_share < 0.05 || e.positive_share > 0.95)
     out.warn(fmt::format("{:.1f} % of the events are positive", 100 * e.positive_share),
              "check that both polarities are recorded and told apart");
-  if (e.hot_share <= 0.02) out.good(fmt::format("events: {} hot pixels, {:.0f} % positive", e.hot_pixels, 100 * e.positive_share));
+  if (e.hot_share <= 0.02)
+    out.good(fmt::format("events: {} hot pixels, {:.0f} % positive", e.hot_pixels, 100 * e.positive_share));
 }
 
 void judge_frames(const Survey& s, Findings& out) {
@@ -146,50 +161,100 @@ void judge_frames(const Survey& s, Findings& out) {
 }
 
 void judge_shift(const CameraCheck& check, Findings& out) {
-  constexpr double kLeast_ms = 5.0;
+  // In dim light the events of a camera come later by milliseconds than those of the same camera in good light.
+  const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
   const double sigma = 1e3 * found.time_sigma_s;
-  const std::string text = fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
-                                       check.camera.name, shift, sigma, given);
+  const std::string text =
+      fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
+                  check.camera.name, shift, sigma, given);
   if (found.at_bound)
     out.warn(fmt::format("camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms by its turning",
                          check.camera.name, 1e3 * to_seconds(kMostShift), given),
              "check the clocks of camera and IMU");
-  else if (std::abs(shift - given) > std::max(kLeast_ms, kSigmas * sigma))
+  else if (std::abs(shift - given) > std::max(least_ms, kSigmas * sigma))
     out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
   else
     out.good(text);
 }
 
+/// A rotation to the IMU against the measured one, as far as that is known.
+struct RotationError {
+  Eigen::Vector3d turn;  ///< measured = this rotation * Exp(turn) [rad]
+  double degrees = 0.0, sigma_deg = 0.0;
+  double sigmas = 0.0;  ///< the whole of it in standard deviations, those of systematic errors included
+  bool right() const { return degrees <= 2.0 || sigmas <= 4.0; }  // calibrations are rarely better than 1 deg
+  bool unclear() const { return degrees > 4.0 && sigmas <= 4.0; }
+};
+
+/// The axis about which R_B_C is not known, of the camera; nothing where all three are.
+std::optional<Eigen::Vector3d> unknown_axis(const GyroAgreement& found) {
+  constexpr double kUnknown_deg = 10.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(found.rotation_covariance);
+  if (std::sqrt(axes.eigenvalues()[2]) * kDegPerRad < kUnknown_deg) return std::nullopt;
+  return axes.eigenvectors().col(2);
+}
+
+RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found) {
+  // Of the measurement itself: rolling shutter, scale and crossed axes of the gyro, corners that slide along edges.
+  constexpr double kSystematic_deg = 0.8;
+  const Eigen::Matrix3d off = R_B_C.transpose() * found.R_B_C;
+  const auto axis = unknown_axis(found);
+  const Eigen::AngleAxisd turn(axis ? Eigen::Quaterniond::FromTwoVectors(*axis, off * *axis) : Eigen::Quaterniond(off));
+  RotationError error{turn.angle() * turn.axis(), turn.angle() * kDegPerRad, 0.0, 0.0};
+  const Eigen::Matrix3d& measured = found.rotation_covariance;
+  const Eigen::Matrix3d whole = measured + std::pow(kSystematic_deg / kDegPerRad, 2) * Eigen::Matrix3d::Identity();
+  error.sigma_deg = std::sqrt(turn.axis().dot(measured * turn.axis())) * kDegPerRad;
+  error.sigmas = std::sqrt(error.turn.dot(whole.ldlt().solve(error.turn)));
+  return error;
+}
+
+/// Whether the transform was written down in the other direction: its inverse is right, and far better than itself.
+bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, const GyroAgreement& found) {
+  constexpr double kBetter = 5.0;  // standard deviations
+  const RotationError inverse = error_of(given.transpose(), found);
+  return inverse.right() && std::pow(error.sigmas, 2) - std::pow(inverse.sigmas, 2) > kBetter * kBetter;
+}
+
 void judge_rotation(const CameraCheck& check, Findings& out) {
-  constexpr double kLeastDegrees = 8.0;
+  constexpr double kWrong_deg = 8.0;  // less is made up for by online calibration, at a cost
   const GyroAgreement& found = *check.agreement;
-  const double sigma = found.rotation_sigma * kDegPerRad, most = std::max(kLeastDegrees, kSigmas * sigma);
-  const std::string& name = check.camera.name;
-  if (sigma > 10.0)
-    return out.note(fmt::format("camera {}: turned about one axis only, so its rotation is not checked", name));
+  const std::string name = "camera " + check.camera.name;
+  const auto axis = unknown_axis(found);
+  if (axis)
+    out.note(fmt::format(
+        "{}: turned about one axis only, ({:.2f}, {:.2f}, {:.2f}) of the camera: its rotation about that one is "
+        "not checked",
+        name, axis->x(), axis->y(), axis->z()));
   const Eigen::Matrix3d given = check.camera.T_B_C.rotation().toRotationMatrix();
-  const double off = degrees_between(given, found.R_B_C), inverse = degrees_between(given.transpose(), found.R_B_C);
-  if (off <= most)
-    return out.good(fmt::format("camera {}: its rotation agrees with the gyro to {:.1f} deg +- {:.1f} deg", name, off, sigma));
-  if (inverse <= most)
-    return out.error(fmt::format("camera {}: its rotation to the IMU contradicts the gyro by {:.0f} deg, the inverse fits",
-                                 name, off),
-                     "the transform points the other way: `edged calib` shows both directions");
-  const Eigen::AngleAxisd turn(given.transpose() * found.R_B_C);
-  out.error(fmt::format("camera {}: its rotation to the IMU contradicts the gyro by {:.0f} deg", name, off),
-            fmt::format("what fits is the calibration's times {:.0f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
-                        turn.angle() * kDegPerRad, turn.axis().x(), turn.axis().y(), turn.axis().z()));
+  const RotationError error = error_of(given, found);
+  const std::string number = fmt::format("{:.1f} deg +- {:.1f} deg", error.degrees, error.sigma_deg);
+  if (error.unclear())
+    return out.note(fmt::format("{}: its rotation differs from the gyro's by {}: too unsure to judge it", name, number),
+                    "turn the sensor about all axes before a scene with texture");
+  if (error.right()) return out.good(fmt::format("{}: its rotation agrees with the gyro to {}", name, number));
+  const Eigen::Vector3d about = error.turn.normalized();
+  const std::string remedy =
+      fmt::format("what fits is the calibration's times {:.1f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
+                  error.degrees, about.x(), about.y(), about.z());
+  const std::string text = fmt::format("{}: its rotation to the IMU contradicts the gyro by {}", name, number);
+  if (inverse_fits(given, error, found))
+    out.error(text + ", the inverse fits", "the transform points the other way: `edged calib` shows both directions");
+  else if (error.degrees < kWrong_deg)
+    out.warn(text, remedy + "; or calibrate again");
+  else
+    out.error(text, remedy);
 }
 
 /// A first guess for those who have no calibration yet.
 void tell_rotation(const CameraCheck& check, Findings& out) {
   const Eigen::Matrix3d& R = check.agreement->R_B_C;
-  out.note(fmt::format("camera {}: its rotation to the IMU is not calibrated; by its turning R_B_C is [{:.3f} {:.3f} {:.3f}; "
-                       "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
-                       check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2),
-                       check.agreement->rotation_sigma * kDegPerRad),
+  out.note(fmt::format(
+               "camera {}: its rotation to the IMU is not calibrated; by its turning R_B_C is [{:.3f} {:.3f} {:.3f}; "
+               "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
+               check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2),
+               check.agreement->rotation_sigma * kDegPerRad),
            "a run needs it and the lever arm: calibrate camera and IMU together, for instance with Kalibr");
 }
 
@@ -217,11 +282,17 @@ void judge_camera(const CameraCheck& check, const Survey& s, Findings& out) {
   const std::string& name = check.camera.name;
   if (!judge_size(check, s, out)) return;
   if (!check.agreement)
-    return out.note(fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
+    return out.note(
+        fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
   if (!sure(*check.agreement))
-    return out.note(fmt::format("camera {}: turns too little, or too unlike the gyro, to judge its calibration ({:.0f} % of "
-                                "its turning unexplained)",
-                                name, 100 * std::min(1.0, check.agreement->unexplained)));
+    return out.note(
+        fmt::format("camera {}: turns too little, or too unlike the gyro, to judge its calibration ({:.0f} % of "
+                    "its turning unexplained)",
+                    name, 100 * std::min(1.0, check.agreement->unexplained)));
+  if (check.agreement->mirrored)
+    return out.error(
+        fmt::format("camera {}: the gyro turns the other way, as if it were seen in a mirror", name),
+        "one or all three of its axes have the wrong sign: a right-handed IMU has x turning towards y about z");
   judge_shift(check, out);
   check.has_extrinsics ? judge_rotation(check, out) : tell_rotation(check, out);
   judge_scale(check, out);

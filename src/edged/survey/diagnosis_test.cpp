@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace edged {
 namespace {
@@ -33,7 +35,8 @@ Survey healthy() {
 
 CameraCheck agreeing() {
   GyroAgreement found;
-  found.turns = 200, found.unexplained = 0.1, found.time_sigma_s = 1e-4, found.rotation_sigma = 1e-3;
+  found.turns = 200, found.unexplained = 0.1, found.time_sigma_s = 1e-4, found.rotation_sigma = 2e-3;
+  found.rotation_covariance = 4e-6 * Eigen::Matrix3d::Identity();
   return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
 }
 
@@ -72,12 +75,12 @@ TEST(Diagnosis, NamesAMissingSlowOrHolyImu) {
 TEST(Diagnosis, NamesWrongUnits) {
   Survey s = healthy();
   s.imu_details.mean_accel = 1.0;
-  s.imu_details.calm = ImuCalm{.begin = {}, .at_rest = true, .accel = {0, 0, 1}};
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0, 0, 0}, .accel = {0, 0, 1}};
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "accelerometer in g"), HasSubstr("9.80665"));
   s.imu_details.mean_accel = 9806;
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "mm/s^2"), HasSubstr("1000"));
   s.imu_details.mean_accel = 0.9;
-  s.imu_details.calm = ImuCalm{.begin = {}, .at_rest = false, .accel = {0.1, 0, 0}};
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0, 0, 0}, .accel = {0.1, 0, 0}};
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "without gravity"), HasSubstr("specific force"));
   s = healthy();
   CameraCheck check = agreeing();
@@ -93,20 +96,24 @@ TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
   EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "+12.0 ms"), HasSubstr("0.0120"));
   check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
-  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "contradicts the gyro by 86 deg"),
-              HasSubstr("86 deg about the camera's axis (0.00, 0.00, 1.00)"));
+  EXPECT_THAT(
+      remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "contradicts the gyro by 85.9 deg +- 0.1 deg"),
+      HasSubstr("85.9 deg about the camera's axis (0.00, 0.00, 1.00)"));
   check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
-  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "the inverse fits"), HasSubstr("other way"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "the inverse fits"),
+              HasSubstr("other way"));
   check = agreeing();
   check.agreement->gyro_scale = 0.5;
-  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "0.50 times"), HasSubstr("focal length"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "0.50 times"),
+              HasSubstr("focal length"));
 }
 
 TEST(Diagnosis, GuessesTheRotationOfACameraThatHasNone) {
   CameraCheck check = agreeing();
   check.has_extrinsics = false;
   check.agreement->R_B_C << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "0.000 1.000; -1.000"),
+              HasSubstr("Kalibr"));
 }
 
 TEST(Diagnosis, NamesWhatIsMissingOrOfAnotherSize) {
@@ -115,7 +122,8 @@ TEST(Diagnosis, NamesWhatIsMissingOrOfAnotherSize) {
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "neither events nor frames"), HasSubstr("--topic"));
   s = healthy();
   s.image_size = cv::Size(346, 260);
-  EXPECT_THAT(remedy_of(diagnose(s, true, {agreeing()}), Severity::Error, "recorded 346 x 260"), HasSubstr("resolution"));
+  EXPECT_THAT(remedy_of(diagnose(s, true, {agreeing()}), Severity::Error, "recorded 346 x 260"),
+              HasSubstr("resolution"));
   EXPECT_THAT(remedy_of(diagnose(healthy(), false, {}), Severity::Note, "no calibration"), HasSubstr("--rig"));
   EXPECT_EQ(remedy_of(diagnose(healthy(), true, {}), Severity::Note, "no camera that could be compared"), "");
 }
@@ -123,7 +131,8 @@ TEST(Diagnosis, NamesWhatIsMissingOrOfAnotherSize) {
 TEST(Diagnosis, GivesNoNumberForAShiftBeyondItsSearch) {
   CameraCheck check = agreeing();
   check.agreement->at_bound = true;
-  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "100 ms or more off"), HasSubstr("clocks"));
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "100 ms or more off"),
+              HasSubstr("clocks"));
 }
 
 TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
@@ -131,9 +140,56 @@ TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
   check.agreement->unexplained = 0.8;
   EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "80 % of its turning unexplained"), "");
-  check = agreeing();
-  check.agreement->rotation_sigma = 0.5;
-  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "about one axis only"), "");
+}
+
+TEST(Diagnosis, JudgesARotationBySizeAndSigma) {
+  const auto said = [](double degrees, double sigma_deg) {
+    CameraCheck check = agreeing();
+    check.camera.T_B_C = SE3(so3::exp(Eigen::Vector3d(0.6, 0, -0.8) * degrees * std::numbers::pi / 180), {0, 0, 0});
+    check.agreement->rotation_covariance =
+        std::pow(sigma_deg * std::numbers::pi / 180, 2) * Eigen::Matrix3d::Identity();
+    Severity worst = Severity::Good;
+    for (const Finding& f : diagnose(healthy(), true, {check})) worst = std::max(worst, f.severity);
+    return worst;
+  };
+  EXPECT_EQ(said(1, 0.1), Severity::Good);
+  EXPECT_EQ(said(5, 0.3), Severity::Warning);
+  EXPECT_EQ(said(5, 3.0), Severity::Note) << "neither right nor wrong";
+  EXPECT_EQ(said(10, 0.3), Severity::Error);
+  EXPECT_EQ(said(90, 3.0), Severity::Error);
+}
+
+TEST(Diagnosis, NeverBlamesTheDirectionOfASmallRotation) {
+  for (const double angle : {0.1, -0.1}) {
+    CameraCheck check = agreeing();
+    check.camera.T_B_C = SE3(so3::exp({0.01, 0, angle}), {0, 0, 0});
+    EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "contradicts the gyro by 5.8 deg"),
+                HasSubstr("calibrate again"));
+  }
+}
+
+TEST(Diagnosis, JudgesWhatIsKnownOfARotationAboutOneAxis) {
+  CameraCheck check = agreeing();
+  check.agreement->rotation_covariance(2, 2) = 0.5;
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  std::vector<Finding> findings = diagnose(healthy(), true, {check});
+  EXPECT_EQ(remedy_of(findings, Severity::Note, "about one axis only, (0.00, 0.00, 1.00)"), "");
+  EXPECT_EQ(remedy_of(findings, Severity::Good, "its rotation agrees with the gyro to 0.0 deg"), "");
+  check.agreement->R_B_C = so3::exp({0.2, 0, 0}).toRotationMatrix();
+  EXPECT_NE(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "contradicts the gyro by 11.5 deg"), "");
+}
+
+TEST(Diagnosis, NamesSwappedColumnsAndMirroredAxesAsSuch) {
+  Survey s = healthy();
+  s.imu_details.mean_gyro = 9.9, s.imu_details.max_gyro = 14.0, s.imu_details.mean_accel = 0.4;
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0.3, -0.2, 9.8}, .accel = {0.01, 0, 0}};
+  const std::vector<Finding> findings = diagnose(s, false, {});
+  EXPECT_THAT(remedy_of(findings, Severity::Error, "gyro and accelerometer are swapped"),
+              HasSubstr("t ax ay az gx gy gz"));
+  EXPECT_EQ(std::ranges::count(findings, Severity::Error, &Finding::severity), 1) << "no unit is blamed beside it";
+  CameraCheck check = agreeing();
+  check.agreement->mirrored = true;
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "turns the other way"), HasSubstr("sign"));
 }
 
 TEST(Diagnosis, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {

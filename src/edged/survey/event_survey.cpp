@@ -17,13 +17,15 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
+/// The largest sensor where the size is not known.
+cv::Size counted_area(cv::Size sensor) {
+  return sensor.empty() ? cv::Size(kMostSide, kMostSide)
+                        : cv::Size(std::min(sensor.width, kMostSide), std::min(sensor.height, kMostSide));
+}
+
 }  // namespace
 
-EventSurveyor::EventSurveyor(cv::Size sensor)
-    : sensor_(sensor),
-      counted_(sensor.empty() ? cv::Size(kMostSide, kMostSide)
-                              : cv::Size(std::min(sensor.width, kMostSide), std::min(sensor.height, kMostSide))),
-      pixels_(area(counted_)) {}
+EventSurveyor::EventSurveyor(cv::Size sensor) : sensor_(sensor), pixels_(counted_area(sensor)) {}
 
 void EventSurveyor::add(std::span<const Event> events) {
   for (const Event& event : events) {
@@ -34,7 +36,7 @@ void EventSurveyor::add(std::span<const Event> events) {
     positive_ += event.positive;
     extent_.width = std::max(extent_.width, event.x + 1);
     extent_.height = std::max(extent_.height, event.y + 1);
-    if (event.x < counted_.width && event.y < counted_.height) ++pixels_[place(event.x, event.y)];
+    pixels_.add(event.x, event.y, event.t);
   }
 }
 
@@ -58,46 +60,14 @@ EventSurvey EventSurveyor::result() const {
   for (std::size_t i = 0; i < survey.rate_shares.size(); ++i)
     survey.rate_shares[i] = share(ended.band_bins_[i], ended.bins_);
   survey.extent = extent_;
-  find_hot_pixels(survey);
-  return survey;
-}
-
-std::size_t EventSurveyor::place(int x, int y) const {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(counted_.width) + static_cast<std::size_t>(x);
-}
-
-/// Far above most pixels, and far above those beside it: an edge or a thing that moves is not alone.
-bool EventSurveyor::is_hot(int x, int y, double limit) const {
-  constexpr double kAboveNeighbours = 10.0;
-  const double events = pixels_[place(x, y)];
-  if (events <= limit) return false;
-  std::vector<std::uint32_t> around;
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, counted_.height - 1); ++v)
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, counted_.width - 1); ++u)
-      if (u != x || v != y) around.push_back(pixels_[place(u, v)]);
-  std::ranges::sort(around);
-  return around.empty() || events > kAboveNeighbours * around[around.size() / 2];
-}
-
-void EventSurveyor::find_hot_pixels(EventSurvey& survey) const {
-  std::vector<std::uint32_t> fired;
-  std::ranges::copy_if(pixels_, std::back_inserter(fired), [](std::uint32_t count) { return count > 0; });
-  if (fired.empty()) return;
-  survey.active_share = share(fired.size(), area(sensor_.empty() ? extent_ : sensor_));
-  const auto middle = fired.begin() + static_cast<std::ptrdiff_t>(fired.size() / 2);
-  std::ranges::nth_element(fired, middle);
-  const double limit = EventSurvey::kHotFactor * *middle;
+  survey.active_share = share(pixels_.active(), area(sensor_.empty() ? extent_ : sensor_));
+  survey.hottest = pixels_.result();
+  survey.hot_pixels = survey.hottest.size();
   std::size_t hot_events = 0;
-  for (int y = 0; y < std::min(extent_.height, counted_.height); ++y)
-    for (int x = 0; x < std::min(extent_.width, counted_.width); ++x) {
-      if (!is_hot(x, y, limit)) continue;
-      ++survey.hot_pixels;
-      hot_events += pixels_[place(x, y)];
-      survey.hottest.push_back({x, y, pixels_[place(x, y)]});
-    }
-  std::ranges::stable_sort(survey.hottest, std::greater<>(), &HotPixel::events);
-  survey.hottest.resize(std::min(survey.hottest.size(), kListedHotPixels));
+  for (const HotPixel& pixel : survey.hottest) hot_events += pixel.events;
   survey.hot_share = share(hot_events, events_);
+  survey.hottest.resize(std::min(survey.hottest.size(), kListedHotPixels));
+  return survey;
 }
 
 }  // namespace edged

@@ -4,37 +4,30 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <opencv2/core/types.hpp>
 #include <span>
 #include <vector>
 
 #include "edged/core/types.hpp"
+#include "edged/survey/hot_pixels.hpp"
 
 namespace edged {
-
-/// A pixel that fires far more than the others.
-struct HotPixel {
-  int x = 0, y = 0;
-  std::size_t events = 0;
-};
 
 struct EventSurvey {
   /// Upper ends of the bands of the rate histogram [events/s]; the last band is open.
   static constexpr std::array<double, 5> kRateBands = {1e3, 1e4, 1e5, 1e6, 1e7};
 
-  double positive_share = 0.0;                             ///< of all events
-  double peak_rate_hz = 0.0;                               ///< over 10 ms
+  double positive_share = 0.0;                              ///< of all events
+  double peak_rate_hz = 0.0;                                ///< over 10 ms
   std::array<double, kRateBands.size() + 1> rate_shares{};  ///< of the time, by band
-  double active_share = 0.0;                               ///< pixels that fired at all, of the sensor
-  cv::Size extent;                                         ///< the least sensor that holds every event [px]
-  std::size_t hot_pixels = 0;                              ///< above kHotFactor times the median pixel that fired, and alone
-  double hot_share = 0.0;                                  ///< events of hot pixels, of all
-  std::vector<HotPixel> hottest;                           ///< at most ten, hottest first
-  static constexpr double kHotFactor = 50.0;
+  double active_share = 0.0;                                ///< pixels that fired at all, of the sensor
+  cv::Size extent;                                          ///< the least sensor that holds every event [px]
+  std::size_t hot_pixels = 0;
+  double hot_share = 0.0;         ///< events of hot pixels, of all
+  std::vector<HotPixel> hottest;  ///< at most ten, hottest first
 };
 
-/// Takes events in time order. Memory: four bytes a pixel, 16 MB at most.
+/// Takes events in time order. Memory: that of HotPixelFinder, 59 MB at most.
 class EventSurveyor {
  public:
   /// sensor: pixels beyond it are counted, but not one by one; empty where it is not known.
@@ -45,12 +38,9 @@ class EventSurveyor {
 
  private:
   void close_bin(std::size_t bins);
-  std::size_t place(int x, int y) const;
-  bool is_hot(int x, int y, double limit) const;
-  void find_hot_pixels(EventSurvey& survey) const;
 
-  cv::Size sensor_, counted_, extent_;
-  std::vector<std::uint32_t> pixels_;
+  cv::Size sensor_, extent_;
+  HotPixelFinder pixels_;
   std::size_t events_ = 0, positive_ = 0, bin_events_ = 0, bins_ = 0, peak_ = 0;
   std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins_{};
   Timestamp bin_end_ = Timestamp::min();

@@ -9,13 +9,15 @@
 #include <limits>
 
 #include "edged/core/statistics.hpp"
+#include "edged/survey/ray_fit.hpp"
 
 namespace edged {
 namespace {
 
 constexpr std::size_t kFewestTurns = 30;
-constexpr std::size_t kMostSamples = 300'000;  // of the gyro: five minutes of 1 kHz
-constexpr Duration kShiftStep = std::chrono::milliseconds(4);   // then refined
+constexpr std::size_t kMostSamples = 300'000;                     // of the gyro: five minutes of 1 kHz
+constexpr Duration kShiftStep = std::chrono::milliseconds(4);     // then refined
+constexpr double kUnlike = 0.5;                                   // of the turning unexplained: the gyro is another's
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);  // between samples; a longer one is a gap
 
 /// The same turns, seen by the camera and by the gyro at one shift [rad/s].
@@ -96,8 +98,9 @@ double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgre
   }
   const double variance = squares / weight * overlap;
   agreement.time_sigma_s = std::sqrt(variance / std::max(slopes, 1e-12));
-  const Eigen::Vector3d axes = turning.selfadjointView<Eigen::Lower>().eigenvalues();
-  agreement.rotation_sigma = std::sqrt(variance / std::max(axes[0] + axes[1], 1e-12));
+  const Eigen::Matrix3d known =
+      turning.trace() * Eigen::Matrix3d::Identity() - turning + 1e-12 * Eigen::Matrix3d::Identity();
+  agreement.rotation_covariance = variance * known.inverse();
   return -product / std::max(slopes, 1e-12);
 }
 
@@ -121,47 +124,54 @@ std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegr
   return best;
 }
 
-}  // namespace
-
-void GyroIntegral::add(const ImuSample& sample) {
-  if (stamps_.size() >= kMostSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
-  if (!sample.gyro_B.allFinite()) return;
-  const Eigen::Vector3d step = stamps_.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                               : Eigen::Vector3d((gyro_.back() + sample.gyro_B) / 2 *
-                                                                 to_seconds(sample.t - stamps_.back()));
-  sum_.push_back(sum_.empty() ? step : Eigen::Vector3d(sum_.back() + step));
-  stamps_.push_back(sample.t);
-  gyro_.push_back(sample.gyro_B);
+/// Corners err alike for seconds, so turns are not independent: the truth is in how the rotation changes when a tenth
+/// of the recording is left out (Efron and Tibshirani 1993, the jackknife by blocks).
+Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
+  constexpr std::size_t kBlocks = 10;
+  const std::size_t n = pairs.camera.size();
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    Pairs kept;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i * kBlocks / n == block) continue;
+      kept.camera.push_back(pairs.camera[i]);
+      kept.gyro.push_back(pairs.gyro[i]);
+    }
+    const Eigen::Vector3d change = so3::log(Eigen::Quaterniond(R_B_C.transpose() * fit_turns(kept).R));
+    sum += change * change.transpose();
+  }
+  return sum * (static_cast<double>(kBlocks) - 1) / static_cast<double>(kBlocks);
 }
 
-std::optional<Eigen::Vector3d> GyroIntegral::between(Timestamp begin, Timestamp end) const {
-  const auto place = [this](Timestamp t) {
-    return static_cast<std::size_t>(std::ranges::upper_bound(stamps_, t) - stamps_.begin());
-  };
-  const std::size_t first = place(begin), last = place(end);
-  if (first == 0 || last == stamps_.size()) return std::nullopt;
-  for (std::size_t i = first; i <= last; ++i)
-    if (stamps_[i] - stamps_[i - 1] > kLongestStep) return std::nullopt;
-  return up_to(last, end) - up_to(first, begin);
+/// The same better, where the turns come with their corners.
+void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreement& agreement) {
+  // A gyro's scale errs by nothing that matters, unless its unit is another one: then there is no use for a better
+  // rotation.
+  const double scale = agreement.gyro_scale;
+  if (agreement.unexplained < kUnlike && (scale < 0.67 || scale > 1.5)) return;
+  const auto fit = fit_rays(turns, gyro, {agreement.R_B_C, to_seconds(agreement.time_offset)});
+  if (!fit) return;
+  agreement.R_B_C = fit->mount.R_B_C;
+  agreement.time_offset = duration_from_seconds(fit->mount.shift_s);
+  agreement.gyro_scale = 1.0;
+  agreement.unexplained = fit->unexplained;
+  agreement.time_sigma_s = fit->shift_sigma_s;
+  agreement.rotation_covariance = fit->rotation_covariance;
+  agreement.rotation_sigma = std::sqrt(fit->rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
 }
 
-/// From the first sample to t, which lies between the samples `after` - 1 and `after`.
-Eigen::Vector3d GyroIntegral::up_to(std::size_t after, Timestamp t) const {
-  const double step = to_seconds(stamps_[after] - stamps_[after - 1]), part = to_seconds(t - stamps_[after - 1]);
-  const Eigen::Vector3d now = gyro_[after - 1] + (gyro_[after] - gyro_[after - 1]) * (part / step);
-  return sum_[after - 1] + (gyro_[after - 1] + now) / 2 * part;
-}
-
-std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
-                                               Duration expected) {
+/// As compare_with_gyro, of a gyro with right signs.
+std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const GyroIntegral& gyro,
+                                              Duration expected) {
   constexpr int kRefinements = 5;
   if (turns.size() < kFewestTurns) return std::nullopt;
   const auto coarse = best_shift(turns, gyro, expected);
   if (!coarse) return std::nullopt;
   GyroAgreement agreement;
   agreement.time_offset = *coarse;
+  Pairs pairs;
   for (int i = 0; i < kRefinements; ++i) {
-    const Pairs pairs = pairs_at(turns, gyro, agreement.time_offset);
+    pairs = pairs_at(turns, gyro, agreement.time_offset);
     if (pairs.camera.size() < kFewestTurns) return std::nullopt;
     const Fit fit = fit_turns(pairs);
     const double step_s = refine_shift(pairs, fit, overlap_of(turns), agreement);
@@ -174,8 +184,72 @@ std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, cons
     for (const Eigen::Vector3d& turn : pairs.camera) speeds.push_back(turn.norm());
     agreement.unexplained = fit.median_error / std::max(median(speeds), 1e-9);
   }
+  agreement.rotation_covariance += scatter_of(pairs, agreement.R_B_C);
+  agreement.rotation_sigma = std::sqrt(agreement.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
+  use_rays(turns, gyro, agreement);
   agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > kMostShift - kShiftStep;
   return agreement;
+}
+
+}  // namespace
+
+void GyroIntegral::add(const ImuSample& sample) {
+  if (stamps_.size() >= kMostSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
+  if (!sample.gyro_B.allFinite()) return;
+  if (stamps_.empty()) {
+    sum_.push_back(Eigen::Vector3d::Zero());
+    turned_.push_back(Eigen::Quaterniond::Identity());
+  } else {
+    const Eigen::Vector3d step = (gyro_.back() + sample.gyro_B) / 2 * to_seconds(sample.t - stamps_.back());
+    sum_.push_back(sum_.back() + step);
+    turned_.push_back((turned_.back() * so3::exp(step)).normalized());
+  }
+  stamps_.push_back(sample.t);
+  gyro_.push_back(sample.gyro_B);
+}
+
+std::optional<std::pair<std::size_t, std::size_t>> GyroIntegral::samples_after(Timestamp begin, Timestamp end) const {
+  const auto place = [this](Timestamp t) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(stamps_, t) - stamps_.begin());
+  };
+  const std::size_t first = place(begin), last = place(end);
+  if (first == 0 || last == stamps_.size()) return std::nullopt;
+  for (std::size_t i = first; i <= last; ++i)
+    if (stamps_[i] - stamps_[i - 1] > kLongestStep) return std::nullopt;
+  return std::pair(first, last);
+}
+
+Eigen::Vector3d GyroIntegral::step_to(std::size_t after, Timestamp t) const {
+  const double step = to_seconds(stamps_[after] - stamps_[after - 1]), part = to_seconds(t - stamps_[after - 1]);
+  const Eigen::Vector3d now = gyro_[after - 1] + (gyro_[after] - gyro_[after - 1]) * (part / step);
+  return (gyro_[after - 1] + now) / 2 * part;
+}
+
+std::optional<Eigen::Vector3d> GyroIntegral::between(Timestamp begin, Timestamp end) const {
+  const auto after = samples_after(begin, end);
+  if (!after) return std::nullopt;
+  const auto up_to = [this](std::size_t i, Timestamp t) -> Eigen::Vector3d { return sum_[i - 1] + step_to(i, t); };
+  return up_to(after->second, end) - up_to(after->first, begin);
+}
+
+std::optional<Eigen::Vector3d> GyroIntegral::turn_between(Timestamp begin, Timestamp end) const {
+  const auto after = samples_after(begin, end);
+  if (!after) return std::nullopt;
+  const auto up_to = [this](std::size_t i, Timestamp t) { return turned_[i - 1] * so3::exp(step_to(i, t)); };
+  return so3::log(up_to(after->first, begin).inverse() * up_to(after->second, end));
+}
+
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
+                                               Duration expected) {
+  constexpr double kFarBetter = 0.6;
+  auto given = compare_as_given(turns, gyro, expected);
+  if (!given || given->unexplained < kUnlike) return given;
+  std::vector<Turn> negated(turns.begin(), turns.end());
+  for (Turn& turn : negated) turn.phi_C = -turn.phi_C;
+  auto mirrored = compare_as_given(negated, gyro, expected);
+  if (!mirrored || mirrored->unexplained > kFarBetter * kUnlike) return given;
+  mirrored->mirrored = true;
+  return mirrored;
 }
 
 }  // namespace edged

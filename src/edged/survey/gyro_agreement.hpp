@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "edged/survey/visual_turns.hpp"
@@ -12,31 +13,43 @@
 namespace edged {
 
 struct GyroAgreement {
-  std::size_t turns = 0;       ///< compared
-  double unexplained = 1.0;    ///< median difference over median angular speed; above about 0.5 the rest means little
-  Duration time_offset{0};     ///< t_imu = t_cam + time_offset
+  std::size_t turns = 0;     ///< compared
+  double unexplained = 1.0;  ///< median difference over median angular speed; above about 0.5 the rest means little
+  Duration time_offset{0};   ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;
-  bool at_bound = false;       ///< farther off than was searched: time_offset is no estimate
+  bool at_bound = false;  ///< farther off than was searched: time_offset is no estimate
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
   double rotation_sigma = 0.0;  ///< of the least known axis [rad]; large where it turned about one axis only
-  double gyro_scale = 1.0;      ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+  /// Of R_B_C * Exp(error), from how the answers of parts of the recording scatter [rad^2].
+  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
+  bool mirrored = false;    ///< fits only after its turns are negated: axes of the gyro have the wrong sign
+  double gyro_scale = 1.0;  ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
 };
 
-/// Integrated gyro: the rotation vector of the body between two stamps, for turns small enough to be added.
+/// Integrated gyro.
 class GyroIntegral {
  public:
   void add(const ImuSample& sample);
-  /// Nothing where samples are missing.
+  /// The rotation vector of the body between two stamps, for turns small enough to be added: whatever the unit of the
+  /// gyro. Nothing where samples are missing.
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
+  /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
+  std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
 
  private:
-  Eigen::Vector3d up_to(std::size_t after, Timestamp t) const;
+  /// The first sample after each of two stamps.
+  std::optional<std::pair<std::size_t, std::size_t>> samples_after(Timestamp begin, Timestamp end) const;
+  /// From the sample `after` - 1 to t, which lies before the next one.
+  Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
+
   std::vector<Timestamp> stamps_;
   std::vector<Eigen::Vector3d> gyro_, sum_;
+  std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
 };
 
 /// Time offsets within kMostShift of `expected` are tried. Nothing where there are too few turns to compare.
 inline constexpr Duration kMostShift = std::chrono::milliseconds(100);
-std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected);
+std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
+                                               Duration expected);
 
 }  // namespace edged

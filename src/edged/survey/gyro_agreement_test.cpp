@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace edged {
 namespace {
@@ -28,8 +29,8 @@ std::vector<Turn> turns_of(double seconds, const Eigen::Matrix3d& R_B_C, double 
   for (double t = 0.5; t < seconds - 0.5; t += 0.04) {
     Eigen::Vector3d phi = Eigen::Vector3d::Zero();
     for (int i = 0; i < 80; ++i) phi += shaking(t + (i + 0.5) * 0.001) * 0.001;
-    turns.push_back({timestamp_from_seconds(t - offset_s), timestamp_from_seconds(t - offset_s + 0.08),
-                     R_B_C.transpose() * phi});
+    turns.push_back(
+        {timestamp_from_seconds(t - offset_s), timestamp_from_seconds(t - offset_s + 0.08), R_B_C.transpose() * phi});
   }
   return turns;
 }
@@ -63,6 +64,59 @@ TEST(GyroAgreement, OneWrongTurnInTenDecidesNothing) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(to_seconds(found->time_offset), 0.01, 1e-3);
   EXPECT_LT((found->R_B_C - kTurned).norm(), 1e-2);
+}
+
+TEST(GyroAgreement, TellsAGyroWithNegatedAxes) {
+  const auto found = compare_with_gyro(turns_of(8, kTurned, 0.01), gyro_of(8, -1.0), Duration(0));
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->mirrored);
+  EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 0.01), gyro_of(8), Duration(0))->mirrored);
+}
+
+/// The same turns with corners at 1 to 3 m, seen by a camera that also moves by up to 0.1 m; rotation vectors as bad as
+/// those of a single turn.
+std::vector<Turn> turns_with_rays(double seconds, double offset_s) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<Turn> turns = turns_of(seconds, kTurned, offset_s);
+  for (Turn& turn : turns) {
+    Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+    const double begin = to_seconds(turn.begin.time_since_epoch()) + offset_s;
+    for (int i = 0; i < 80; ++i) q = q * so3::exp(shaking(begin + (i + 0.5) * 1e-3) * 1e-3);
+    const SE3 T_begin_end(kTurned.transpose() * q.toRotationMatrix() * kTurned,
+                          0.1 * Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
+    for (int i = 0; i < 40; ++i) {
+      const Eigen::Vector3d p =
+          Eigen::Vector3d(0.6 * uniform(random), 0.45 * uniform(random), 1.0) * (2 + uniform(random));
+      const auto ray = [&](const Eigen::Vector3d& x) {
+        return Eigen::Vector3d(x + x.z() * 2e-3 * Eigen::Vector3d(normal(random), normal(random), 0)).normalized();
+      };
+      turn.rays.emplace_back(ray(p), ray(T_begin_end.inverse() * p));
+    }
+    turn.phi_C += 0.02 * Eigen::Vector3d(normal(random), normal(random), 0.1 * normal(random));
+  }
+  return turns;
+}
+
+TEST(GyroAgreement, IsFarBetterFromAllCornersTogetherAndKnowsHowGoodItIs) {
+  std::vector<Turn> turns = turns_with_rays(8, 0.01);
+  GyroIntegral biased;
+  for (int i = 0; i < 8 * 500; ++i)
+    biased.add(
+        {timestamp_from_seconds(i / 500.0), shaking(i / 500.0) + Eigen::Vector3d(0.05, -0.03, 0.02), {0, 0, 9.81}});
+  const auto error = [](const GyroAgreement& found) {
+    return so3::log(Eigen::Quaterniond(kTurned.transpose() * found.R_B_C));
+  };
+  const auto with = compare_with_gyro(turns, biased, Duration(0));
+  ASSERT_TRUE(with);
+  EXPECT_LT(error(*with).norm(), 0.005);
+  EXPECT_LT(error(*with).dot(with->rotation_covariance.inverse() * error(*with)), 16.0);
+  EXPECT_LT(with->rotation_sigma, 0.005);
+  EXPECT_NEAR(to_seconds(with->time_offset), 0.01, 5e-4);
+  EXPECT_LT(with->unexplained, 0.2);
+  for (Turn& turn : turns) turn.rays.clear();
+  EXPECT_GT(compare_with_gyro(turns, biased, Duration(0))->rotation_sigma, 2 * with->rotation_sigma);
 }
 
 TEST(GyroAgreement, TellsAGyroInDegrees) {

@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace edged {
 namespace {
 
-constexpr Duration kStretch = std::chrono::milliseconds(500);
-constexpr std::size_t kFewest = 20;          // samples of a stretch
-constexpr double kRestGyro = 0.03;           // deviation at rest, at most [rad/s]
-constexpr double kRestAccel = 0.3;           // [m/s^2]
+constexpr Duration kPart = std::chrono::milliseconds(50);
+constexpr std::size_t kParts = 10;         // of a stretch
+constexpr std::size_t kFewestSamples = 2;  // of a part
+// Deviations of the parts at rest. The noisiest IMUs of phones reach 0.002 rad/s and 0.03 m/s^2, a hand that holds
+// still is three times as unsteady or more.
+constexpr double kRestGyro = 0.006, kRestAccel = 0.06;
+constexpr double kMostBias = 0.35;  // of a gyro, as data sheets have it [rad/s]: more is a steady turn
+constexpr double kSameRest = 3.0;   // means of stretches of one rest differ by so many of the limits at most
 
 /// Standard deviation of one axis, of three that are summed.
 double deviation(double squares, const Eigen::Vector3d& sum, std::size_t count) {
@@ -21,59 +26,104 @@ double deviation(double squares, const Eigen::Vector3d& sum, std::size_t count) 
 
 }  // namespace
 
-double ImuSurveyor::Stretch::gyro_deviation() const { return deviation(gyro_squares, gyro, count); }
-double ImuSurveyor::Stretch::accel_deviation() const { return deviation(accel_squares, accel, count); }
+void ImuSurveyor::Sums::add(const Eigen::Vector3d& w, const Eigen::Vector3d& a) {
+  ++count;
+  gyro += w, accel += a;
+  gyro_squares += w.squaredNorm(), accel_squares += a.squaredNorm();
+}
+
+void ImuSurveyor::Sums::add(const Sums& other) {
+  count += other.count;
+  gyro += other.gyro, accel += other.accel;
+  gyro_squares += other.gyro_squares, accel_squares += other.accel_squares;
+}
 
 void ImuSurveyor::add(const ImuSample& sample) {
   if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
-  if (current_.count > 0 && sample.t - current_.begin >= kStretch) {
-    end_stretch();
+  if (part_.count > 0 && sample.t >= part_begin_ + kPart) {
+    end_part();
+    part_begin_ += kPart;
+    if (sample.t >= part_begin_ + kPart) current_.reset(), rest_.reset(), part_begin_ = sample.t;  // after a gap
   }
-  if (current_.count == 0) {
-    current_.begin = sample.t;
-  } else {
-    current_.gyro_differences += (sample.gyro_B - last_->gyro_B).squaredNorm();
-    current_.accel_differences += (sample.accel_B - last_->accel_B).squaredNorm();
-    current_.time += sample.t - last_->t;
-  }
-  ++current_.count;
-  current_.gyro += sample.gyro_B;
-  current_.accel += sample.accel_B;
-  current_.gyro_squares += sample.gyro_B.squaredNorm();
-  current_.accel_squares += sample.accel_B.squaredNorm();
-  last_ = sample;
+  if (count_ == 0) part_begin_ = sample.t;
+  part_.add(sample.gyro_B, sample.accel_B);
   ++count_;
   accel_sum_ += sample.accel_B.norm();
   gyro_sum_ += sample.gyro_B.norm();
   max_gyro_ = std::max(max_gyro_, sample.gyro_B.norm());
 }
 
+void ImuSurveyor::end_part() {
+  const Sums part = std::exchange(part_, Sums());
+  if (part.count < kFewestSamples) {
+    current_.reset(), rest_.reset();
+    return;
+  }
+  const Eigen::Vector3d gyro = part.gyro / static_cast<double>(part.count),
+                        accel = part.accel / static_cast<double>(part.count);
+  if (current_)
+    current_->differences.add(gyro - last_gyro_, accel - last_accel_);
+  else
+    current_ = Stretch{part_begin_, part_begin_, {}, {}};
+  current_->means.add(gyro, accel);
+  last_gyro_ = gyro, last_accel_ = accel;
+  current_->end = part_begin_ + kPart;
+  if (current_->means.count == kParts) end_stretch();
+}
+
+bool ImuSurveyor::at_rest(const Stretch& stretch) {
+  const Sums& s = stretch.means;
+  return deviation(s.gyro_squares, s.gyro, s.count) < kRestGyro &&
+         deviation(s.accel_squares, s.accel, s.count) < kRestAccel &&
+         s.gyro.norm() / static_cast<double>(s.count) < kMostBias;
+}
+
 void ImuSurveyor::end_stretch() {
-  const bool enough = current_.count >= kFewest;
-  if (enough && (!calmest_ || current_.gyro_deviation() < calmest_->gyro_deviation())) calmest_ = current_;
-  current_ = Stretch();
+  const Stretch ended = *std::exchange(current_, std::nullopt);
+  const auto spread = [](const Stretch& s) { return deviation(s.means.gyro_squares, s.means.gyro, s.means.count); };
+  if (!calmest_ || spread(ended) < spread(*calmest_)) calmest_ = ended;
+  if (!at_rest(ended)) {
+    rest_.reset();
+    return;
+  }
+  const auto apart = [&](const Eigen::Vector3d& a, std::size_t n, const Eigen::Vector3d& b) {
+    return (a / static_cast<double>(n) - b / static_cast<double>(ended.means.count)).norm();
+  };
+  if (rest_ && apart(rest_->means.gyro, rest_->means.count, ended.means.gyro) < kSameRest * kRestGyro &&
+      apart(rest_->means.accel, rest_->means.count, ended.means.accel) < kSameRest * kRestAccel) {
+    rest_->end = ended.end;
+    rest_->means.add(ended.means);
+    rest_->differences.add(ended.differences);
+  } else {
+    rest_ = ended;
+  }
+  if (!longest_rest_ || rest_->means.count > longest_rest_->means.count) longest_rest_ = rest_;
 }
 
 ImuSurvey ImuSurveyor::result() const {
   ImuSurvey survey;
-  ImuSurveyor ended = *this;
-  if (!calmest_) ended.end_stretch();  // all of it is shorter than a stretch
   if (count_ == 0) return survey;
   survey.mean_accel = accel_sum_ / static_cast<double>(count_);
   survey.mean_gyro = gyro_sum_ / static_cast<double>(count_);
   survey.max_gyro = max_gyro_;
-  if (!ended.calmest_) return survey;
-  const Stretch& calm = *ended.calmest_;
-  const auto n = static_cast<double>(calm.count), steps = n - 1;
-  // Differences of white noise have twice its variance; the density is the deviation times the root of the step.
-  const double step_s = to_seconds(calm.time) / steps;
-  const auto density = [&](double differences) { return std::sqrt(differences / (3 * steps) / 2 * step_s); };
-  survey.calm = {calm.begin,
-                 calm.gyro_deviation() < kRestGyro && calm.accel_deviation() < kRestAccel,
-                 density(calm.gyro_differences),
-                 density(calm.accel_differences),
-                 calm.gyro / n,
-                 calm.accel / n};
+  if (calmest_) {
+    const auto n = static_cast<double>(calmest_->means.count);
+    survey.calm = {calmest_->begin, calmest_->means.gyro / n, calmest_->means.accel / n};
+  }
+  if (longest_rest_) {
+    const Sums &means = longest_rest_->means, &steps = longest_rest_->differences;
+    const auto n = static_cast<double>(means.count);
+    // Differences of white noise have twice its variance; the density is the deviation times the root of the time.
+    const auto density = [&](double squares) {
+      return std::sqrt(squares / (3 * static_cast<double>(steps.count)) / 2 * to_seconds(kPart));
+    };
+    survey.rest = {longest_rest_->begin,
+                   longest_rest_->end - longest_rest_->begin,
+                   density(steps.gyro_squares),
+                   density(steps.accel_squares),
+                   means.gyro / n,
+                   means.accel / n};
+  }
   return survey;
 }
 

@@ -11,19 +11,27 @@
 
 namespace edged {
 
-/// The calmest half second of an IMU. Continuous-time densities, from differences of successive samples: there white noise
-/// remains, motion does not.
+/// Means of the half second in which the gyro varies least.
 struct ImuCalm {
   Timestamp begin;
-  bool at_rest = false;
-  double gyro_noise = 0.0;   ///< [rad/s/sqrt(Hz)]
-  double accel_noise = 0.0;  ///< [m/s^2/sqrt(Hz)]
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< mean: at rest the gyro's bias [rad/s]
-  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean: at rest upwards [m/s^2]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+/// The longest time at rest, of whole half seconds. The noise is the Allan deviation of means over 50 ms, as a density:
+/// a band of about 10 Hz, above what a bias wanders and below where most IMUs filter their noise away.
+struct ImuRest {
+  Timestamp begin;
+  Duration length{0};
+  double gyro_noise = 0.0;                          ///< [rad/s/sqrt(Hz)]
+  double accel_noise = 0.0;                         ///< [m/s^2/sqrt(Hz)]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< mean: the gyro's bias [rad/s]
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean: upwards [m/s^2]
 };
 
 struct ImuSurvey {
-  std::optional<ImuCalm> calm;             ///< nothing where no half second has 20 samples
+  std::optional<ImuCalm> calm;             ///< nothing where no half second has samples in all of its parts
+  std::optional<ImuRest> rest;             ///< nothing where it never rested: then motion hides the noise
   double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
   double mean_gyro = 0.0, max_gyro = 0.0;  ///< angular speed [rad/s]
 };
@@ -35,23 +43,29 @@ class ImuSurveyor {
   ImuSurvey result() const;
 
  private:
-  /// Sums over half a second.
-  struct Stretch {
-    Timestamp begin;
+  /// Sums of samples, or of means of samples.
+  struct Sums {
     std::size_t count = 0;
     Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
-    double gyro_squares = 0.0, accel_squares = 0.0;        ///< of all three axes
-    double gyro_differences = 0.0, accel_differences = 0.0;  ///< squares of differences of successive samples
-    Duration time{0};
-    double gyro_deviation() const;
-    double accel_deviation() const;
+    double gyro_squares = 0.0, accel_squares = 0.0;  ///< of all three axes
+
+    void add(const Eigen::Vector3d& w, const Eigen::Vector3d& a);
+    void add(const Sums& other);
+  };
+  /// Means over 50 ms that follow each other without a hole.
+  struct Stretch {
+    Timestamp begin, end;
+    Sums means, differences;  ///< differences: of successive means
   };
 
+  void end_part();
   void end_stretch();
+  static bool at_rest(const Stretch& stretch);
 
-  Stretch current_;
-  std::optional<Stretch> calmest_;
-  std::optional<ImuSample> last_;
+  Timestamp part_begin_;
+  Sums part_;
+  std::optional<Stretch> current_, calmest_, rest_, longest_rest_;
+  Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero(), last_accel_ = Eigen::Vector3d::Zero();  ///< of the last part
   std::size_t count_ = 0;
   double accel_sum_ = 0.0, gyro_sum_ = 0.0, max_gyro_ = 0.0;
 };

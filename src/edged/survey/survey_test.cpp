@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 namespace edged {
 namespace {
@@ -37,7 +40,8 @@ TEST(EventSurveyor, FindsHotPixelsRatesAndExtent) {
   EventSurveyor surveyor(cv::Size(32, 24));
   std::vector<Event> events;
   for (int i = 0; i < 20'000; ++i)
-    events.push_back({at(i * 1e-5), static_cast<std::uint16_t>(i % 32), static_cast<std::uint16_t>(i / 32 % 20), i % 4 > 0});
+    events.push_back(
+        {at(i * 1e-5), static_cast<std::uint16_t>(i % 32), static_cast<std::uint16_t>(i / 32 % 20), i % 4 > 0});
   for (int i = 0; i < 5000; ++i) events.push_back({at(0.2 + i * 1e-5), 7, 9, true});
   events.push_back({at(1.0), 0, 0, true});
   surveyor.add(events);
@@ -67,13 +71,42 @@ TEST(ImuSurveyor, EstimatesNoiseAtRestOfWhiteNoise) {
                   Eigen::Vector3d(0, 0, 9.81 + moving) + noise(kAccel) * 0.2});
   }
   const ImuSurvey survey = surveyor.result();
-  ASSERT_TRUE(survey.calm);
-  EXPECT_TRUE(survey.calm->at_rest);
-  EXPECT_GE(survey.calm->begin, at(1.5));
-  EXPECT_NEAR(survey.calm->gyro_noise / (0.2 * kGyro), 1.0, 0.15);
-  EXPECT_NEAR(survey.calm->accel_noise / (0.2 * kAccel), 1.0, 0.15);
-  EXPECT_NEAR(survey.calm->gyro.x(), 0.02, 2e-3);
+  ASSERT_TRUE(survey.rest);
+  EXPECT_GE(survey.rest->begin, at(1.99));
+  EXPECT_GE(survey.rest->length, std::chrono::milliseconds(1500));
+  EXPECT_NEAR(survey.rest->gyro_noise / (0.2 * kGyro), 1.0, 0.15);
+  EXPECT_NEAR(survey.rest->accel_noise / (0.2 * kAccel), 1.0, 0.15);
+  EXPECT_NEAR(survey.rest->gyro.x(), 0.02, 2e-3);
   EXPECT_NEAR(survey.mean_accel, 9.81, 0.05);
+}
+
+/// rate 1 kHz; a filter of first order at 40 Hz, as many IMUs have one.
+TEST(ImuSurveyor, EstimatesTheNoiseOfAnImuThatFiltersIt) {
+  constexpr double kDensity = 1e-4, kRate = 1000;
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  Eigen::Vector3d filtered = Eigen::Vector3d::Zero();
+  ImuSurveyor surveyor;
+  for (int i = 0; i < 8000; ++i) {
+    const Eigen::Vector3d white =
+        Eigen::Vector3d(normal(random), normal(random), normal(random)) * kDensity * std::sqrt(kRate);
+    filtered += 2 * std::numbers::pi * 40 / kRate * (white - filtered);
+    surveyor.add({at(i / kRate), filtered, {0, 0, 9.81}});
+  }
+  ASSERT_TRUE(surveyor.result().rest);
+  EXPECT_NEAR(surveyor.result().rest->gyro_noise / kDensity, 0.95, 0.1);
+}
+
+TEST(ImuSurveyor, TakesNoHandAndNoSteadyTurnForRest) {
+  for (const double steady : {0.0, 1.0}) {
+    ImuSurveyor surveyor;
+    for (int i = 0; i < 2000; ++i) {
+      const double tremor = (1 - steady) * 0.03 * std::sin(2 * std::numbers::pi * 4 * i / 500.0);
+      surveyor.add({at(i / 500.0), {tremor, 0, steady}, {0, 0, 9.81}});
+    }
+    EXPECT_TRUE(surveyor.result().calm);
+    EXPECT_FALSE(surveyor.result().rest);
+  }
 }
 
 TEST(ImuSurveyor, SaysNothingOfNoiseFromTooFewSamples) {
@@ -95,12 +128,41 @@ TEST(EventSurveyor, SurvivesAnySensorAndOneEvent) {
   }
 }
 
+/// Ten seconds before a moving texture, which all pixels see at up to 40 Hz, without a moment of rest.
+TEST(EventSurveyor, FindsHotPixelsSlowerThanTheSceneAndNoOthers) {
+  std::mt19937_64 random(3);
+  std::vector<Event> events;
+  const auto fire = [&](int x, int y, double begin_s, double seconds, double hz) {
+    for (int i = std::poisson_distribution<int>(hz * seconds)(random); i > 0; --i)
+      events.push_back({at(begin_s + std::uniform_real_distribution<double>(0, seconds)(random)),
+                        static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), i % 2 == 0});
+  };
+  for (int step = 0; step < 50; ++step)
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x)  // edges that wander, and two pixels of double sensitivity
+        fire(x, y, 0.2 * step, 0.2, ((x + step) % 16 < 5 ? 40.0 : 2.0) * (x == 30 && y < 2 ? 2.0 : 1.0));
+  for (const auto& [x, y, hz] : {std::tuple(10, 10, 25.0), std::tuple(11, 10, 40.0), std::tuple(50, 20, 200.0)})
+    fire(x, y, 0.0, 10.0, hz);
+  std::ranges::sort(events, {}, &Event::t);
+  for (const cv::Size sensor : {cv::Size(64, 48), cv::Size()}) {
+    EventSurveyor surveyor(sensor);
+    surveyor.add(events);
+    const EventSurvey survey = surveyor.result();
+    ASSERT_EQ(survey.hot_pixels, 3u);
+    EXPECT_EQ(survey.hottest[0].x, 50);
+    EXPECT_NEAR(survey.hottest[0].rate_hz, 200.0, 15.0);
+    EXPECT_EQ(survey.hottest[1].x, 11);
+    EXPECT_EQ(survey.hottest[2].x, 10);
+  }
+}
+
 TEST(EventSurveyor, AThingThatMovesIsNotMadeOfHotPixels) {
   EventSurveyor surveyor(cv::Size(100, 100));
   std::vector<Event> events;
   for (int i = 0; i < 1000; ++i) events.push_back({at(i * 1e-3), static_cast<std::uint16_t>(i % 100), 90, true});
   for (int i = 0; i < 40'000; ++i)
-    events.push_back({at(1 + i * 1e-4), static_cast<std::uint16_t>(20 + i % 30), static_cast<std::uint16_t>(20 + i / 30 % 3), true});
+    events.push_back(
+        {at(1 + i * 1e-4), static_cast<std::uint16_t>(20 + i % 30), static_cast<std::uint16_t>(20 + i / 30 % 3), true});
   surveyor.add(events);
   EXPECT_EQ(surveyor.result().hot_pixels, 0u);
 }

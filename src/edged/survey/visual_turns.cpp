@@ -89,8 +89,11 @@ void VisualTurns::add_turn(const View& view) {
     begin.push_back(before->second);
     end.push_back(point);
   }
-  if (const auto R = rotation_between(begin, end))
-    turns_.push_back({views_.front().t, view.t, so3::log(Eigen::Quaterniond(*R))});
+  const auto R = rotation_between(begin, end);
+  if (!R) return;
+  turns_.push_back({views_.front().t, view.t, so3::log(Eigen::Quaterniond(*R))});
+  for (std::size_t i = 0; i < begin.size(); ++i)
+    turns_.back().rays.emplace_back(begin[i].homogeneous().normalized(), end[i].homogeneous().normalized());
 }
 
 }  // namespace edged

@@ -8,6 +8,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "edged/camera/rig.hpp"
@@ -20,11 +21,13 @@ namespace edged {
 struct Turn {
   Timestamp begin, end;
   Eigen::Vector3d phi_C = Eigen::Vector3d::Zero();  ///< R_W_C(end) = R_W_C(begin) * Exp(phi_C) [rad]
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays =
+      {};  ///< to each corner at begin and at end, of length one
 };
 
-/// Rotation between two views of the same points, whatever the camera's translation: p_begin ~ R * (p_end - t). Points lie
-/// on the unit plane. Nothing where there are too few of them. (Kneip and Lynen, Direct Optimization of Frame-to-Frame
-/// Rotation, ICCV 2013; as in OpenGV.)
+/// Rotation between two views of the same points, whatever the camera's translation: p_begin ~ R * (p_end - t). Points
+/// lie on the unit plane. Nothing where there are too few of them. (Kneip and Lynen, Direct Optimization of
+/// Frame-to-Frame Rotation, ICCV 2013; as in OpenGV.)
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
                                                 std::span<const Eigen::Vector2d> end);
 

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/hot_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace edged {
+namespace {
+
+constexpr Duration kWindow = std::chrono::milliseconds(500);
+constexpr double kLeastSigmas = 6.0;
+// Texture makes neighbours differ by about half of what they fire, noise by its root.
+constexpr float kTextureSpread = 0.5F;
+
+}  // namespace
+
+HotPixelFinder::HotPixelFinder(cv::Size grid) : grid_(grid) {
+  const std::size_t pixels = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+  total_.resize(pixels), window_.resize(pixels), excess_.resize(pixels);
+}
+
+/// Windows without any event count for nothing: more likely the recording has a hole there.
+void HotPixelFinder::end_window(Timestamp t) {
+  if (window_end_ == Timestamp::min()) {
+    window_end_ = t + kWindow;
+    return;
+  }
+  judge_window(to_seconds(kWindow));
+  window_end_ += ((t - window_end_) / kWindow + 1) * kWindow;
+}
+
+void HotPixelFinder::judge_window(double seconds) {
+  const auto dt = static_cast<float>(seconds);
+  for (int y = 0; y < extent_.height; ++y)
+    for (int x = 0; x < extent_.width; ++x) {
+      const auto beside = static_cast<float>(neighbours(x, y));
+      const float variance = 1.0F + beside + kTextureSpread * kTextureSpread * beside * beside;
+      Excess& excess = excess_[place(x, y)];
+      if (x >= judged_.width || y >= judged_.height) excess.weight = silent_weight_;
+      excess.sum += dt * (static_cast<float>(window_[place(x, y)]) - beside) / variance;
+      excess.weight += dt * dt / variance;
+    }
+  judged_ = extent_;
+  silent_weight_ += dt * dt;
+  std::ranges::fill(window_, std::uint16_t{0});
+}
+
+/// Events of the second busiest of the eight pixels around: an edge or a thing that moves has two or more of them, and
+/// a hot pixel may have another one beside it.
+int HotPixelFinder::neighbours(int x, int y) const {
+  int most = 0, second = 0;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, extent_.height - 1); ++v)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, extent_.width - 1); ++u) {
+      if (u == x && v == y) continue;
+      const int count = window_[place(u, v)];
+      if (count > most)
+        second = std::exchange(most, count);
+      else
+        second = std::max(second, count);
+    }
+  return second;
+}
+
+std::vector<HotPixel> HotPixelFinder::result() const {
+  HotPixelFinder ended = *this;
+  // The last window is a part of one: a tenth is enough to count.
+  if (last_ != Timestamp::min())
+    ended.judge_window(std::max(to_seconds(last_ - (window_end_ - kWindow)), 0.1 * to_seconds(kWindow)));
+  std::vector<HotPixel> hot;
+  for (int y = 0; y < extent_.height; ++y)
+    for (int x = 0; x < extent_.width; ++x) {
+      const Excess& excess = ended.excess_[place(x, y)];
+      const double rate_hz = excess.sum / excess.weight, sigmas = excess.sum / std::sqrt(excess.weight);
+      if (rate_hz >= kLeastHz && sigmas >= kLeastSigmas) hot.push_back({x, y, total_[place(x, y)], rate_hz});
+    }
+  std::ranges::stable_sort(hot, std::greater<>(), &HotPixel::rate_hz);
+  return hot;
+}
+
+std::size_t HotPixelFinder::active() const {
+  return static_cast<std::size_t>(std::ranges::count_if(total_, [](std::uint32_t count) { return count > 0; }));
+}
+
+}  // namespace edged

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Which pixels of an event camera fire by themselves.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/types.hpp>
+#include <optional>
+#include <vector>
+
+#include "edged/core/time.hpp"
+
+namespace edged {
+
+/// A pixel that fires by itself, whatever is before it.
+struct HotPixel {
+  int x = 0, y = 0;
+  std::size_t events = 0;  ///< of the whole recording, those of the scene with them
+  double rate_hz = 0.0;    ///< beyond what the pixels beside it do
+};
+
+/// A hot pixel fires in every window of time, with its neighbours or without them. What it has beyond them is averaged
+/// over all windows, the quiet ones counting most: there the scene hides nothing, and nothing of the scene passes for
+/// it.
+class HotPixelFinder {
+ public:
+  static constexpr double kLeastHz = 5.0;  ///< slower ones do no harm
+
+  /// Fourteen bytes a pixel of `grid`; what lies beyond is passed over.
+  explicit HotPixelFinder(cv::Size grid);
+
+  /// Stamps may not go back.
+  void add(int x, int y, Timestamp t) {
+    if (x >= grid_.width || y >= grid_.height) return;
+    if (t >= window_end_) end_window(t);
+    std::uint16_t& count = window_[place(x, y)];
+    if (count < UINT16_MAX) ++count;
+    ++total_[place(x, y)];
+    extent_.width = std::max(extent_.width, x + 1);
+    extent_.height = std::max(extent_.height, y + 1);
+    last_ = t;
+  }
+
+  /// Hottest first.
+  std::vector<HotPixel> result() const;
+  /// Pixels that fired at all.
+  std::size_t active() const;
+
+ private:
+  /// Sums of a weighted mean of events per second beyond the neighbours, of variance 1 / weight.
+  struct Excess {
+    float sum = 0.0F, weight = 0.0F;
+  };
+
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x);
+  }
+  void end_window(Timestamp t);
+  void judge_window(double seconds);
+  int neighbours(int x, int y) const;
+
+  cv::Size grid_, extent_, judged_;  ///< judged_: extent_ at the last window
+  float silent_weight_ = 0.0F;       ///< of a pixel that has been silent with its neighbours so far
+  std::vector<std::uint32_t> total_;
+  std::vector<std::uint16_t> window_;
+  std::vector<Excess> excess_;
+  Timestamp window_end_ = Timestamp::min(), last_ = Timestamp::min();
+};
+
+}  // namespace edged

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/ray_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "edged/core/statistics.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kParameters = 7;       // rotation, shift, bias
+constexpr std::size_t kBlocks = 10;  // of time, for the jackknife
+constexpr std::size_t kFewest = 30;  // turns
+using Parameters = Eigen::Matrix<double, kParameters, 1>;
+using Information = Eigen::Matrix<double, kParameters, kParameters>;
+
+/// What one turn says of its own rotation, its translation left open: cost ~ step^T H step / 2 - g^T step for
+/// R_begin_end * Exp(step).
+struct TurnTerms {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  std::vector<double> errors;  ///< [rad]
+};
+
+/// The direction of translation that the rays agree on best.
+Eigen::Vector3d direction_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+    for (const auto& [from, to] : turn.rays) {
+      const Eigen::Vector3d n = from.cross(R * to);
+      M += n * n.transpose() / (1.0 + (round > 0 ? std::pow(n.dot(t) / spread, 2) : 0.0));
+    }
+    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
+  }
+  return t;
+}
+
+/// spread: of the errors, beyond which a corner counts less (Cauchy).
+TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
+  const Eigen::Vector3d t = direction_of(turn, R, spread), a = t.unitOrthogonal(), b = t.cross(a);
+  Eigen::Matrix<double, 5, 5> H = 1e-12 * Eigen::Matrix<double, 5, 5>::Identity();
+  Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
+  TurnTerms terms;
+  for (const auto& [from, to] : turn.rays) {
+    const Eigen::Vector3d n = from.cross(R * to);
+    const double error = n.dot(t);
+    // t . (from x R (step x to)) = step . (to x R^T (t x from))
+    const Eigen::Vector3d by_turn = to.cross(R.transpose() * t.cross(from));
+    Eigen::Matrix<double, 5, 1> J;
+    J << by_turn, n.dot(a), n.dot(b);
+    const double weight = 1.0 / (1.0 + std::pow(error / spread, 2));
+    H += weight * J * J.transpose();
+    g -= weight * error * J;
+    terms.errors.push_back(std::abs(error));
+  }
+  const Eigen::Matrix2d inverse = H.bottomRightCorner<2, 2>().inverse();
+  const Eigen::Matrix<double, 3, 2> cross = H.topRightCorner<3, 2>();
+  terms.H = H.topLeftCorner<3, 3>() - cross * inverse * cross.transpose();
+  terms.g = g.head<3>() - cross * inverse * g.tail<2>();
+  return terms;
+}
+
+/// The gyro's turn in the camera's frame, and how it changes with the parameters.
+struct Predicted {
+  Eigen::Vector3d phi_C;
+  Eigen::Matrix3d R;
+  Eigen::Matrix<double, 3, kParameters> J;
+};
+
+std::optional<Predicted> predict(const Turn& turn, const GyroIntegral& gyro, const GyroMount& mount) {
+  constexpr Duration kStep = std::chrono::milliseconds(1);
+  const Duration shift = duration_from_seconds(mount.shift_s);
+  const auto at = [&](Duration by) { return gyro.turn_between(turn.begin + by, turn.end + by); };
+  const auto now = at(shift), before = at(shift - kStep), after = at(shift + kStep);
+  if (!now || !before || !after) return std::nullopt;
+  const double dt = to_seconds(turn.end - turn.begin);
+  const Eigen::Matrix3d R_C_B = mount.R_B_C.transpose();
+  Predicted predicted;
+  predicted.phi_C = R_C_B * (*now - mount.bias * dt);
+  predicted.R = so3::exp(predicted.phi_C).toRotationMatrix();
+  predicted.J << Eigen::Matrix3d::Identity() - predicted.R.transpose(),
+      R_C_B * (*after - *before) / (2 * to_seconds(kStep)), -R_C_B * dt;
+  predicted.J.rightCols<4>() = so3::right_jacobian(predicted.phi_C) * predicted.J.rightCols<4>().eval();
+  return predicted;
+}
+
+struct Normal {
+  Information H = Information::Zero();
+  Parameters g = Parameters::Zero();
+};
+
+/// All turns at one mount.
+struct Sums {
+  std::array<Normal, kBlocks> blocks;
+  std::size_t turns = 0;
+  std::vector<double> errors, unexplained, turning;
+
+  Normal total() const {
+    Normal all;
+    for (const Normal& block : blocks) all.H += block.H, all.g += block.g;
+    return all;
+  }
+};
+
+Sums sums_at(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& mount, double spread) {
+  Sums sums;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    if (turns[i].rays.empty()) continue;
+    const auto predicted = predict(turns[i], gyro, mount);
+    if (!predicted) continue;
+    const TurnTerms terms = terms_of(turns[i], predicted->R, spread);
+    Normal& block = sums.blocks[i * kBlocks / turns.size()];
+    block.H += predicted->J.transpose() * terms.H * predicted->J;
+    block.g += predicted->J.transpose() * terms.g;
+    sums.unexplained.push_back(terms.g.dot((terms.H + 1e-9 * Eigen::Matrix3d::Identity()).ldlt().solve(terms.g)));
+    sums.turning.push_back(predicted->phi_C.dot(terms.H * predicted->phi_C));
+    sums.errors.insert(sums.errors.end(), terms.errors.begin(), terms.errors.end());
+    ++sums.turns;
+  }
+  return sums;
+}
+
+/// What is known beforehand, so that what data say nothing of stays where it is: biases are below 0.1 rad/s.
+Normal with_prior(const Normal& data, const GyroMount& mount, double variance) {
+  Parameters sigmas, step = Parameters::Zero();
+  sigmas << Eigen::Vector3d::Ones(), 0.05, Eigen::Vector3d::Constant(0.1);
+  step.tail<3>() = -mount.bias;
+  const Parameters weights = variance * sigmas.array().square().inverse();
+  return {data.H + Information(weights.asDiagonal()), data.g + weights.cwiseProduct(step)};
+}
+
+void move(GyroMount& mount, const Parameters& step) {
+  const double length = step.head<3>().norm();
+  const Eigen::Vector3d turn = step.head<3>() * std::min(1.0, 0.3 / std::max(length, 1e-12));
+  mount.R_B_C = mount.R_B_C * so3::exp(turn).toRotationMatrix();
+  mount.shift_s += std::clamp(step[3], -0.02, 0.02);
+  mount.bias += step.segment<3>(4);
+}
+
+/// Corners err alike for seconds, so turns are not independent: how the answer changes when a tenth of the recording is
+/// left out tells more than the normal equations (Efron and Tibshirani 1993, the jackknife by blocks), but where these
+/// know nothing.
+Information covariance_of(const Sums& sums, const GyroMount& mount, double variance) {
+  const Normal all = sums.total();
+  Information covariance = variance * with_prior(all, mount, variance).H.inverse();
+  for (const Normal& block : sums.blocks) {
+    const Normal kept = with_prior({all.H - block.H, all.g - block.g}, mount, variance);
+    const Parameters change = kept.H.ldlt().solve(kept.g);
+    covariance += (kBlocks - 1.0) / kBlocks * change * change.transpose();
+  }
+  return covariance;
+}
+
+}  // namespace
+
+std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start) {
+  constexpr int kRounds = 12;
+  constexpr double kFirstSpread = 2e-3, kLeastSpread = 1e-4;  // [rad]
+  RayFit fit{start, {}, 0.0, 1.0};
+  double spread = kFirstSpread;
+  Sums sums;
+  for (int round = 0;; ++round) {
+    sums = sums_at(turns, gyro, fit.mount, spread);
+    if (sums.turns < kFewest) return std::nullopt;
+    spread = std::max(1.4826 * 2 * median(sums.errors), kLeastSpread);
+    if (round == kRounds) break;
+    const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4);
+    move(fit.mount, all.H.ldlt().solve(all.g));
+  }
+  const Information covariance = covariance_of(sums, fit.mount, spread * spread / 4);
+  fit.rotation_covariance = covariance.topLeftCorner<3, 3>();
+  fit.shift_sigma_s = std::sqrt(covariance(3, 3));
+  fit.unexplained = std::sqrt(median(sums.unexplained) / std::max(median(sums.turning), 1e-12));
+  return fit;
+}
+
+}  // namespace edged
