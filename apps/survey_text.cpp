@@ -57,6 +57,7 @@ std::string events_text(const Survey& s) {
   text +=
       line("", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
+  if (!e.hot_known) return text + line("", "too short to tell hot pixels");
   std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
   for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
     hot +=
@@ -148,6 +149,7 @@ nlohmann::ordered_json to_json(const Survey& s) {
                            {"peak_rate_hz", e.peak_rate_hz},
                            {"rate_bands_hz", EventSurvey::kRateBands},
                            {"rate_shares", e.rate_shares},
+                           {"hot_known", e.hot_known},
                            {"hot_pixels", e.hot_pixels},
                            {"hot_share", e.hot_share}});
     for (const HotPixel& pixel : e.hottest)

@@ -275,6 +275,38 @@ class Recordings(WithFolder):
         self.assertRegex(result.stdout, r"error +accelerometer in g.*\n.*9.80665")
         self.assertRegex(result.stdout, r"error +gyro in deg/s.*\n.*pi / 180")
 
+    def test_the_doctor_names_swapped_columns_of_the_imu_and_blames_no_unit(self):
+        def swapped(text):
+            return "".join(" ".join([t, *v[3:], *v[:3]]) + "\n" for t, *v in (line.split() for line in text.splitlines()))
+        result = edged("doctor", self.changed("imu.txt", swapped))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +gyro and accelerometer are swapped.*\n.*t ax ay az gx gy gz")
+        self.assertIn("\n1 errors, ", result.stdout)
+
+    def test_the_doctor_names_a_gyro_with_negated_axes(self):
+        def negated(text):
+            return "".join(" ".join([t, *v[:3], *(str(-float(x)) for x in v[3:])]) + "\n"
+                           for t, *v in (line.split() for line in text.splitlines()))
+        result = edged("doctor", self.changed("imu.txt", negated))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +camera frames: the gyro turns the other way.*\n.*sign")
+
+    def test_the_doctor_counts_everything_that_it_prints(self):
+        lines = (self.flight / "imu.txt").read_text().splitlines()
+        broken = self.changed("imu.txt", lambda text: "\n".join(lines[:100] + ["x y z"] + lines[100:]) + "\n")
+        result = edged("doctor", broken)
+        self.assertEqual(result.stderr, "")
+        self.assertRegex(result.stdout, r"warning +.*imu.txt:101")
+        self.assertEqual(result.stdout.count("\nwarning "), 1)
+        self.assertIn("0 errors, 1 warnings", result.stdout)
+
+    def test_the_doctor_tells_what_it_saw_of_a_recording_that_breaks_off(self):
+        broken = self.changed("imu.txt", lambda text: text + "x y z\n" * 2000)
+        result = edged("doctor", broken)
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +.*imu.txt:\d+.*damaged")
+        self.assertIn("IMU at 1000 Hz", result.stdout)
+
     def test_the_doctor_names_a_calibration_that_contradicts_the_gyro(self):
         rig = self.folder / "turned.yaml"
         text = (self.flight / "calibration.yaml").read_text()
@@ -288,7 +320,7 @@ class Recordings(WithFolder):
         rig.write_text(text.replace("time_offset: 0.002400000", "time_offset: 0.030"))
         result = edged("doctor", self.flight, "--calib", rig)
         self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
-        self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5]) deg")
+        self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5])\.\d deg \+- \d\.\d deg")
         self.assertRegex(result.stdout, r"warning +camera frames: t_imu = t_cam .*\n.*set time_offset")
 
     def test_convert_there_and_back_keeps_every_event(self):

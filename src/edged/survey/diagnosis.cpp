@@ -16,7 +16,8 @@ namespace edged {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kSigmas = 6.0;  // errors of corners are not independent, so sigmas are too small
+constexpr double kShortest_s = 1.0;  // a run needs as much to start
+constexpr double kSigmas = 6.0;      // errors of corners are not independent, so sigmas are too small
 
 class Findings {
  public:
@@ -43,28 +44,39 @@ std::string interval(const char* name, const StreamSurvey& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
 }
 
-void judge_clocks(const Survey& s, Findings& out) {
-  if (s.imu.count == 0)
-    return out.error("no IMU samples",
-                     "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
-  std::string all = interval("IMU", s.imu);
-  Duration shortest = s.imu.length();
-  for (const auto& [name, stream] : {std::pair("events", &s.events), std::pair("frames", &s.frames)}) {
+/// What the sensors that are there cover together.
+void judge_overlap(const Survey& s, Findings& out) {
+  std::string all;
+  Duration shortest = Duration::max();
+  int streams = 0;
+  for (const auto& [name, stream] :
+       {std::pair("IMU", &s.imu), std::pair("events", &s.events), std::pair("frames", &s.frames)}) {
     if (stream->count == 0) continue;
-    all += ", " + interval(name, *stream);
+    all += (all.empty() ? "" : ", ") + interval(name, *stream);
     shortest = std::min(shortest, stream->length());
+    ++streams;
   }
-  if (s.events.count == 0 && s.frames.count == 0)
-    return out.error("neither events nor frames", "record one of them, or name the topic with --topic events=NAME");
+  if (streams < 2) return;
   const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
   if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
               "stamp all sensors on one clock when recording: no run can mend whole seconds");
-  else if (common < std::max(0.9 * least, 1.0))
+  else if (common < 0.9 * least)
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "what only some of them cover is left out; check that all were recorded");
+  else if (common < kShortest_s)
+    out.warn(fmt::format("all sensors together cover {:.2f} s: {}", common, all),
+             "too short for a run, which needs about a second to start: record more");
   else
     out.good(fmt::format("all sensors cover {:.1f} s together", common));
+}
+
+void judge_sensors(const Survey& s, Findings& out) {
+  if (s.imu.count == 0)
+    out.error("no IMU samples", "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
+  if (s.events.count == 0 && s.frames.count == 0)
+    out.error("neither events nor frames", "record one of them, or name the topic with --topic events=NAME");
+  judge_overlap(s, out);
 }
 
 void judge_imu_rate(const Survey& s, Findings& out) {
@@ -143,7 +155,9 @@ void judge_events(const Survey& s, Findings& out) {
     out.warn(fmt::format("{:.1f} % of the events are positive", 100 * e.positive_share),
              "check that both polarities are recorded and told apart");
   if (e.hot_share <= 0.02)
-    out.good(fmt::format("events: {} hot pixels, {:.0f} % positive", e.hot_pixels, 100 * e.positive_share));
+    out.good(fmt::format("events: {}, {:.0f} % positive",
+                         e.hot_known ? fmt::format("{} hot pixels", e.hot_pixels) : "too short to tell hot pixels",
+                         100 * e.positive_share));
 }
 
 void judge_frames(const Survey& s, Findings& out) {
@@ -312,7 +326,7 @@ void judge_truth(const Survey& s, Findings& out) {
 
 std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras) {
   Findings out;
-  judge_clocks(survey, out);
+  judge_sensors(survey, out);
   judge_imu_rate(survey, out);
   judge_imu_units(survey, cameras, out);
   judge_events(survey, out);

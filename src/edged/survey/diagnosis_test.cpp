@@ -59,6 +59,16 @@ TEST(Diagnosis, NamesClocksThatDoNotOverlap) {
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Warning, "cover 5.0 s only"), HasSubstr("left out"));
 }
 
+TEST(Diagnosis, TellsAShortRecordingFromOneOfWhichSensorsAreMissing) {
+  Survey s = healthy();
+  s.imu = stream(100, 0, 0.5), s.events = stream(1000, 0, 0.5), s.frames = stream(10, 0, 0.5);
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Warning, "cover 0.50 s"), HasSubstr("record more"));
+  s = healthy();
+  s.imu = {}, s.frames = stream(200, 50, 60);
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "do not overlap: events 0.000"),
+              HasSubstr("one clock"));
+}
+
 TEST(Diagnosis, NamesAMissingSlowOrHolyImu) {
   Survey s = healthy();
   s.imu = {};

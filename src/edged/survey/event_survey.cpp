@@ -61,6 +61,7 @@ EventSurvey EventSurveyor::result() const {
     survey.rate_shares[i] = share(ended.band_bins_[i], ended.bins_);
   survey.extent = extent_;
   survey.active_share = share(pixels_.active(), area(sensor_.empty() ? extent_ : sensor_));
+  survey.hot_known = pixels_.known();
   survey.hottest = pixels_.result();
   survey.hot_pixels = survey.hottest.size();
   std::size_t hot_events = 0;

@@ -22,12 +22,13 @@ struct EventSurvey {
   std::array<double, kRateBands.size() + 1> rate_shares{};  ///< of the time, by band
   double active_share = 0.0;                                ///< pixels that fired at all, of the sensor
   cv::Size extent;                                          ///< the least sensor that holds every event [px]
+  bool hot_known = true;  ///< false for a recording that is too short to tell hot pixels
   std::size_t hot_pixels = 0;
   double hot_share = 0.0;         ///< events of hot pixels, of all
   std::vector<HotPixel> hottest;  ///< at most ten, hottest first
 };
 
-/// Takes events in time order. Memory: that of HotPixelFinder, 59 MB at most.
+/// Takes events in time order. Memory: that of HotPixelFinder, 92 MB at most.
 class EventSurveyor {
  public:
   /// sensor: pixels beyond it are counted, but not one by one; empty where it is not known.

@@ -10,8 +10,8 @@
 namespace edged {
 namespace {
 
-constexpr Duration kWindow = std::chrono::milliseconds(500);
 constexpr double kLeastSigmas = 6.0;
+constexpr double kFlood = 0.01;  // of all events
 // Texture makes neighbours differ by about half of what they fire, noise by its root.
 constexpr float kTextureSpread = 0.5F;
 
@@ -26,6 +26,7 @@ HotPixelFinder::HotPixelFinder(cv::Size grid) : grid_(grid) {
 void HotPixelFinder::end_window(Timestamp t) {
   if (window_end_ == Timestamp::min()) {
     window_end_ = t + kWindow;
+    first_ = t;
     return;
   }
   judge_window(to_seconds(kWindow));
@@ -40,8 +41,11 @@ void HotPixelFinder::judge_window(double seconds) {
       const float variance = 1.0F + beside + kTextureSpread * kTextureSpread * beside * beside;
       Excess& excess = excess_[place(x, y)];
       if (x >= judged_.width || y >= judged_.height) excess.weight = silent_weight_;
-      excess.sum += dt * (static_cast<float>(window_[place(x, y)]) - beside) / variance;
-      excess.weight += dt * dt / variance;
+      const float sum = dt * (static_cast<float>(window_[place(x, y)]) - beside) / variance,
+                  weight = dt * dt / variance;
+      excess.sum += sum;
+      excess.weight += weight;
+      if (sum > excess.most_sum) excess.most_sum = sum, excess.most_weight = weight;
     }
   judged_ = extent_;
   silent_weight_ += dt * dt;
@@ -61,7 +65,8 @@ int HotPixelFinder::neighbours(int x, int y) const {
       else
         second = std::max(second, count);
     }
-  return second;
+  const bool inside = x > 0 && y > 0 && x + 1 < extent_.width && y + 1 < extent_.height;
+  return inside ? second : most;
 }
 
 std::vector<HotPixel> HotPixelFinder::result() const {
@@ -74,7 +79,10 @@ std::vector<HotPixel> HotPixelFinder::result() const {
     for (int x = 0; x < extent_.width; ++x) {
       const Excess& excess = ended.excess_[place(x, y)];
       const double rate_hz = excess.sum / excess.weight, sigmas = excess.sum / std::sqrt(excess.weight);
-      if (rate_hz >= kLeastHz && sigmas >= kLeastSigmas) hot.push_back({x, y, total_[place(x, y)], rate_hz});
+      const std::uint32_t events = total_[place(x, y)];
+      const bool flood = events > kFlood * static_cast<double>(events_);
+      if (rate_hz >= kLeastHz && sigmas >= kLeastSigmas && (excess.without_most_hz() >= kLeastHz || flood))
+        hot.push_back({x, y, events, rate_hz});
     }
   std::ranges::stable_sort(hot, std::greater<>(), &HotPixel::rate_hz);
   return hot;

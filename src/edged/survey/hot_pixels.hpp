@@ -26,13 +26,14 @@ class HotPixelFinder {
  public:
   static constexpr double kLeastHz = 5.0;  ///< slower ones do no harm
 
-  /// Fourteen bytes a pixel of `grid`; what lies beyond is passed over.
+  /// 22 bytes a pixel of `grid`; what lies beyond is passed over.
   explicit HotPixelFinder(cv::Size grid);
 
   /// Stamps may not go back.
   void add(int x, int y, Timestamp t) {
     if (x >= grid_.width || y >= grid_.height) return;
     if (t >= window_end_) end_window(t);
+    ++events_;
     std::uint16_t& count = window_[place(x, y)];
     if (count < UINT16_MAX) ++count;
     ++total_[place(x, y)];
@@ -41,8 +42,10 @@ class HotPixelFinder {
     last_ = t;
   }
 
-  /// Hottest first.
+  /// Hottest first; nothing before two windows have passed, unless one pixel has more than a hundredth of all events.
   std::vector<HotPixel> result() const;
+  /// False for recordings that are too short to tell.
+  bool known() const { return first_ != Timestamp::min() && last_ - first_ >= kWindow * 3 / 2; }
   /// Pixels that fired at all.
   std::size_t active() const;
 
@@ -50,7 +53,10 @@ class HotPixelFinder {
   /// Sums of a weighted mean of events per second beyond the neighbours, of variance 1 / weight.
   struct Excess {
     float sum = 0.0F, weight = 0.0F;
+    float most_sum = 0.0F, most_weight = 0.0F;  ///< of the window that adds most
+    double without_most_hz() const { return weight > most_weight ? (sum - most_sum) / (weight - most_weight) : 0.0; }
   };
+  static constexpr Duration kWindow = std::chrono::milliseconds(500);
 
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x);
@@ -64,7 +70,8 @@ class HotPixelFinder {
   std::vector<std::uint32_t> total_;
   std::vector<std::uint16_t> window_;
   std::vector<Excess> excess_;
-  Timestamp window_end_ = Timestamp::min(), last_ = Timestamp::min();
+  Timestamp window_end_ = Timestamp::min(), first_ = Timestamp::min(), last_ = Timestamp::min();
+  std::size_t events_ = 0;
 };
 
 }  // namespace edged

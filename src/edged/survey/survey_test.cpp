@@ -156,6 +156,24 @@ TEST(EventSurveyor, FindsHotPixelsSlowerThanTheSceneAndNoOthers) {
   }
 }
 
+TEST(EventSurveyor, ABurstIsNoHotPixelAndAMomentTellsNone) {
+  std::vector<Event> events;
+  std::mt19937 random(4);
+  for (int i = 0; i < 8000; ++i)  // a still scene with some noise, and two pixels of which one fires for 0.1 s only
+    events.push_back(
+        {at(i * 5e-4), static_cast<std::uint16_t>(random() % 60), static_cast<std::uint16_t>(random() % 40), true});
+  for (int i = 0; i < 60; ++i) events.push_back({at(1.0 + i * 0.0015), 5, 5, true});
+  for (int i = 0; i < 60; ++i) events.push_back({at(0.5 + i * 0.05), 25, 25, true});
+  std::ranges::sort(events, {}, &Event::t);
+  EventSurveyor whole(cv::Size(60, 40)), moment(cv::Size(60, 40));
+  whole.add(events);
+  ASSERT_EQ(whole.result().hot_pixels, 1u);
+  EXPECT_EQ(whole.result().hottest[0].x, 25);
+  EXPECT_TRUE(whole.result().hot_known);
+  moment.add(std::span(events).first(900));
+  EXPECT_FALSE(moment.result().hot_known);
+}
+
 TEST(EventSurveyor, AThingThatMovesIsNotMadeOfHotPixels) {
   EventSurveyor surveyor(cv::Size(100, 100));
   std::vector<Event> events;
