@@ -241,13 +241,17 @@ std::optional<Eigen::Vector3d> GyroIntegral::turn_between(Timestamp begin, Times
 
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected) {
-  constexpr double kFarBetter = 0.6;
+  // Half a turn about an axis makes up for two negated axes of three: little may stay unexplained then.
+  constexpr double kDoubtful = 0.03, kFarBetter = 0.5;
   auto given = compare_as_given(turns, gyro, expected);
-  if (!given || given->unexplained < kUnlike) return given;
+  if (!given || given->unexplained < kDoubtful) return given;
   std::vector<Turn> negated(turns.begin(), turns.end());
-  for (Turn& turn : negated) turn.phi_C = -turn.phi_C;
+  for (Turn& turn : negated) {
+    turn.phi_C = -turn.phi_C;
+    for (auto& [begin, end] : turn.rays) std::swap(begin, end);
+  }
   auto mirrored = compare_as_given(negated, gyro, expected);
-  if (!mirrored || mirrored->unexplained > kFarBetter * kUnlike) return given;
+  if (!mirrored || mirrored->unexplained > kFarBetter * std::min(given->unexplained, 2 * kUnlike)) return given;
   mirrored->mirrored = true;
   return mirrored;
 }

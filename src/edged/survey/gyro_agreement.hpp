@@ -14,7 +14,7 @@ namespace edged {
 
 struct GyroAgreement {
   std::size_t turns = 0;     ///< compared
-  double unexplained = 1.0;  ///< median difference over median angular speed; above about 0.5 the rest means little
+  double unexplained = 1.0;  ///< share of the turning; above about 0.5 the rest means little
   Duration time_offset{0};   ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;
   bool at_bound = false;  ///< farther off than was searched: time_offset is no estimate
