@@ -49,6 +49,32 @@ double residual_sigmas(const Window& window, const Feature& feature, StateId sta
   return (p_C.hnormalized() - seen.point).norm() / seen.sigma;
 }
 
+/// Root mean square of a landmark's residuals [sigma]; nothing when it has too few sights to be judged by.
+std::optional<double> rms_sigmas(const Window& window, const Feature& feature) {
+  constexpr std::size_t kMinSights = 4;
+  if (!feature.anchor || feature.seen.size() < kMinSights) return std::nullopt;
+  double sum = 0.0;
+  for (const auto& [state, sight] : feature.seen) {
+    if (state != *feature.anchor) sum += std::pow(residual_sigmas(window, feature, state), 2);
+  }
+  return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
+}
+
+/// One a camera: what its landmarks may be off by, over all their views [sigma].
+std::vector<double> misfit_limits(const Window& window, double max_misfit) {
+  constexpr std::size_t kMinLandmarks = 12;
+  std::vector<std::vector<double>> rms(window.cameras.size());
+  for (const auto& [id, feature] : window.features) {
+    if (const auto value = rms_sigmas(window, feature)) rms[feature.camera].push_back(*value);
+  }
+  std::vector<double> limits;
+  for (std::vector<double>& of_camera : rms) {
+    const bool judged = of_camera.size() >= kMinLandmarks;
+    limits.push_back(judged ? max_misfit * median(std::move(of_camera)) : std::numeric_limits<double>::infinity());
+  }
+  return limits;
+}
+
 }  // namespace
 
 void LandmarkConfig::visit(ConfigFields& fields) {
@@ -58,6 +84,8 @@ void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
   fields.add("max_innovation_sigma", max_innovation_sigma,
              {"sigma", 1, 1000, "corners farther from where the IMU expects their landmark end"});
+  fields.add("max_misfit", max_misfit,
+             {"", 1, 1000, "landmarks whose sights fit so much worse than the median landmark's are taken out: they move"});
   fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
 
@@ -106,13 +134,15 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
 
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {
   std::vector<FeatureId> wrong;
+  const std::vector<double> limits = misfit_limits(window, config.max_misfit);
   for (auto it = window.features.begin(); it != window.features.end();) {
     Feature& feature = it->second;
     if (!feature.anchor) {
       ++it;
       continue;
     }
-    bool dropped = !depth_in_bounds(feature.inverse_depth, config);
+    bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
+                   rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
     if (!dropped) {
       std::erase_if(feature.seen, [&](const auto& sight) {
         if (sight.first == *feature.anchor) return false;

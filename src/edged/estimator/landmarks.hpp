@@ -18,6 +18,7 @@ struct LandmarkConfig {
   double max_depth_m = 60.0;
   double max_residual_sigma = 4.0; ///< a sight that fits worse is taken out
   double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
+  double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
   int max_per_camera = 70;         ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
@@ -32,8 +33,9 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
 /// their tracks should end.
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
 
-/// Takes out sights and landmarks that do not fit the solved window. Returns the features whose newest sight was taken
-/// out: their tracks are wrong and should end.
+/// Takes out sights that do not fit the solved window, and landmarks that over all their views fit worse than the rest of
+/// the scene: what moves by itself bends a little everywhere. Returns the features whose newest sight was taken out: their
+/// tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
 /// Spread of the residuals that one camera has in the newest state, or in all: the standard deviation of one coordinate by
