@@ -171,11 +171,83 @@ TEST(Stress, AStormOfTwentyMillionEventsASecondIsSurvived) {
   EXPECT_EQ(withstand(flight, Mode::Events).statistics.times_lost(), 0U);
 }
 
-constexpr double kFromRest_s = 1.5;  // until Good
+constexpr double kFromRest_s = 1.5, kInMotion_s = 3.0;  // until Good
+const std::vector<std::string> kInMotion{"motion.rest_s=0", "motion.blend_s=0"};
+// A mean of 7 of some 22 grey levels, a read noise of 1.2 of them.
+const std::vector<std::string> kDim{"frames.electrons_per_ms=225", "frames.read_noise_electrons=96"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Stress, AStartAmongWalkersIsGoodAndStaysIt) {
+  const Flight flight = flight_of("walkers", 6.0);
+  for (const Mode mode : kAllModes) EXPECT_TRUE(stays_good(start_and_withstand(flight, mode, kFromRest_s)));
+}
+
+TEST(Stress, WalkersWhoFillMostOfTheViewDoNotPullTheEstimateAlong) {
+  const Flight flight = flight_of("walkers", 6.0, {"disturbance.strength=1"});
+  for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kFromRest_s);
+}
+
+TEST(Stress, ALampThatWandersOverADarkRoomIsNoMotion) {
+  const Flight flight = flight_of("spot", 6.0);
+  for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kFromRest_s);
+}
+
+TEST(Stress, ALampThatIsSwitchedInADarkRoomIsNoMotion) {
+  const Flight flight = flight_of("spot", 6.0, {"disturbance.kind=switching-lamp"});
+  for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kFromRest_s);
+}
+
+bool good_between(const FlightRun& run, double from_s, double to_s) {
+  return std::all_of(run.outputs.begin(), run.outputs.end(), [=](const OdometryOutput& output) {
+    const double t_s = to_seconds(output.state.t);
+    return t_s < from_s || t_s > to_s || output.status == TrackingStatus::Good;
+  });
+}
+
+TEST(Stress, BeingPutDownAndPickedUpIsNoContradiction) {
+  constexpr double kRest_s = 5.0;  // ten in tests/stress
+  const Flight flight =
+      disturbed_flight(DisturbanceKind::PutDown, kRest_s, {"disturbance.strength=4", "imu.rate_hz=200"});
+  for (const Mode mode : kAllModes) {
+    const FlightRun run = start_and_withstand(flight, mode, kFromRest_s);
+    EXPECT_LT(drift_m(run, kAt_s + 1.2, kAt_s + kRest_s), 0.01) << to_string(mode);
+    for (const double knock_s : {kAt_s, kAt_s + kRest_s})
+      EXPECT_TRUE(good_between(run, knock_s + 1.0, knock_s + 2.0))
+          << to_string(mode) << ", knock at " << knock_s << " s";
+  }
+}
 
 TEST(Stress, TenRadiansASecondAreSurvived) {
   const Flight flight = flight_of("handheld-wild", 4.0);
   for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kFromRest_s);
+}
+
+TEST(Stress, AStartInWildRotationIsGoodSoonAndRight) {
+  const Flight flight = flight_of("handheld-wild", 4.0, kInMotion);
+  for (const Mode mode : kAllModes) start_and_withstand(flight, mode, kInMotion_s);
+}
+
+TEST(Stress, TwoMillionNoiseEventsASecondAreSurvivedFromTheStart) {
+  const Flight flight = flight_of(
+      "room", 6.0,
+      {"disturbance.kind=event-storm", "disturbance.at_s=0", "disturbance.length_s=6", "disturbance.strength=2"});
+  EXPECT_TRUE(stays_good(start_and_withstand(flight, Mode::Fused, kFromRest_s)));
+  start_and_withstand(flight, Mode::Events, kFromRest_s);
+}
+
+TEST(Stress, FramesOfTwentyGreyLevelsSuffice) {
+  const Flight flight = flight_of("room", 6.0, kDim);
+  for (const Mode mode : {Mode::Frames, Mode::Fused})
+    EXPECT_TRUE(stays_good(start_and_withstand(flight, mode, kFromRest_s)));
+}
+
+TEST(Stress, FramesOfTwentyGreyLevelsSufficeForAStartInMotion) {
+  const Flight flight = flight_of("room", 6.0, kDim + kInMotion);
+  for (const Mode mode : {Mode::Frames, Mode::Fused}) start_and_withstand(flight, mode, kInMotion_s);
 }
 
 }  // namespace

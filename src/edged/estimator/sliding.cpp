@@ -57,9 +57,9 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
   const bool rested = state->second.rested && next->second.rested;
-  // The end of a rest is worth keeping: it tells the biases, which the IMU's interval alone would forget.
-  const bool rest_ends = state->second.rested && !next->second.rested;
-  if (rest_ends || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
+  // Where a rest begins and where it ends is worth keeping: an interval that is half of it would forget the rest.
+  const bool between = state->second.rested != next->second.rested;
+  if (between || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
     state->second.keyframe = true;
     return;
   }

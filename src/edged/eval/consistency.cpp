@@ -24,6 +24,30 @@ SE3 gauge(const SE3& truth, const SE3& estimate) {
   return {q, truth.translation() - q * estimate.translation()};
 }
 
+/// Where the estimate has been laid onto the truth. The claim there is itself uncertain, and so is all that is compared
+/// through it.
+struct Anchor {
+  SE3 T_Wtrue_W, truth;
+  Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the claim, in the true W [m^2]
+  double yaw = 0.0;                                    ///< its variance about z [rad^2]
+
+  Anchor(const SE3& true_pose, const ClaimedPose& claim) : T_Wtrue_W(gauge(true_pose, claim.T_W_B)), truth(true_pose) {
+    position = T_Wtrue_W.R() * claim.position * T_Wtrue_W.R().transpose();
+    const Eigen::Vector3d up_B = claim.T_W_B.R().row(2);
+    yaw = up_B.dot(claim.rotation * up_B);
+  }
+  /// What it adds to the covariance of a position.
+  Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d swing = Eigen::Vector3d::UnitZ().cross(p - truth.translation());
+    return position + yaw * swing * swing.transpose();
+  }
+  /// The same of a rotation of B.
+  Eigen::Matrix3d of_rotation(const SE3& T_W_B) const {
+    const Eigen::Vector3d up_B = T_W_B.R().row(2);
+    return yaw * up_B * up_B.transpose();
+  }
+};
+
 /// Adds up the errors of one kind.
 class Sum {
  public:
@@ -89,24 +113,25 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<Claimed
   Consistency result;
   Sum position, rotation;
   Spans silent;
-  std::optional<SE3> T_Wtrue_W;
+  std::optional<Anchor> anchor;
   int start = 0;
   auto claim = claims.begin();
   for (const PosePair& pair : associate(truth, estimate).pairs) {
     while (claim->t != pair.t) ++claim;
-    if (T_Wtrue_W && claim->start != start) T_Wtrue_W.reset(), silent.end();
-    if (!T_Wtrue_W) {
+    if (anchor && claim->start != start) anchor.reset(), silent.end();
+    if (!anchor) {
       if (!claim->good) continue;
-      T_Wtrue_W = gauge(pair.truth, pair.estimate);
+      anchor.emplace(pair.truth, *claim);
       start = claim->start;
       ++result.starts;
     }
-    const SE3 T_W_B = *T_Wtrue_W * pair.estimate;
-    const Eigen::Matrix3d R = T_Wtrue_W->R();
+    const SE3 T_W_B = anchor->T_Wtrue_W * pair.estimate;
+    const Eigen::Matrix3d R = anchor->T_Wtrue_W.R();
     const bool position_believable =
-        position.add(pair.truth.translation() - T_W_B.translation(), R * claim->position * R.transpose());
-    const bool rotation_believable =
-        rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()), claim->rotation);
+        position.add(pair.truth.translation() - T_W_B.translation(),
+                     R * claim->position * R.transpose() + anchor->of_position(T_W_B.translation()));
+    const bool rotation_believable = rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
+                                                  claim->rotation + anchor->of_rotation(T_W_B));
     silent.add(pair.t, claim->good && !(position_believable && rotation_believable));
     ++result.poses;
   }

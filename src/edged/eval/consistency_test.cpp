@@ -21,6 +21,11 @@ Eigen::Matrix3d covariance(const Eigen::Vector3d& sigmas, const Eigen::Vector3d&
 const Eigen::Matrix3d kPosition = covariance({0.01, 0.02, 0.05}, {0.3, -0.2, 0.5});
 const Eigen::Matrix3d kRotation = covariance({0.002, 0.004, 0.01}, {-0.1, 0.4, 0.2});
 
+void make_exact(ClaimedPose& claim, const SE3& T_W_B) {
+  claim.T_W_B = T_W_B;
+  claim.position = claim.rotation = Eigen::Matrix3d::Zero();
+}
+
 /// Poses that are off by normal errors of these covariances times `factor`, in another world; the first is exact.
 std::vector<ClaimedPose> claims_of(const Trajectory& truth, double factor = 1.0, const SE3& T_W_Wtrue = kGauge) {
   std::mt19937_64 engine(1);
@@ -34,9 +39,9 @@ std::vector<ClaimedPose> claims_of(const Trajectory& truth, double factor = 1.0,
   for (const StampedPose& pose : truth) {
     const Eigen::Vector3d p = pose.T.translation() - draw(kPosition);
     const Eigen::Quaterniond q = pose.T.rotation() * so3::exp(-draw(kRotation));
-    const SE3 T = claims.empty() ? pose.T : SE3(q, p);
-    claims.push_back({pose.t, T_W_Wtrue * T, R * kPosition * R.transpose(), kRotation});
+    claims.push_back({pose.t, T_W_Wtrue * SE3(q, p), R * kPosition * R.transpose(), kRotation});
   }
+  make_exact(claims.front(), T_W_Wtrue * truth.front().T);
   return claims;
 }
 
@@ -98,8 +103,9 @@ TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
   std::vector<ClaimedPose> claims = claims_of(truth);
   const SE3 jump(so3::exp({0.0, 0.0, -0.5}), Eigen::Vector3d(1.0, 0.0, 0.0));
   const std::size_t half = claims.size() / 2;
+  make_exact(claims[half], kGauge * truth[half].T);
   for (std::size_t i = half; i < claims.size(); ++i) {
-    claims[i].T_W_B = jump * (i == half ? kGauge * truth[i].T : claims[i].T_W_B);
+    claims[i].T_W_B = jump * claims[i].T_W_B;
     claims[i].position = jump.R() * claims[i].position * jump.R().transpose();
   }
   EXPECT_GT(check_consistency(truth, claims).silent_s(), 9.0);
@@ -110,11 +116,26 @@ TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
   EXPECT_NEAR(found.position.mean_nees, 3.0, 0.3);
 }
 
+TEST(Consistency, AFirstPoseThatIsOffByWhatItClaimsCondemnsNoOther) {
+  const Trajectory truth = winding_motion(20.0);
+  std::vector<ClaimedPose> claims;
+  const Eigen::Matrix3d small = 1e-8 * Eigen::Matrix3d::Identity();
+  for (const StampedPose& pose : truth) claims.push_back({pose.t, kGauge * pose.T, small, small});
+  // Two centimetres and a degree of yaw off, and known to be.
+  claims.front().T_W_B = SE3(so3::exp({0.0, 0.0, 0.017}), Eigen::Vector3d(0.02, -0.01, 0.01)) * claims.front().T_W_B;
+  EXPECT_LT(check_consistency(truth, claims).position.within, 0.01);
+  claims.front().position = 4e-4 * Eigen::Matrix3d::Identity();
+  claims.front().rotation = 3e-4 * Eigen::Matrix3d::Identity();
+  const Consistency found = check_consistency(truth, claims);
+  EXPECT_EQ(found.position.within, 1.0);
+  EXPECT_EQ(found.rotation.within, 1.0);
+}
+
 TEST(Consistency, WhatIsNotYetGoodAtAStartIsLeftOut) {
   const Trajectory truth = winding_motion(20.0);
   std::vector<ClaimedPose> claims = claims_of(truth);
   for (std::size_t i = 0; i < 100; ++i) claims[i].good = false;
-  claims[100].T_W_B = kGauge * truth[100].T;
+  make_exact(claims[100], kGauge * truth[100].T);
   EXPECT_EQ(check_consistency(truth, claims).poses, claims.size() - 100);
   for (ClaimedPose& claim : claims) claim.good = false;
   EXPECT_EQ(check_consistency(truth, claims).poses, 0U);
