@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
 constexpr double kDoubtGain = 0.25;           // a packet
+constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
+constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
 constexpr double kBetterStart = 0.8;          // a start that takes the place of another knows the scale so much better
 constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure
 
@@ -20,6 +22,12 @@ constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says i
 bool plausible(const NavState& state) {
   return state.T_W_B.translation().allFinite() && state.v_W.norm() < kMaxSpeed &&
          state.bias_gyro.norm() < kMaxGyroBias && state.bias_accel.norm() < kMaxAccelBias;
+}
+
+/// Whether two estimates of one instant, in frames of their own, are of one motion: they have the same velocity in B.
+bool agrees(const NavState& a, const NavState& b) {
+  const Eigen::Vector3d v_a = a.T_W_B.rotation().conjugate() * a.v_W, v_b = b.T_W_B.rotation().conjugate() * b.v_W;
+  return (v_a - v_b).norm() < kSameVelocity * std::max(v_a.norm(), v_b.norm()) + kSameVelocity_mps;
 }
 
 }  // namespace
@@ -41,18 +49,21 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
   slide();
-  settle_scale(input.keyframe);
+  settle_scale(input);
   result.provisional = provisional();
   return result;
 }
 
-/// The start, or while it is provisional a better one in its place. True when there was one.
+/// The start, or while it is provisional another in its place. True when there was one.
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
-  const double wanted = initialized_ ? kBetterStart * scale_sigma_ : config_.provisional_scale_sigma;
+  const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
   StartResult found = initializer_.add(input, initialized_ ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma));
   result.waiting_for = std::move(found.waiting_for);
   if (!found.start) return false;
+  const bool at_rest = found.start->scale_sigma == 0.0;
+  agreed_ = at_rest || (initialized_ && agrees(predict(input), found.start->window.newest().nav()));
+  agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
   scale_sigma_ = found.start->scale_sigma;
   initialized_ = result.new_frame = true;
@@ -63,10 +74,17 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
 }
 
 /// What a provisional start has seen since may have told it the scale.
-void Estimator::settle_scale(bool keyframe) {
-  if (!provisional() || !keyframe) return;
+void Estimator::settle_scale(const EstimatorInput& input) {
+  if (!provisional() || !input.keyframe) return;
   scale_sigma_ = std::min(scale_sigma_, config_.sigma_inflation * scale_sigma(window_));
+  agreed_ = agreed_ || input.t >= agreed_by_itself_;
   if (!provisional()) window_.free_calibration(config_.calibration);
+}
+
+/// The newest state moved on by the input's IMU.
+NavState Estimator::predict(const EstimatorInput& input) const {
+  const NavState before = newest();
+  return propagate(before, Preintegration(input.imu, before.bias_gyro, before.bias_accel, noise_));
 }
 
 Eigen::Vector3d Estimator::gyro_bias() const {

@@ -37,8 +37,9 @@ class Estimator {
   EstimatorResult add(const EstimatorInput& input);
 
   bool initialized() const { return initialized_; }
-  /// The start is used, but its scale is not known to init_scale_sigma yet.
-  bool provisional() const { return scale_sigma_ > config_.init_scale_sigma; }
+  /// The start is used, but its scale is not known to init_scale_sigma yet, or no later one has found the same: a start that
+  /// believed in what moves by itself seldom finds the same velocity twice.
+  bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
   /// The newest state; meaningful once initialised.
   NavState newest() const { return window_.newest().nav(); }
   /// Gyro bias known so far (zero at first) [rad/s].
@@ -56,7 +57,8 @@ class Estimator {
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
-  void settle_scale(bool keyframe);
+  void settle_scale(const EstimatorInput& input);
+  NavState predict(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);
   bool take_depth();
   void optimize(EstimatorResult& result, int iterations);
@@ -69,7 +71,9 @@ class Estimator {
   StandstillDetector standstill_;
   Initializer initializer_;
   bool initialized_ = false;
-  double scale_sigma_ = kFree;  ///< of ln scale, while above init_scale_sigma: the start is provisional
+  double scale_sigma_ = kFree;  ///< of ln scale
+  bool agreed_ = false;         ///< two starts have, or nothing has contradicted one until agreed_by_itself_
+  Timestamp agreed_by_itself_;
   LogScale depth_scale_;
 };
 
