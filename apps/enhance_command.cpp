@@ -19,6 +19,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
+#include "run_mode.hpp"
 #include "source.hpp"
 #include "status_line.hpp"
 
@@ -42,6 +43,8 @@ struct Moment {
   cv::Mat frame;          ///< the newest standard frame; empty where there is none
 };
 
+Mode enhance_mode(const Source& source) { return source.dataset->info().has_frames ? Mode::Fused : Mode::Events; }
+
 /// Runs the odometry up to a time, so that the warp has the poses of a real run.
 class RunUpTo {
  public:
@@ -49,7 +52,7 @@ class RunUpTo {
       : options_(options),
         config_(config),
         source_(std::move(source)),
-        mode_(source_.dataset->info().has_frames ? Mode::Fused : Mode::Events),
+        mode_(enhance_mode(source_)),
         packetizer_(source_.calibration.rig, mode_, config.packets),
         odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config),
         status_(options.quiet) {}
@@ -207,6 +210,7 @@ int run_enhance(const EnhanceOptions& options) {
   if (!info.has_events) throw InputError::format("{}: has no events to enhance; take another recording", info.name);
   if (!info.has_imu)
     throw InputError::format("{}: has no IMU samples, which the warp needs; take another recording", info.name);
+  match_cameras(source, enhance_mode(source));
   const Moment moment = RunUpTo(options, std::move(source), config).go();
 
   std::error_code failed;

@@ -47,6 +47,8 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
       {"path_length_m", e.path_length_m},
       {"scale", e.scale},
       {"start_scale", e.start_scale},
+      {"scale_of_first_2_s", e.first_scale},
+      {"scale_of_seconds_10_to_12", e.later_scale},
       {"ate_rmse_m", e.ate_m.rmse},
       {"mpe_percent", e.mpe_percent},
       {"rotation_deg_per_m", e.rotation_deg_per_m},

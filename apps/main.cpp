@@ -34,7 +34,8 @@ constexpr const char* kFooter =
     "  edged config packets                      what can be tuned in that part\n"
     "\n"
     "Exit codes: 0 ok, 1 a bug of ours, 2 wrong command line, 3 bad recording, calibration or option,\n"
-    "  4 ran, but never got a good pose, 130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
+    "  4 ran, but never got a good pose, 5 ran, but the result is not to be trusted (it says why),\n"
+    "  130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
     "`edged COMMAND --help` tells more.";
 
 /// Reads the command line and runs what it asks for.

@@ -17,9 +17,12 @@
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "json_text.hpp"
 #include "log.hpp"
 #include "overview.hpp"
+#include "run_check.hpp"
 #include "run_folder.hpp"
+#include "run_mode.hpp"
 #include "run_summary.hpp"
 #include "source.hpp"
 #include "status_line.hpp"
@@ -42,13 +45,14 @@ struct RunOptions {
 /// One run from the first measurement to the files' end.
 class Run {
  public:
-  Run(const RunOptions& options, Source source, const OdometryConfig& config);
+  Run(const RunOptions& options, Source source, Mode mode, const OdometryConfig& config);
   RunSummary go();
 
  private:
   void process_recording();
   std::optional<Measurement> read();
   void take(Measurement measurement);
+  void check(const Measurement& measurement);
   void process_ready_packets();
   void show_status(Timestamp now, const OdometryOutput& output);
   RunSummary summarize();
@@ -58,6 +62,7 @@ class Run {
   Source source_;
   Mode mode_;
   OutputFrame frame_;
+  RunCheck check_;
   std::filesystem::path folder_;
   StageTimings program_timings_;
   Packetizer packetizer_;
@@ -72,35 +77,16 @@ class Run {
   bool broken_off_ = false;         ///< an error ended the run
 };
 
-const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
-
-std::string mode_name(Mode mode) {
-  for (const auto& [name, value] : kModes) {
-    if (value == mode) return name;
-  }
-  EDGED_CHECK(false, "mode {}", static_cast<int>(mode));
-}
-
-/// The mode asked for, or by default the most that the recording holds.
-Mode choose_mode(const std::string& wanted, const DatasetInfo& info) {
-  if (!info.has_imu) throw InputError::format("{}: has no IMU samples, and every mode needs them", info.name);
-  const bool fusible = info.has_events && info.has_frames;
-  const Mode mode = wanted != "auto"  ? kModes.at(wanted)
-                    : fusible         ? Mode::Fused
-                    : info.has_events ? Mode::Events
-                                      : Mode::Frames;
-  if (mode != Mode::Frames && !info.has_events) {
-    throw InputError::format("{}: has no events; use --mode frames", info.name);
-  }
-  if (mode != Mode::Events && !info.has_frames) {
-    throw InputError::format("{}: has no frames; use --mode events", info.name);
-  }
-  return mode;
-}
-
 std::filesystem::path run_folder_path(const RunOptions& options, const DatasetInfo& info, Mode mode) {
   if (!options.out.empty()) return options.out;
   return std::filesystem::path("runs") / (info.name + "-" + mode_name(mode));
+}
+
+/// What was asked for, or what the format's users expect, where the calibration has that.
+std::string frame_name(const std::string& wanted, const Source& source) {
+  const std::string& usual = source.dataset->info().pose_frame;
+  const bool has_usual = std::ranges::count(source.calibration.rig.cameras, usual, &RigCamera::name) > 0;
+  return wanted != "auto" ? wanted : has_usual ? usual : "body";
 }
 
 std::string config_text(OdometryConfig config, const DatasetInfo& info, Mode mode) {
@@ -110,11 +96,12 @@ std::string config_text(OdometryConfig config, const DatasetInfo& info, Mode mod
          ConfigFields::of(config).to_yaml();
 }
 
-Run::Run(const RunOptions& options, Source source, const OdometryConfig& config)
+Run::Run(const RunOptions& options, Source source, Mode mode, const OdometryConfig& config)
     : options_(options),
       source_(std::move(source)),
-      mode_(choose_mode(options.mode, source_.dataset->info())),
-      frame_(source_.calibration.rig, options.frame == "auto" ? source_.dataset->info().pose_frame : options.frame),
+      mode_(mode),
+      frame_(source_.calibration.rig, frame_name(options.frame, source_)),
+      check_(source_.dataset->info(), source_.calibration, mode_),
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
       packetizer_(source_.calibration.rig, mode_, config.packets),
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config,
@@ -135,7 +122,15 @@ Run::Run(const RunOptions& options, Source source, const OdometryConfig& config)
                               fmt::format("edged {}, recording {}, mode {}", kVersion, info.name, mode_name(mode_))});
 }
 
+/// What contradicts is told as soon as it is known: who watches can stop there.
+void Run::check(const Measurement& measurement) {
+  const auto timer = program_timings_.measure("check");
+  check_.add(measurement);
+  for (const Finding& finding : check_.news()) spdlog::error("{}: {}", finding.text, finding.remedy);
+}
+
 void Run::take(Measurement measurement) {
+  check(measurement);
   const auto note_visual = [this](Modality modality, Timestamp first, Timestamp last) {
     const RigCamera* camera = source_.calibration.rig.find(modality);
     if (camera != nullptr) statistics_.add_visual(first + camera->time_offset, last + camera->time_offset);
@@ -240,9 +235,10 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const PacketizerCo
   }
 }
 
-std::string run_status(const RunStatistics& statistics) {
+std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
   if (interrupt_signal() != 0) return "interrupted";
   if (!statistics.first_good_s()) return "never good";
+  if (verdict.contradicted && is_tracking(statistics.last_status())) return "not to be trusted";
   switch (statistics.last_status()) {
     case TrackingStatus::Good:
       return "good";
@@ -269,10 +265,12 @@ RunSummary Run::summarize() {
   summary.frame = frame_.name();
   summary.folder = folder_.string();
   summary.seed = source_.seed;
-  summary.status = broken_off_ ? "broken off" : run_status(statistics_);
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
-  summary.calibration = compare_calibrations(source_.calibration.rig, odometry_.rig());
+  summary.calibration = compare_calibrations(source_.calibration.rig, odometry_);
+  summary.verdict =
+      judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
+  summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);
   if (live_)
     summary.live =
         LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};
@@ -283,9 +281,10 @@ RunSummary Run::summarize() {
   if (truth && !written.body.empty()) evaluate_run(summary, written, source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
-  write_file(folder_ / "metrics.json", to_json(summary).dump(2) + "\n");
+  write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");
   write_overview(summary, written.body, truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
+  for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   return summary;
 }
@@ -314,9 +313,13 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   const OdometryConfig config = load_config(options.config);
-  const RunSummary summary = Run(options, open_source(options.source), config).go();
-  fmt::print("{}", options.json ? to_json(summary).dump(2) + "\n" : to_table(summary));
+  Source source = open_source(options.source);
+  const Mode mode = choose_mode(options.mode, source.dataset->info());
+  match_cameras(source, mode);
+  const RunSummary summary = Run(options, std::move(source), mode, config).go();
+  fmt::print("{}", options.json ? json_text(to_json(summary)) + "\n" : to_table(summary));
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (summary.verdict.contradicted) return kExitNotTrusted;
   return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
 }
 

@@ -39,6 +39,8 @@ void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
   if (output.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
   last_status_ = output.status;
   ln_depth_scale_ = output.ln_depth_scale;
+  if (!output.waiting_for.empty()) waiting_for_ = output.waiting_for;
+  if (!output.lost_because.empty()) lost_because_ = output.lost_because;
   const Timestamp begin = first_visual_.value_or(packet);
   seconds_[static_cast<std::size_t>(output.status)] += std::max(0.0, to_seconds(packet - last_packet_.value_or(begin)));
   last_packet_ = packet;
@@ -50,6 +52,11 @@ double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(
 double RunStatistics::coverage() const {
   const double span = visual_span_s();
   return span > 0.0 ? std::min(1.0, time_in_s(TrackingStatus::Good) / span) : 0.0;
+}
+
+double RunStatistics::lost_share() const {
+  const double since = visual_span_s() - first_good_s_.value_or(0.0);
+  return first_good_s_ && since > 0.0 ? std::min(1.0, time_in_s(TrackingStatus::Lost) / since) : 0.0;
 }
 
 ResourceMeter::ResourceMeter() : wall_(std::chrono::steady_clock::now()), cpu_s_(process_cpu_s()) {}

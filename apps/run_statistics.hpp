@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include "edged/core/types.hpp"
 #include "edged/pipeline/odometry.hpp"
@@ -32,6 +33,11 @@ class RunStatistics {
   /// From the first visual measurement to the first Good packet [s].
   std::optional<double> first_good_s() const { return first_good_s_; }
   TrackingStatus last_status() const { return last_status_; }
+  /// Share of the time since the first Good packet that was Lost.
+  double lost_share() const;
+  /// What was missing when an estimate was last waited for, and what ended the last one; empty where it never was so.
+  const std::string& waiting_for() const { return waiting_for_; }
+  const std::string& lost_because() const { return lost_because_; }
   /// ln s of Eq. 5 at the end; nothing without the depth factor.
   const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
 
@@ -44,6 +50,7 @@ class RunStatistics {
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;
   std::optional<LogScale> ln_depth_scale_;
+  std::string waiting_for_, lost_because_;
 };
 
 /// Wall and processor time since construction, without the pauses; peak memory since the process began.

@@ -29,6 +29,7 @@ TEST(RunStatistics, CoverageIsTheShareOfTheVisualSpanWithAGoodPose) {
   EXPECT_DOUBLE_EQ(statistics.visual_span_s(), 10.0);
   EXPECT_DOUBLE_EQ(statistics.time_in_s(TrackingStatus::Initializing), 2.0);
   EXPECT_DOUBLE_EQ(*statistics.first_good_s(), 3.0);
+  EXPECT_DOUBLE_EQ(statistics.lost_share(), 1.0 / 7.0);
   EXPECT_EQ(statistics.packets(), 5u);
   EXPECT_EQ(statistics.keyframes(), 1u);
   EXPECT_EQ(statistics.times_lost(), 1u);
@@ -47,6 +48,20 @@ TEST(RunStatistics, CountLossesNotLostPackets) {
   statistics.add(at(4), with(TrackingStatus::Good));
   statistics.add(at(5), with(TrackingStatus::Lost));
   EXPECT_EQ(statistics.times_lost(), 2u);
+}
+
+TEST(RunStatistics, KeepWhatWasLastWaitedFor) {
+  RunStatistics statistics;
+  OdometryOutput output = with(TrackingStatus::Initializing);
+  output.waiting_for = "parallax 0.3 of 1.5 deg";
+  statistics.add(at(0), output);
+  statistics.add(at(1), with(TrackingStatus::Good));
+  output = with(TrackingStatus::Lost);
+  output.lost_because = "no 8 landmarks for 2.5 s";
+  statistics.add(at(2), output);
+  statistics.add(at(3), with(TrackingStatus::Lost));
+  EXPECT_EQ(statistics.waiting_for(), "parallax 0.3 of 1.5 deg");
+  EXPECT_EQ(statistics.lost_because(), "no 8 landmarks for 2.5 s");
 }
 
 TEST(ResourceMeter, SeesProcessorTimeAndMemory) {

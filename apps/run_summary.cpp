@@ -6,10 +6,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "edged/core/check.hpp"
 #include "evaluation_text.hpp"
+#include "survey_text.hpp"
 #include "version.hpp"
 
 namespace edged {
@@ -19,6 +19,11 @@ double per(double amount, double of) { return of > 0.0 ? amount / of : 0.0; }
 
 nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// Below zero: the estimate is too large.
+nlohmann::ordered_json scale_error(const std::optional<Evaluation>& e, double Evaluation::* scale) {
+  return number_or_null(e ? std::optional(*e.*scale - 1.0) : std::nullopt);
 }
 
 std::string line(const char* name, const std::string& value, const std::string& note = "") {
@@ -70,24 +75,31 @@ std::string live_table(const LiveSummary& live) {
 }
 
 std::string calibration_line(const CalibrationFound& c) {
-  return line("camera calibration", fmt::format("{:.2f} deg", c.rotation_deg),
-              fmt::format("of rotation off, clock {:.2f} ms (given {:.2f}): {}", c.time_offset_ms, c.given_offset_ms,
-                          c.camera));
+  const auto sigma = [](const std::optional<double>& value) { return value ? fmt::format(" +- {:.2f}", *value) : ""; };
+  return line("camera calibration", fmt::format("{:.2f}{} deg", c.rotation_deg, sigma(c.rotation_sigma_deg)),
+              fmt::format("of rotation off, clock {:.2f}{} ms (given {:.2f}): {}", c.time_offset_ms,
+                          sigma(c.time_sigma_ms), c.given_offset_ms, c.camera));
+}
+
+nlohmann::ordered_json calibration_json(const CalibrationFound& c) {
+  return {{"camera", c.camera},
+          {"rotation_off_deg", c.rotation_deg},
+          {"rotation_sigma_deg", number_or_null(c.rotation_sigma_deg)},
+          {"time_offset_ms", c.time_offset_ms},
+          {"time_offset_sigma_ms", number_or_null(c.time_sigma_ms)},
+          {"given_time_offset_ms", c.given_offset_ms}};
+}
+
+std::string verdict_text(const RunSummary& s) {
+  const Verdict& v = s.verdict;
+  std::string text;
+  if (!v.findings.empty()) text += to_text(v.findings);
+  text += line("verdict", v.trusted ? "nothing contradicts the result" : "the result is not to be trusted");
+  if (!v.next.empty()) text += line("next", v.next);
+  return text;
 }
 
 }  // namespace
-
-std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& found) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  std::vector<CalibrationFound> out;
-  for (const RigCamera& camera : found.cameras) {
-    const RigCamera& before = given.camera(camera.name);
-    const Eigen::Vector3d turned = so3::log((before.T_B_C.inverse() * camera.T_B_C).rotation());
-    out.push_back({camera.name, kDegrees * turned.norm(), 1e3 * to_seconds(camera.time_offset),
-                   1e3 * to_seconds(before.time_offset)});
-  }
-  return out;
-}
 
 void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& rig, const GroundTruth& truth) {
   try {
@@ -115,13 +127,19 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
       {"recording", s.recording}, {"format", s.format},
       {"mode", s.mode},           {"output_frame", s.frame},
       {"version", kVersion},      {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
-      {"status", s.status}};
+      {"status", s.status},
+      {"trusted", s.verdict.trusted},
+      {"findings", to_json(s.verdict.findings)},
+      {"waiting_for", s.verdict.waiting_for},
+      {"next", s.verdict.next}};
   json.update(accuracy_json(s.evaluation));
   json.update({{"poses", s.poses},
                {"keyframes", s.statistics.keyframes()},
                {"packets", s.statistics.packets()},
                {"coverage", s.statistics.coverage()},
                {"first_good_s", number_or_null(s.statistics.first_good_s())},
+               {"scale_error_at_first_good", scale_error(s.evaluation, &Evaluation::first_scale)},
+               {"scale_error_10s_later", scale_error(s.evaluation, &Evaluation::later_scale)},
                {"times_lost", s.statistics.times_lost()},
                {"duration_s", span},
                {"wall_s", s.wall_s},
@@ -137,12 +155,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
   json["calibration"] = nlohmann::ordered_json::array();
-  for (const CalibrationFound& c : s.calibration) {
-    json["calibration"].push_back({{"camera", c.camera},
-                                   {"rotation_off_deg", c.rotation_deg},
-                                   {"time_offset_ms", c.time_offset_ms},
-                                   {"given_time_offset_ms", c.given_offset_ms}});
-  }
+  for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(calibration_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
   json["repairs"] = s.repairs;
@@ -180,7 +193,7 @@ std::string to_table(const RunSummary& s) {
   }
   if (s.live) table += live_table(*s.live);
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
-  return table;
+  return table + verdict_text(s);
 }
 
 }  // namespace edged

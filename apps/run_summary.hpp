@@ -17,6 +17,7 @@
 #include "output_frame.hpp"
 #include "run_folder.hpp"
 #include "run_statistics.hpp"
+#include "verdict.hpp"
 
 namespace edged {
 
@@ -28,19 +29,13 @@ struct LiveSummary {
   QueuePeaks peaks;
 };
 
-/// What the run found a camera's calibration to be off by.
-struct CalibrationFound {
-  std::string camera;
-  double rotation_deg = 0.0;    ///< between T_B_C as given and as found
-  double time_offset_ms = 0.0;  ///< found, the whole of it
-  double given_offset_ms = 0.0;
-};
-std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& found);
-
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::optional<int> seed;
-  std::string status;  ///< "good", "degraded", "lost", "never good", "interrupted" or "broken off" (by an error)
+  /// "good", "degraded", "not to be trusted" (with a pose to the end, but contradicted), "lost", "never good",
+  /// "interrupted" or "broken off" (by an error)
+  std::string status;
+  Verdict verdict;
   RunStatistics statistics;
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;

@@ -37,6 +37,8 @@ struct DatasetInfo {
   bool has_events = false, has_frames = false, has_imu = false;
   std::vector<StreamInfo> streams;        ///< of formats that name them
   cv::Size event_sensor;                  ///< size of the event camera [px]; empty where it is not known
+  std::string event_camera = "events";    ///< what its batches of events call their camera
+  std::string frame_camera = "frames";    ///< and its frames
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,

@@ -98,6 +98,12 @@ std::optional<Matrix15d> Estimator::covariance() {
   return P;
 }
 
+std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) {
+  if (!initialized_) return std::nullopt;
+  const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
+  return P ? std::optional<Eigen::Matrix4d>(*P * config_.sigma_inflation * config_.sigma_inflation) : std::nullopt;
+}
+
 std::optional<double> Estimator::depth(FeatureId id) const {
   const auto found = window_.features.find(id);
   if (found == window_.features.end() || !found->second.anchor) return std::nullopt;

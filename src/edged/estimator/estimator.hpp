@@ -47,6 +47,8 @@ class Estimator {
 
   /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the start.
   std::optional<Matrix15d> covariance();
+  /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
+  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera);
 
   /// z-depth of a landmark in its own camera at the newest state [m].
   std::optional<double> depth(FeatureId id) const;

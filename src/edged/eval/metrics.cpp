@@ -16,6 +16,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may come late
 constexpr double kStart_s = 5.0;
+constexpr TimeWindow kFirst = {0.0, 2.0}, kLater = {10.0, 12.0};
 constexpr double kLeastStartPath_m = 0.1;  // less says nothing of the scale
 
 double path_length(const std::vector<PosePair>& pairs) {
@@ -51,6 +52,23 @@ double sim3_scale(const std::vector<PosePair>& pairs) {
 double start_scale(const std::vector<PosePair>& pairs) {
   const std::vector<PosePair> start = within(pairs, {0.0, kStart_s});
   return path_length(start) < kLeastStartPath_m ? std::numeric_limits<double>::quiet_NaN() : sim3_scale(start);
+}
+
+/// Of straight motion, too, as a moment's is: there Sim(3) is not fixed. NaN where too little moved.
+double extent_ratio(const std::vector<PosePair>& pairs) {
+  if (path_length(pairs) < kLeastStartPath_m) return std::numeric_limits<double>::quiet_NaN();
+  const auto n = static_cast<double>(pairs.size());
+  Eigen::Vector3d true_mean = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
+  for (const PosePair& pair : pairs) {
+    true_mean += pair.truth.translation() / n;
+    mean += pair.estimate.translation() / n;
+  }
+  double true_extent = 0.0, extent = 0.0;
+  for (const PosePair& pair : pairs) {
+    true_extent += (pair.truth.translation() - true_mean).squaredNorm();
+    extent += (pair.estimate.translation() - mean).squaredNorm();
+  }
+  return std::sqrt(true_extent / extent);
 }
 
 }  // namespace
@@ -118,6 +136,8 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.alignment = align(within(association.pairs, protocol.window), protocol.alignment);
   result.scale = sim3_scale(association.pairs);
   result.start_scale = start_scale(association.pairs);
+  result.first_scale = extent_ratio(within(association.pairs, kFirst));
+  result.later_scale = extent_ratio(within(association.pairs, kLater));
 
   const std::vector<PosePair> pairs = aligned(association.pairs, result.alignment);
   std::vector<double> position, rotation, yaw;

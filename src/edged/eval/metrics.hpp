@@ -49,6 +49,8 @@ struct Evaluation {
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate
   double start_scale = 1.0;  ///< the same over the first 5 s of the estimate; NaN when too little moved to tell
+  double first_scale = 1.0;  ///< extent of the truth over that of the estimate in its first 2 s; NaN as above
+  double later_scale = 1.0;  ///< the same ten seconds later
   Statistics ate_m;    ///< position error
   Statistics rotation_deg;              ///< angle between true and aligned rotation
   Statistics yaw_deg;                   ///< size of its part about the world's z

@@ -57,12 +57,16 @@ TEST(Evaluation, TellsTheScaleOfTheStartApart) {
     p += (start ? 0.8 : 1.0) * (truth[i].T.translation() - truth[i - 1].T.translation());
     estimate[i].T.translation() = p;
   }
-  EXPECT_NEAR(evaluate(associate(truth, estimate), protocol("P3")).start_scale, 1.25, 1e-9);
+  const Evaluation found = evaluate(associate(truth, estimate), protocol("P3"));
+  EXPECT_NEAR(found.start_scale, 1.25, 1e-9);
+  EXPECT_NEAR(found.first_scale, 1.25, 1e-9);
+  EXPECT_NEAR(found.later_scale, 1.0, 1e-9);
   Trajectory resting = truth;
   for (StampedPose& pose : resting) {
     if (to_seconds(pose.t - truth.front().t) < 5.5) pose.T = truth.front().T;
   }
   EXPECT_TRUE(std::isnan(evaluate(associate(resting, truth), protocol("P3")).start_scale));
+  EXPECT_TRUE(std::isnan(evaluate(associate(resting, truth), protocol("P3")).first_scale));
 }
 
 TEST(Evaluation, AlignsOnItsWindowOnly) {

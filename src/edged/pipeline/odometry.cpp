@@ -157,6 +157,7 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   output.scene_depth = scene_depth;
   output.ln_depth_scale = estimator.depth_scale();
   output.waiting_for = result.waiting_for;
+  if (output.status == TrackingStatus::Lost) output.lost_because = judge.reason();
   if (output.status == TrackingStatus::Lost && estimator.initialized()) restart(packet.t);
   return output;
 }
@@ -378,6 +379,12 @@ Rig Odometry::rig() const {
     rig.cameras[camera].time_offset += impl_->given_rig.cameras[camera].time_offset;
   }
   return rig;
+}
+std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) {
+  const std::vector<RigCamera>& cameras = impl_->used_rig.cameras;
+  const auto found = std::ranges::find(cameras, camera, &RigCamera::name);
+  if (found == cameras.end()) return std::nullopt;
+  return impl_->estimator.calibration_covariance(static_cast<std::size_t>(found - cameras.begin()));
 }
 const StageTimings& Odometry::timings() const { return impl_->timings; }
 const cv::Mat& Odometry::event_frame() const { return impl_->event_frame; }

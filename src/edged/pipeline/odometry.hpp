@@ -36,7 +36,8 @@ struct OdometryOutput {
   double event_rate_hz = 0;                ///< of this packet
   double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
-  std::string waiting_for;                 ///< while Initializing: what is missing, with numbers
+  std::string waiting_for;                 ///< while there is no estimate: what a start lacks, with numbers
+  std::string lost_because;                ///< while Lost: what ended the last estimate, with numbers
 };
 
 /// Synchronous and deterministic: the same packets give the same bits; but for a depth network that has a thread of its
@@ -55,6 +56,9 @@ class Odometry {
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;
+  /// How well that is known of a camera of the mode: rotation about its axes [rad], then time offset [s]. Nothing where
+  /// there is no estimate.
+  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
   /// The motion-compensated event frame of the last packet (CV_8UC1, undistorted), empty when it had none.
   const cv::Mat& event_frame() const;

@@ -35,7 +35,8 @@ Duration Survey::overlap() const {
   return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
 
-Surveyor::Surveyor(const DatasetInfo& info) : events_(kEventSilence), event_details_(info.event_sensor) {}
+Surveyor::Surveyor(const DatasetInfo& info)
+    : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
 
 void Surveyor::add(const Measurement& measurement) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
@@ -53,9 +54,9 @@ void Surveyor::add(const Measurement& measurement) {
   }
 }
 
-Survey Surveyor::result(const Dataset& dataset) const {
+Survey Surveyor::so_far() const {
   Survey survey;
-  survey.info = dataset.info();
+  survey.info = info_;
   survey.events = events_.result();
   survey.frames = frames_.result();
   survey.imu = imu_.result();
@@ -63,6 +64,12 @@ Survey Surveyor::result(const Dataset& dataset) const {
   survey.imu_details = imu_details_.result();
   survey.image_size = image_size_;
   if (survey.frames.count > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(survey.frames.count);
+  return survey;
+}
+
+Survey Surveyor::result(const Dataset& dataset) const {
+  Survey survey = so_far();
+  survey.info = dataset.info();
   if (const auto truth = dataset.ground_truth()) survey.truth = survey_truth(*truth);
   survey.repairs = dataset.repairs();
   return survey;

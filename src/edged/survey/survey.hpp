@@ -41,10 +41,13 @@ class Surveyor {
   explicit Surveyor(const DatasetInfo& info);
 
   void add(const Measurement& measurement);
+  /// By the measurements that have come: without ground truth and repairs.
+  Survey so_far() const;
   /// After the last measurement.
   Survey result(const Dataset& dataset) const;
 
  private:
+  DatasetInfo info_;
   StreamSurveyor events_, frames_, imu_;
   EventSurveyor event_details_;
   ImuSurveyor imu_details_;

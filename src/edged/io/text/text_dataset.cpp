@@ -52,10 +52,12 @@ void TextDataset::open_streams() {
   if (const auto& e = layout_.events) {
     events_.emplace(e->file, e->columns, e->width, e->height, repairs_);
     info.has_events = opened(events_, "events", e->file);
+    info.event_camera = e->camera;
   }
   if (const auto& f = layout_.frames) {
     frames_.emplace(f->lines, repairs_);
     info.has_frames = opened(frames_, "frames", f->lines.file);
+    info.frame_camera = f->camera;
   }
   if (const auto& i = layout_.imu) {
     imu_.emplace(*i, repairs_);

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Whether recording and calibration contradict each other, found while a run goes: what `edged doctor` checks, as far as it
+// costs little.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/io/calibration.hpp"
+#include "edged/pipeline/packetizer.hpp"
+#include "edged/survey/diagnosis.hpp"
+
+namespace edged {
+
+/// The cameras of the mode are held against the gyro only until their turning has told enough: that is what costs.
+class RunCheck {
+ public:
+  RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode mode);
+
+  /// Every measurement that comes, before it is used.
+  void add(const Measurement& measurement);
+
+  /// Errors that have become certain and were not given out before.
+  std::vector<Finding> news();
+
+  /// Warnings and errors by all that has come; after the last measurement.
+  std::vector<Finding> findings(const Dataset& dataset);
+
+ private:
+  struct Camera {
+    RigCamera given;
+    VisualTurns visual;
+    std::size_t counted = 0;     ///< of the turns
+    Duration turning{0};         ///< time in which it turned, so far
+    Duration next_look{0};       ///< compared again when it has turned for so long
+    bool done = false;           ///< compared to satisfaction
+    bool mirrored = false;       ///< only a mirrored gyro would agree
+    std::optional<GyroAgreement> agreement = std::nullopt;
+  };
+
+  void follow(Camera& camera, const Measurement& measurement);
+  void compare(Camera& camera);
+  std::vector<Finding> judge(Survey survey) const;
+
+  bool has_extrinsics_;
+  Mode mode_;
+  Surveyor surveyor_;
+  GyroIntegral gyro_, mirrored_gyro_;
+  std::vector<Camera> cameras_;
+  std::optional<Timestamp> first_, first_imu_, first_visual_;  ///< stamps that came first
+  Duration imu_{0}, visual_{0};                                ///< how long these have come
+  bool look_ = false, looked_ = false;                         ///< there may be news; were looked for
+  std::vector<std::string> told_;
+};
+
+}  // namespace edged
