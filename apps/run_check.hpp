@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether recording and calibration contradict each other, found while a run goes: what `edged doctor` checks, as far as it
-// costs little.
+// Whether recording and calibration contradict each other, found while a run goes: what `edged doctor` checks, as far
+// as it costs little.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,18 @@
 
 #include "edged/io/calibration.hpp"
 #include "edged/pipeline/packetizer.hpp"
+#include "edged/survey/accel_axes.hpp"
 #include "edged/survey/diagnosis.hpp"
 
 namespace edged {
 
-/// The cameras of the mode are held against the gyro only until their turning has told enough: that is what costs.
+/// The cameras of the mode are held against the gyro until they have turned enough: with few corners, only while it
+/// turns, and of two behind one lens only one. That, and that most events are only counted, makes it cheap.
 class RunCheck {
  public:
   RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode mode);
 
-  /// Every measurement that comes, before it is used.
+  /// Every measurement that comes, before it is used; what the mode does not need is passed over.
   void add(const Measurement& measurement);
 
   /// Errors that have become certain and were not given out before.
@@ -32,11 +34,14 @@ class RunCheck {
   struct Camera {
     RigCamera given;
     VisualTurns visual;
-    std::size_t counted = 0;     ///< of the turns
-    Duration turning{0};         ///< time in which it turned, so far
-    Duration next_look{0};       ///< compared again when it has turned for so long
-    bool done = false;           ///< compared to satisfaction
-    bool mirrored = false;       ///< only a mirrored gyro would agree
+    std::size_t counted = 0;  ///< of the turns
+    Duration turning{0};      ///< time in which it turned, so far
+    Duration next_look{0};    ///< compared again when it has turned for so long
+    bool done = false;        ///< compared to satisfaction
+    bool twin = false;        ///< has the lens of the one before it
+    bool waits = false;       ///< for that one, unless it does not tell enough
+    /// Of the rotation that explains its turning clearly better than the calibration's, where the doctor cannot judge.
+    double contradiction_deg = 0.0;
     std::optional<GyroAgreement> agreement = std::nullopt;
   };
 
@@ -47,11 +52,13 @@ class RunCheck {
   bool has_extrinsics_;
   Mode mode_;
   Surveyor surveyor_;
-  GyroIntegral gyro_, mirrored_gyro_;
+  GyroIntegral gyro_;
+  double rate_ = 0.0;  ///< of the gyro, at present [rad/s]
+  AccelAxes accel_axes_;
   std::vector<Camera> cameras_;
-  std::optional<Timestamp> first_, first_imu_, first_visual_;  ///< stamps that came first
-  Duration imu_{0}, visual_{0};                                ///< how long these have come
-  bool look_ = false, looked_ = false;                         ///< there may be news; were looked for
+  std::optional<Timestamp> first_imu_, first_visual_;  ///< stamps that came first
+  Duration imu_{0}, visual_{0};                        ///< how long these have come
+  bool look_ = false, looked_ = false;                 ///< there may be news; were looked for
   std::vector<std::string> told_;
 };
 

@@ -68,6 +68,7 @@ class Run {
   Packetizer packetizer_;
   Odometry odometry_;
   QueueConfig queue_config_;
+  CalibrationConfig calibration_config_;
   std::optional<RunWriter> writer_;
   RunStatistics statistics_;
   LiveliestMoment moment_;
@@ -107,6 +108,7 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const OdometryConf
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config,
                 options.live ? Inference::OwnThread : Inference::Synchronous),
       queue_config_(config.live),
+      calibration_config_(config.estimator.calibration),
       status_line_(options.quiet) {
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
@@ -267,7 +269,7 @@ RunSummary Run::summarize() {
   summary.seed = source_.seed;
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
-  summary.calibration = compare_calibrations(source_.calibration.rig, odometry_);
+  summary.calibration = compare_calibrations(source_.calibration.rig, odometry_, calibration_config_);
   summary.verdict =
       judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
   summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);

@@ -39,6 +39,7 @@ void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
   if (output.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
   last_status_ = output.status;
   ln_depth_scale_ = output.ln_depth_scale;
+  if (is_tracking(output.status)) accel_bias_ = output.state.bias_accel;
   if (!output.waiting_for.empty()) waiting_for_ = output.waiting_for;
   if (!output.lost_because.empty()) lost_because_ = output.lost_because;
   const Timestamp begin = first_visual_.value_or(packet);

@@ -38,6 +38,8 @@ class RunStatistics {
   /// What was missing when an estimate was last waited for, and what ended the last one; empty where it never was so.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
+  /// As estimated last [m/s^2].
+  const Eigen::Vector3d& accel_bias() const { return accel_bias_; }
   /// ln s of Eq. 5 at the end; nothing without the depth factor.
   const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
 
@@ -51,6 +53,7 @@ class RunStatistics {
   TrackingStatus last_status_ = TrackingStatus::Initializing;
   std::optional<LogScale> ln_depth_scale_;
   std::string waiting_for_, lost_because_;
+  Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
 };
 
 /// Wall and processor time since construction, without the pauses; peak memory since the process began.

@@ -16,8 +16,9 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// One word of a command line.
 std::string shell_word(const std::string& text) {
-  const bool plain = text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
-                     std::string::npos;
+  const bool plain =
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
+      std::string::npos;
   if (plain && !text.empty()) return text;
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -34,49 +35,76 @@ std::string doctor_command(const SourceOptions& source) {
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);
   for (const std::string& topic : source.topics) add("--topic", topic);
+  if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
+  if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
+  if (source.dim_frames) add("--dim-frames", fmt::format("{}", *source.dim_frames));
   return command;
 }
 
 /// What it found is a finding only where the calibration is wrong by more than the estimate may be.
 void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
-  constexpr double kSigmas = 3.0, kLeast_deg = 0.5, kLeast_ms = 3.0;  // below these it costs nothing
+  constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // below these it costs nothing
   const double shift_ms = c.time_offset_ms - c.given_offset_ms;
+  const Severity severity = c.beyond ? Severity::Error : Severity::Warning;
+  const std::string done = c.beyond ? "more than a run can correct" : "the run has corrected it";
   if (c.rotation_sigma_deg && c.rotation_deg > std::max(kLeast_deg, kSigmas * *c.rotation_sigma_deg))
-    out.push_back({Severity::Warning,
-                   fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the calibration",
-                               c.camera, c.rotation_deg, *c.rotation_sigma_deg),
-                   "the run has corrected it; calibrate camera and IMU anew"});
+    out.push_back(
+        {severity,
+         fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the calibration",
+                     c.camera, c.rotation_deg, *c.rotation_sigma_deg),
+         done + "; calibrate camera and IMU anew"});
   if (c.time_sigma_ms && std::abs(shift_ms) > std::max(kLeast_ms, kSigmas * *c.time_sigma_ms))
-    out.push_back({Severity::Warning,
-                   fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was found, {:+.2f} ms is given", c.camera,
-                               c.time_offset_ms, *c.time_sigma_ms, c.given_offset_ms),
-                   fmt::format("the run has corrected it; set time_offset of this camera to {:.4f}",
-                               1e-3 * c.time_offset_ms)});
+    out.push_back({severity,
+                   fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was found, {:+.2f} ms is given",
+                               c.camera, c.time_offset_ms, *c.time_sigma_ms, c.given_offset_ms),
+                   fmt::format("{}; set time_offset of this camera to {:.4f}", done, 1e-3 * c.time_offset_ms)});
+}
+
+/// What does not fit goes into the biases first.
+void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
+  constexpr double kMost = 1.2;  // [m/s^2]; up to 0.5 on the mirror recordings
+  if (run.accel_bias().norm() > kMost)
+    out.push_back({Severity::Error,
+                   fmt::format("accelerometer: a bias of {:.1f} m/s^2 was estimated, more than such sensors have",
+                               run.accel_bias().norm()),
+                   "check its axes, scale and unit, and the pose of the cameras to it"});
 }
 
 void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kMostLost = 0.1;
   const double lost_s = run.time_in_s(TrackingStatus::Lost);
   const std::string why = run.lost_because().empty() ? "" : ", the last time as " + run.lost_because();
-  const std::string remedy = "after a loss position and yaw are those of dead reckoning: look into states.csv and run.log";
+  const std::string remedy =
+      "after a loss position and yaw are those of dead reckoning: look into states.csv and run.log";
   if (run.last_status() == TrackingStatus::Lost)
     out.push_back({Severity::Error, fmt::format("lost at the end{}", why), remedy});
   else if (run.lost_share() > kMostLost)
     out.push_back({Severity::Error,
-                   fmt::format("lost for {:.1f} s, {:.0f} % of the time{}", lost_s, 100 * run.lost_share(), why), remedy});
+                   fmt::format("lost for {:.1f} s, {:.0f} % of the time{}", lost_s, 100 * run.lost_share(), why),
+                   remedy});
   else if (run.times_lost() > 0)
-    out.push_back({Severity::Warning, fmt::format("lost {} times, for {:.1f} s{}", run.times_lost(), lost_s, why), remedy});
+    out.push_back(
+        {Severity::Warning, fmt::format("lost {} times, for {:.1f} s{}", run.times_lost(), lost_s, why), remedy});
 }
 
 }  // namespace
 
-std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry) {
+std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
+                                                   const CalibrationConfig& config) {
+  constexpr double kBeyond = 4.0;  // sigmas of what was thought possible
   std::vector<CalibrationFound> out;
   for (const RigCamera& camera : odometry.rig().cameras) {
     const RigCamera& before = given.camera(camera.name);
     const Eigen::Vector3d turned = so3::log((before.T_B_C.inverse() * camera.T_B_C).rotation());
-    CalibrationFound found{camera.name, kDegrees * turned.norm(), 1e3 * to_seconds(camera.time_offset),
-                           1e3 * to_seconds(before.time_offset), std::nullopt, std::nullopt};
+    CalibrationFound found{camera.name,
+                           kDegrees * turned.norm(),
+                           1e3 * to_seconds(camera.time_offset),
+                           1e3 * to_seconds(before.time_offset),
+                           false,
+                           std::nullopt,
+                           std::nullopt};
+    found.beyond = found.rotation_deg > kBeyond * config.rotation_sigma_deg ||
+                   std::abs(found.time_offset_ms - found.given_offset_ms) > kBeyond * config.time_offset_sigma_ms;
     if (const auto P = odometry.calibration_covariance(camera.name)) {
       const Eigen::Matrix3d rotation = P->topLeftCorner<3, 3>();
       // Of the angle that was found; where there is none, of the axis that is known least.
@@ -98,18 +126,21 @@ Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics
   verdict.findings = std::move(findings);
   for (const CalibrationFound& found : calibration) judge_calibration(found, verdict.findings);
   const bool ever_good = statistics.first_good_s().has_value();
-  if (ever_good) judge_losses(statistics, verdict.findings);
+  if (ever_good) {
+    judge_losses(statistics, verdict.findings);
+    judge_biases(statistics, verdict.findings);
+  }
   verdict.contradicted = std::ranges::count(verdict.findings, Severity::Error, &Finding::severity) > 0;
   verdict.trusted = ever_good && !verdict.contradicted;
   const bool lost = statistics.last_status() == TrackingStatus::Lost;
   if (!ever_good || lost) verdict.waiting_for = statistics.waiting_for();
   if (!verdict.trusted) verdict.next = doctor_command(source);
   if (!ever_good) {
-    const std::string why = statistics.packets() == 0 ? "not one packet had IMU samples around it"
+    const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
                             : verdict.waiting_for.empty() ? "no start was tried"
                                                           : "it waited for " + verdict.waiting_for;
-    verdict.findings.push_back(
-        {Severity::Error, "never good: " + why, "see what recording and calibration say of themselves: " + verdict.next});
+    verdict.findings.push_back({Severity::Error, "never good: " + why,
+                                "see what recording and calibration say of themselves: " + verdict.next});
   }
   return verdict;
 }

@@ -20,9 +20,11 @@ struct CalibrationFound {
   double rotation_deg = 0.0;    ///< between T_B_C as given and as found
   double time_offset_ms = 0.0;  ///< found, the whole of it
   double given_offset_ms = 0.0;
+  bool beyond = false;  ///< farther off than estimator.calibration.* says it may be: not corrected, but wrong
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of what was found; nothing where there is no estimate
 };
-std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry);
+std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
+                                                   const CalibrationConfig& config);
 
 struct Verdict {
   std::vector<Finding> findings;  ///< warnings and errors

@@ -18,7 +18,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
 MODES = ["fused", "frames", "events"]
-NEVER_GOOD = 4  # exit code of edged run
+NEVER_GOOD, NOT_TRUSTED = 4, 5  # exit codes of edged run
 MIRROR_RIG = "davis240c_ecd"
 # A run that loses its way has failed, and so has one that does not know that it has.
 LEAST_COVERAGE = 0.5
@@ -98,7 +98,7 @@ def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
         command += ["--rig", rig]
     for setting in settings:
         command += ["--set", setting]
-    return json.loads(call(command, accepted=(0, NEVER_GOOD)))
+    return json.loads(call(command, accepted=(0, NEVER_GOOD, NOT_TRUSTED)))
 
 
 def read_states(folder):

@@ -51,8 +51,9 @@ std::string match_camera(Rig& rig, const DatasetInfo& info, Modality modality) {
   if (named != rig.cameras.end()) refuse(rig, info, modality, fmt::format("'{}' is not of {}", wanted, kind));
   if (count > 1) refuse(rig, info, modality, fmt::format("several are of {}, none is called '{}'", kind, wanted));
   RigCamera& camera = *std::ranges::find_if(rig.cameras, is_kind);
-  std::string said = fmt::format("camera '{}' of the calibration is taken for the recording's '{}': it is the only one of {}",
-                                 camera.name, wanted, kind);
+  std::string said =
+      fmt::format("camera '{}' of the calibration is taken for the recording's '{}': it is the only one of {}",
+                  camera.name, wanted, kind);
   camera.name = wanted;
   return said;
 }

@@ -38,15 +38,17 @@ Duration Survey::overlap() const {
 Surveyor::Surveyor(const DatasetInfo& info)
     : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
 
-void Surveyor::add(const Measurement& measurement) {
+void Surveyor::add(const Measurement& measurement, Detail detail) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
     if (batch->events.empty()) return;
     events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
-    event_details_.add(batch->events);
+    if (detail == Detail::All) event_details_.add(batch->events);
   } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
     frames_.add(frame->t, frame->t);
     if (image_size_.empty()) image_size_ = frame->image.size();
+    if (detail != Detail::All) return;
     brightness_sum_ += cv::mean(frame->image)[0];
+    ++measured_frames_;
   } else {
     const auto& sample = std::get<ImuSample>(measurement);
     imu_.add(sample.t, sample.t);
@@ -63,7 +65,7 @@ Survey Surveyor::so_far() const {
   survey.event_details = event_details_.result();
   survey.imu_details = imu_details_.result();
   survey.image_size = image_size_;
-  if (survey.frames.count > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(survey.frames.count);
+  if (measured_frames_ > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
   return survey;
 }
 

@@ -40,7 +40,11 @@ class Surveyor {
  public:
   explicit Surveyor(const DatasetInfo& info);
 
-  void add(const Measurement& measurement);
+  enum class Detail {
+    All,
+    Stamps,  ///< of events and frames only their stamps: costs little; a part of them with All is enough for the rest
+  };
+  void add(const Measurement& measurement, Detail detail = Detail::All);
   /// By the measurements that have come: without ground truth and repairs.
   Survey so_far() const;
   /// After the last measurement.
@@ -53,6 +57,7 @@ class Surveyor {
   ImuSurveyor imu_details_;
   cv::Size image_size_;
   double brightness_sum_ = 0.0;
+  std::size_t measured_frames_ = 0;  ///< in that sum
 };
 
 }  // namespace edged

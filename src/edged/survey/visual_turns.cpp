@@ -16,6 +16,12 @@ constexpr Duration kShortest = std::chrono::milliseconds(10);  // between pictur
 constexpr Duration kBaseline = std::chrono::milliseconds(80);  // of a turn, at least: over less, noise rules
 constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is no turn, but a gap
 
+TrackerConfig with_corners(int corners) {
+  TrackerConfig config;
+  config.detector.max_features = corners;
+  return config;
+}
+
 }  // namespace
 
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
@@ -31,9 +37,9 @@ std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d>
   return R.allFinite() ? std::optional(R) : std::nullopt;
 }
 
-VisualTurns::VisualTurns(const RigCamera& camera)
+VisualTurns::VisualTurns(const RigCamera& camera, int corners)
     : modality_(camera.modality),
-      tracker_(camera.name, camera.model, TrackerConfig()),
+      tracker_(camera.name, camera.model, with_corners(corners)),
       picture_(camera.model.height(), camera.model.width(), CV_8UC1, cv::Scalar(0)),
       events_per_picture_(static_cast<std::size_t>(kEventsPerPixel * static_cast<double>(picture_.total()))) {}
 

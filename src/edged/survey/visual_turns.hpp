@@ -34,7 +34,8 @@ std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d>
 /// Follows corners through standard frames, or through pictures of the newest events.
 class VisualTurns {
  public:
-  explicit VisualTurns(const RigCamera& camera);
+  /// corners: at most so many are followed; fewer cost less and tell less.
+  explicit VisualTurns(const RigCamera& camera, int corners = DetectorConfig().max_features);
 
   /// Measurements of this camera; others are passed over.
   void add(const Measurement& measurement);

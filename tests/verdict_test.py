@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a run says of its own result: calibrations and recordings that contradict it. Usage: EDGED=path/to/edged verdict_test.py"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+EDGED = os.environ["EDGED"]
+MODES = ("events", "frames", "fused")
+DEG = 57.29578
+G = 9.80665
+# The transform of the first camera in our own format; the second is behind the same lens.
+TRANSFORM = re.compile(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]")
+
+
+def edged(*args):
+    return subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, check=False, timeout=300)
+
+
+def with_transform(change):
+    """Changes the rows of T_B_C in the text of a calibration."""
+    def replaced(match):
+        rows = [[float(v) for v in line[line.index("[") + 1:line.index("]")].split(",")]
+                for line in match.group(0).splitlines()]
+        return "\n".join(f"      - [{', '.join(map(str, row))}]" for row in change(rows))
+    return lambda text: TRANSFORM.sub(replaced, text)
+
+
+def with_imu(change):
+    """change(t, accel, gyro) of every line of imu.txt."""
+    def line(text):
+        t, *v = map(float, text.split())
+        t, accel, gyro = change(t, v[:3], v[3:])
+        return " ".join([f"{t:.9f}", *map(repr, accel + gyro)])
+    return lambda text: "\n".join(map(line, text.splitlines())) + "\n"
+
+
+def scaled(factor, v):
+    return [factor * x for x in v]
+
+
+class Verdict(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="edged_verdict_"))
+        cls.addClassCleanup(shutil.rmtree, cls.shared)
+        cls.flight = cls.shared / "flight"
+        made = edged("simulate", "--duration", 5, "--seed", 2, "--out", cls.flight, "--quiet")
+        assert made.returncode == 0, made.stderr
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_verdict_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def changed(self, name, change):
+        """The recording with one of its files changed."""
+        copy = self.folder / "changed"
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(self.flight, copy)
+        (copy / name).write_text(change((copy / name).read_text()))
+        return copy
+
+    def run_it(self, recording, mode, *args):
+        out = self.folder / "run"
+        result = edged("run", recording, "--mode", mode, "--out", out, "--quiet", *args)
+        self.assertTrue((out / "metrics.json").is_file(), result.stderr)
+        return result, json.loads((out / "metrics.json").read_text())
+
+    def assert_not_trusted(self, name, change, text, remedy):
+        """In every mode: said on the way or at the end, in metrics.json and by the exit code, with what to do."""
+        recording = self.changed(name, change)
+        for mode in MODES:
+            with self.subTest(mode=mode):
+                result, metrics = self.run_it(recording, mode)
+                self.assertEqual(result.returncode, 5, result.stdout + result.stderr)
+                self.assertNotIn(metrics["status"], ("good", "degraded"))
+                self.assertFalse(metrics["trusted"])
+                errors = [f for f in metrics["findings"] if f["severity"] == "error"]
+                self.assertTrue(any(re.search(text, f["text"]) and re.search(remedy, f["remedy"]) for f in errors), errors)
+                self.assertRegex(result.stdout, text)
+                self.assertRegex(result.stdout, r"verdict +the result is not to be trusted\n +next +edged doctor ")
+                self.assertEqual(metrics["next"], f"edged doctor {recording}")
+
+    def test_a_healthy_recording_raises_no_finding(self):
+        for mode in MODES:
+            result, metrics = self.run_it(self.flight, mode)
+            self.assertEqual((result.returncode, metrics["status"], result.stderr), (0, "good", ""))
+            self.assertEqual((metrics["findings"], metrics["trusted"], metrics["next"]), ([], True, ""))
+            self.assertRegex(result.stdout, r"verdict +nothing contradicts the result")
+
+    def test_a_camera_mounted_a_quarter_turn_off(self):
+        def quarter_turn(rows):  # about the body's x: y' = -z, z' = y
+            x, y, z, last = rows
+            return [x, scaled(-1, z), y, last]
+        self.assert_not_trusted("calibration.yaml", with_transform(quarter_turn), r"contradicts the gyro|off the calibration",
+                                r"axis|edged calib")
+
+    def test_a_lever_arm_in_millimetres(self):
+        def millimetres(rows):
+            return [row[:3] + [1000 * row[3]] for row in rows[:3]] + [rows[3]]
+        self.assert_not_trusted("calibration.yaml", with_transform(millimetres), "millimetres", "divide that of T_B_C by 1000")
+
+    def test_clocks_that_are_100_s_apart(self):
+        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t + 100, a, g)), "clocks of the sensors do not overlap",
+                                "one clock")
+
+    def test_a_gyro_in_degrees(self):
+        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t, a, scaled(DEG, g))), "gyro.* deg/s", "pi / 180")
+
+    def test_an_accelerometer_in_g(self):
+        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t, scaled(1 / G, a), g)), "accelerometer in g",
+                                "9.80665")
+
+    def test_imu_axes_that_are_negated(self):
+        negated = with_imu(lambda t, a, g: (t, scaled(-1, a), scaled(-1, g)))
+        self.assert_not_trusted("imu.txt", negated, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
+        one = with_imu(lambda t, a, g: (t, [-a[0], *a[1:]], [-g[0], *g[1:]]))
+        self.assert_not_trusted("imu.txt", one, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
+        two = with_imu(lambda t, a, g: (t, [-a[0], -a[1], a[2]], [-g[0], -g[1], g[2]]))
+        self.assert_not_trusted("imu.txt", two, r"contradicts the gyro|off the calibration", "axis|edged calib")
+
+    def test_an_accelerometer_with_other_axes_than_the_gyro(self):
+        other = with_imu(lambda t, a, g: (t, [-a[0], *a[1:]], g))
+        self.assert_not_trusted("imu.txt", other, "gravity does not turn in its axes", r"\(-x, y, z\)")
+
+    def test_frames_that_never_come_are_missed(self):
+        result, metrics = self.run_it(self.changed("images.txt", lambda text: text.replace("frame_", "gone_")), "fused")
+        self.assertEqual((result.returncode, metrics["status"]), (5, "not to be trusted"), result.stdout)
+        self.assertIn("no frames: the mode needs them, and not one came", result.stdout)
+
+    def test_a_run_without_a_start_says_what_it_waited_for_and_what_to_do(self):
+        flight = self.folder / "short"
+        edged("simulate", "--duration", 0.2, "--out", flight, "--quiet")
+        result, metrics = self.run_it(flight, "fused", "--calib", flight / "calibration.yaml")
+        self.assertEqual((result.returncode, metrics["status"]), (4, "never good"))
+        self.assertIn("rest", metrics["waiting_for"])
+        self.assertEqual(metrics["next"], f"edged doctor {flight} --calib {flight / 'calibration.yaml'}")
+        self.assertIn(metrics["next"], result.stdout)
+        self.assertIn("never good: it waited for rest", result.stdout)
+
+    def test_scale_at_the_start_and_ten_seconds_later(self):
+        _, metrics = self.run_it(self.flight, "fused")
+        self.assertLess(abs(metrics["scale_error_at_first_good"]), 0.1)
+        self.assertIsNone(metrics["scale_error_10s_later"])  # it is over before
+
+    def test_the_calibration_found_comes_with_its_sigma(self):
+        _, metrics = self.run_it(self.flight, "frames")
+        found = metrics["calibration"][0]
+        self.assertGreater(found["rotation_sigma_deg"], 0.0)
+        self.assertLess(found["rotation_sigma_deg"], 2.5)  # the prior's, inflated
+        self.assertLess(found["rotation_off_deg"], 3 * found["rotation_sigma_deg"])
+        self.assertLess(abs(found["time_offset_ms"] - found["given_time_offset_ms"]), 3 * found["time_offset_sigma_ms"])
+
+
+    def test_cameras_of_other_names_are_taken_where_there_is_one_of_a_kind(self):
+        def renamed(text):
+            return text.replace('name: "events"', "name: cam1").replace('name: "frames"', "name: cam0")
+        chain = self.folder / "chain.yaml"
+        chain.write_text(renamed((self.flight / "calibration.yaml").read_text()))
+        bag = self.folder / "flight.bag"
+        self.assertEqual(edged("convert", self.flight, bag, "--quiet").returncode, 0)
+        _, right = self.run_it(self.flight, "fused")
+        result, metrics = self.run_it(bag, "fused", "--calib", chain)
+        self.assertEqual((result.returncode, metrics["status"]), (0, "good"), result.stdout)
+        said = result.stderr.strip().splitlines()
+        self.assertEqual(len(said), 2, result.stderr)
+        self.assertIn("camera 'cam1' of the calibration is taken for the recording's 'events'", said[0])
+        self.assertIn("camera 'cam0' of the calibration is taken for the recording's 'frames'", said[1])
+        for key in ("poses", "keyframes", "ate_rmse_m"):
+            self.assertAlmostEqual(metrics[key], right[key], 9, key)
+
+    def test_cameras_that_could_be_either_are_refused_with_both_lists(self):
+        text = (self.flight / "calibration.yaml").read_text()
+        chain = self.folder / "chain.yaml"
+        chain.write_text(text.replace('name: "events"', "name: cam0").replace('name: "frames"', "name: cam1")
+                         .replace("modality: events", "modality: frames"))
+        result = edged("run", self.flight, "--calib", chain, "--mode", "frames", "--out", self.folder / "run", "--quiet")
+        self.assertEqual(result.returncode, 3, result.stdout)
+        for words in ("events (events), frames (frames)", "cam0 (frames), cam1 (frames)", "several are of frames",
+                      "edged calib"):
+            self.assertIn(words, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
