@@ -49,8 +49,9 @@ Outcome fly(const TestWorldOptions& options, double duration_s, double bias, con
     const double t = i * kStep_s;
     EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
     if (bias > 0.0) input.depth = depth_of_view(world, t, bias, sigma_ln);
-    estimator.add(input);
-    if (!estimator.initialized()) continue;
+    const EstimatorResult result = estimator.add(input);
+    if (!estimator.initialized() || estimator.provisional()) continue;
+    if (result.new_frame) first.reset(), before.reset();
     const std::pair<SE3, SE3> now(world.T_W_B(t), estimator.newest().T_W_B);
     if (!first) first = now;
     if (before) {
@@ -62,7 +63,7 @@ Outcome fly(const TestWorldOptions& options, double duration_s, double bias, con
     outcome.position_error =
         std::max(outcome.position_error, (true_motion.translation() - motion.translation()).norm());
   }
-  EXPECT_TRUE(estimator.initialized());
+  EXPECT_TRUE(estimator.initialized() && !estimator.provisional());
   outcome.scale_error = std::abs(estimated / travelled - 1.0);
   outcome.s = estimator.depth_scale();
   return outcome;
