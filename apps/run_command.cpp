@@ -270,8 +270,7 @@ RunSummary Run::summarize() {
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
   summary.calibration = compare_calibrations(source_.calibration.rig, odometry_, calibration_config_);
-  summary.verdict =
-      judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
+  summary.verdict = judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
   summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);
   if (live_)
     summary.live =

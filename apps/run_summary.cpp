@@ -22,7 +22,7 @@ nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
 }
 
 /// Below zero: the estimate is too large.
-nlohmann::ordered_json scale_error(const std::optional<Evaluation>& e, double Evaluation::* scale) {
+nlohmann::ordered_json scale_error(const std::optional<Evaluation>& e, double Evaluation::*scale) {
   return number_or_null(e ? std::optional(*e.*scale - 1.0) : std::nullopt);
 }
 
@@ -123,15 +123,17 @@ void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& 
 
 nlohmann::ordered_json to_json(const RunSummary& s) {
   const double span = s.statistics.visual_span_s();
-  nlohmann::ordered_json json = {
-      {"recording", s.recording}, {"format", s.format},
-      {"mode", s.mode},           {"output_frame", s.frame},
-      {"version", kVersion},      {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
-      {"status", s.status},
-      {"trusted", s.verdict.trusted},
-      {"findings", to_json(s.verdict.findings)},
-      {"waiting_for", s.verdict.waiting_for},
-      {"next", s.verdict.next}};
+  nlohmann::ordered_json json = {{"recording", s.recording},
+                                 {"format", s.format},
+                                 {"mode", s.mode},
+                                 {"output_frame", s.frame},
+                                 {"version", kVersion},
+                                 {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
+                                 {"status", s.status},
+                                 {"trusted", s.verdict.trusted},
+                                 {"findings", to_json(s.verdict.findings)},
+                                 {"waiting_for", s.verdict.waiting_for},
+                                 {"next", s.verdict.next}};
   json.update(accuracy_json(s.evaluation));
   json.update({{"poses", s.poses},
                {"keyframes", s.statistics.keyframes()},

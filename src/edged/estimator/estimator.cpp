@@ -15,8 +15,9 @@ constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // 
 constexpr double kDoubtGain = 0.25;           // a packet
 constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
 constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
-constexpr double kBetterStart = 0.8;          // a start that takes the place of another knows the scale so much better
-constexpr double kMaxStandstillSpeed = 0.15;  // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure
+constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
+constexpr double kMaxStandstillSpeed =
+    0.15;  // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
@@ -58,7 +59,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
   const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
-  StartResult found = initializer_.add(input, initialized_ ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma));
+  StartResult found =
+      initializer_.add(input, initialized_ ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma));
   result.waiting_for = std::move(found.waiting_for);
   if (!found.start) return false;
   const bool at_rest = found.start->scale_sigma == 0.0;

@@ -37,8 +37,8 @@ class Estimator {
   EstimatorResult add(const EstimatorInput& input);
 
   bool initialized() const { return initialized_; }
-  /// The start is used, but its scale is not known to init_scale_sigma yet, or no later one has found the same: a start that
-  /// believed in what moves by itself seldom finds the same velocity twice.
+  /// The start is used, but its scale is not known to init_scale_sigma yet, or no later one has found the same: a start
+  /// that believed in what moves by itself seldom finds the same velocity twice.
   bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
   /// The newest state; meaningful once initialised.
   NavState newest() const { return window_.newest().nav(); }

@@ -22,7 +22,8 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("init_max_span_s", init_max_span_s,
              {"s", 0.5, 60, "time a start in motion looks back on at most"});
   fields.add("init_scale_sigma", init_scale_sigma,
-             {"", 0.01, 1, "how well a start in motion must know the scale to be Good, as a share of it (standard deviation)"});
+             {"", 0.01, 1,
+              "how well a start in motion must know the scale to be Good, as a share of it (standard deviation)"});
   fields.add("provisional_scale_sigma", provisional_scale_sigma,
              {"", 0.01, 1, "knowing it only to this, a start is used, Degraded, and refined"});
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});

@@ -20,8 +20,8 @@ struct EstimatorConfig {
   double rest_gyro_bias_sigma = 0.005;  ///< prior of a start at rest, where the bias has been measured
   double accel_bias_sigma = 0.15;
   double zero_velocity_sigma = 0.01;
-  double init_spacing_s = 0.08;    ///< between the views of the start-up buffer, at most
-  double init_turn_deg = 5.0;      ///< a turn by this makes the next view sooner
+  double init_spacing_s = 0.08;  ///< between the views of the start-up buffer, at most
+  double init_turn_deg = 5.0;    ///< a turn by this makes the next view sooner
   int init_min_views = 8;
   int init_max_views = 24;
   double init_max_span_s = 7.0;    ///< tracks last, and biases stay, for so long

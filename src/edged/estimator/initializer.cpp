@@ -28,7 +28,7 @@ constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window'
 constexpr double kMaxTiltSigma_deg = 2.0;     // the accelerometer bias by itself makes it 0.9
 constexpr double kMaxBiasSigmas = 4.0;        // of the accelerometer bias
 constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
-constexpr double kAlignmentSlack = 1.5;       // the solved window may know the scale better than the alignment
+constexpr double kAlignmentSlack = 1.5;  // the solved window may know the scale better than the alignment
 
 void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) {
   // The first sample of a packet repeats the last one of the packet before.
@@ -206,7 +206,8 @@ void Initializer::weigh_sights(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Sights::All);
     if (!spread) continue;
-    const double scale = std::clamp(*spread * config_.noise_inflation, config_.min_noise_scale, config_.max_noise_scale);
+    const double scale =
+        std::clamp(*spread * config_.noise_inflation, config_.min_noise_scale, config_.max_noise_scale);
     window.noise_scale[camera] = scale;
     for (auto& [id, feature] : window.features) {
       if (feature.camera != camera) continue;

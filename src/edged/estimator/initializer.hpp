@@ -28,7 +28,8 @@ struct StartResult {
   std::string waiting_for;  ///< else what is missing, with numbers
 };
 
-/// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state tells it.
+/// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state
+/// tells it.
 double scale_sigma(Window& window);
 
 class Initializer {

@@ -84,8 +84,9 @@ void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
   fields.add("max_innovation_sigma", max_innovation_sigma,
              {"sigma", 1, 1000, "corners farther from where the IMU expects their landmark end"});
-  fields.add("max_misfit", max_misfit,
-             {"", 1, 1000, "landmarks whose sights fit so much worse than the median landmark's are taken out: they move"});
+  fields.add(
+      "max_misfit", max_misfit,
+      {"", 1, 1000, "landmarks whose sights fit so much worse than the median landmark's are taken out: they move"});
   fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
 

@@ -16,15 +16,15 @@ struct LandmarkConfig {
   double min_parallax_deg = 0.6;   ///< a corner becomes a landmark once its rays differ by this
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
-  double max_residual_sigma = 2.5; ///< a sight that fits worse is taken out
+  double max_residual_sigma = 2.5;    ///< a sight that fits worse is taken out
   double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
   double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
   int max_per_camera = 70;         ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
 
-/// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those that go on, or at a start
-/// in motion also those that have ended, as they are what its first views have seen.
+/// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those that go on, or at a
+/// start in motion also those that have ended, as they are what its first views have seen.
 enum class Tracks { Alive, All };
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks = Tracks::Alive);
 
@@ -33,13 +33,13 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
 /// their tracks should end.
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
 
-/// Takes out sights that do not fit the solved window, and landmarks that over all their views fit worse than the rest of
-/// the scene: what moves by itself bends a little everywhere. Returns the features whose newest sight was taken out: their
-/// tracks are wrong and should end.
+/// Takes out sights that do not fit the solved window, and landmarks that over all their views fit worse than the rest
+/// of the scene: what moves by itself bends a little everywhere. Returns the features whose newest sight was taken out:
+/// their tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
-/// Spread of the residuals that one camera has in the newest state, or in all: the standard deviation of one coordinate by
-/// their median length, in sigmas; nothing with too few of them.
+/// Spread of the residuals that one camera has in the newest state, or in all: the standard deviation of one coordinate
+/// by their median length, in sigmas; nothing with too few of them.
 enum class Sights { Newest, All };
 std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights = Sights::Newest);
 

@@ -27,7 +27,8 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
 }  // namespace
 
 void StandstillConfig::visit(ConfigFields& fields) {
-  fields.add("window_s", window_s, {"s", 0.1, 5.0, "calm of the IMU that a still picture confirms must last this long"});
+  fields.add("window_s", window_s,
+             {"s", 0.1, 5.0, "calm of the IMU that a still picture confirms must last this long"});
   fields.add("max_gyro", max_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when calm"});
   fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when calm"});
   fields.add("max_gyro_mean", max_gyro_mean, {"rad/s", 1e-3, 1.0, "a mean rate above this is motion, not gyro bias"});
@@ -66,7 +67,8 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
 
 StandstillDetector::Spread StandstillDetector::spread_over(double window_s) const {
   const Timestamp begin = imu_.back().t - duration_from_seconds(window_s);
-  auto first = std::upper_bound(imu_.begin(), imu_.end(), begin, [](Timestamp t, const ImuSample& s) { return t < s.t; });
+  auto first =
+      std::upper_bound(imu_.begin(), imu_.end(), begin, [](Timestamp t, const ImuSample& s) { return t < s.t; });
   if (first != imu_.begin()) --first;
   Spread out;
   out.covered_s = to_seconds(imu_.back().t - first->t);
@@ -131,7 +133,8 @@ std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
   return travels;
 }
 
-/// Whether nearly all corners travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps seldom do.
+/// Whether nearly all corners travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps seldom
+/// do.
 bool StandstillDetector::image_glides() const {
   const std::vector<Eigen::Vector2d> all = travels();
   if (all.size() < kMinCorners) return false;

@@ -43,9 +43,9 @@ struct Consistency {
 };
 
 /// Compares what is claimed with the truth: the same body on the same clock, both in time order. The first Good pose of
-/// each start is laid onto the truth, position and yaw; what comes before it is left out. As that pose is not exact either
-/// (after a start in motion it is centimetres off), its covariance counts with each error. Errors below 0.1 mm and 0.1 mrad
-/// are never too large.
+/// each start is laid onto the truth, position and yaw; what comes before it is left out. As that pose is not exact
+/// either (after a start in motion it is centimetres off), its covariance counts with each error. Errors below 0.1 mm
+/// and 0.1 mrad are never too large.
 Consistency check_consistency(const Trajectory& truth, const std::vector<ClaimedPose>& claims);
 
 }  // namespace edged

@@ -21,9 +21,11 @@ cv::Mat texture(double dark, double bright, double dx, double noise, unsigned se
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const double u = x - dx;
-      const double wave = std::sin(0.31 * u + 0.1 * y) * std::sin(0.27 * y + 0.07 * u) + 0.5 * std::sin(0.11 * u - 0.19 * y);
+      const double wave =
+          std::sin(0.31 * u + 0.1 * y) * std::sin(0.27 * y + 0.07 * u) + 0.5 * std::sin(0.11 * u - 0.19 * y);
       const double share = std::clamp(0.5 + 0.35 * wave, 0.0, 1.0);
-      image.at<float>(y, x) = static_cast<float>(dark + (bright - dark) * share) + (noise > 0.0 ? read_noise(random) : 0.0F);
+      image.at<float>(y, x) =
+          static_cast<float>(dark + (bright - dark) * share) + (noise > 0.0 ? read_noise(random) : 0.0F);
     }
   }
   cv::Mat grey;
@@ -68,7 +70,8 @@ TEST(DimImage, MakesOpticalFlowPossibleInNoise) {
     const Flow flow = follow(a, b, points, points, klt.levels - 1, klt);
     std::vector<double> errors;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (flow.found[i]) errors.push_back(std::hypot(flow.points[i].x - points[i].x - kShift_px, flow.points[i].y - points[i].y));
+      if (flow.found[i])
+        errors.push_back(std::hypot(flow.points[i].x - points[i].x - kShift_px, flow.points[i].y - points[i].y));
     }
     found = errors.size();
     std::sort(errors.begin(), errors.end());

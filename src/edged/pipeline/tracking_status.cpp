@@ -57,7 +57,8 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
     reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
   }
   if (!reason_.empty()) return TrackingStatus::Lost;
-  const bool doubtful = result.provisional || alone_s > config_.degraded_after_s || result.imu_strain > patience_ * config_.degraded_strain;
+  const bool doubtful = result.provisional || alone_s > config_.degraded_after_s ||
+                        result.imu_strain > patience_ * config_.degraded_strain;
   return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
 }
 

@@ -35,8 +35,7 @@ Duration Survey::overlap() const {
   return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
 
-Surveyor::Surveyor(const DatasetInfo& info)
-    : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
+Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
 
 void Surveyor::add(const Measurement& measurement, Detail detail) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {

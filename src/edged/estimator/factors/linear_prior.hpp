@@ -34,8 +34,9 @@ inline constexpr double kFree = std::numeric_limits<double>::infinity();
 /// leaves that part free.
 LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas);
 
-/// What an accelerometer at rest has read: bias plus gravity's reaction in B, linearised at the given state, which stands
-/// upright by that reading and has no bias. It ties tilt and bias together far closer than either is known. sigma [m/s^2].
+/// What an accelerometer at rest has read: bias plus gravity's reaction in B, linearised at the given state, which
+/// stands upright by that reading and has no bias. It ties tilt and bias together far closer than either is known.
+/// sigma [m/s^2].
 LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, const MotionBlock& mean,
                        const Eigen::Vector3d& accel_B, double sigma);
 
