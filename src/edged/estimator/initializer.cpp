@@ -93,7 +93,7 @@ StartResult Initializer::add(const EstimatorInput& input, const StandstillDetect
     if (std::abs(gravity - kGravity) > kMaxGravityError) {
       return {{}, fmt::format("an accelerometer in m/s^2: it reads {:.2f} of 9.81 at rest", gravity)};
     }
-    return {Start{start_at_rest(input, *rest)}, ""};
+    return {StartWindow{start_at_rest(input, *rest)}, ""};
   }
   if (new_view) {
     StartResult result = start_in_motion(most_scale_sigma);
@@ -189,7 +189,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma) {
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
   spdlog::info("started in motion at {:.3f} s: scale known to {:.1f} %, speed {:.2f} m/s", to_seconds(now),
                100.0 * sigma, window.newest().nav().v_W.norm());
-  return {Start{std::move(window), sigma}, ""};
+  return {StartWindow{std::move(window), sigma}, ""};
 }
 
 void Initializer::solve_start(Window& window) const {

@@ -17,14 +17,14 @@
 namespace edged {
 
 /// A window to go on from: its newest state is that of the packet.
-struct Start {
+struct StartWindow {
   Window window;
   double scale_sigma = 0.0;  ///< of ln scale; 0 from rest, where nothing has been scaled yet
 };
 
 /// What a packet brought the start.
 struct StartResult {
-  std::optional<Start> start;
+  std::optional<StartWindow> start;
   std::string waiting_for;  ///< else what is missing, with numbers
 };
 

@@ -60,9 +60,22 @@ std::optional<double> rms_sigmas(const Window& window, const Feature& feature) {
   return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
 }
 
+/// Takes out the sights beyond the limit. True when the track's newest is among them.
+bool take_out_sights(const Window& window, Feature& feature, double max_sigmas) {
+  bool newest = false;
+  std::erase_if(feature.seen, [&](const auto& sight) {
+    if (sight.first == *feature.anchor) return false;
+    const bool bad = residual_sigmas(window, feature, sight.first) > max_sigmas;
+    newest = newest || (bad && sight.first == feature.last_seen);
+    return bad;
+  });
+  return newest;
+}
+
 /// One a camera: what its landmarks may be off by, over all their views [sigma].
 std::vector<double> misfit_limits(const Window& window, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
+  constexpr double kNeverBelow = 0.5;  // [sigma]: the best of fits condemns nothing
   std::vector<std::vector<double>> rms(window.cameras.size());
   for (const auto& [id, feature] : window.features) {
     if (const auto value = rms_sigmas(window, feature)) rms[feature.camera].push_back(*value);
@@ -70,7 +83,8 @@ std::vector<double> misfit_limits(const Window& window, double max_misfit) {
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
     const bool judged = of_camera.size() >= kMinLandmarks;
-    limits.push_back(judged ? max_misfit * median(std::move(of_camera)) : std::numeric_limits<double>::infinity());
+    limits.push_back(judged ? std::max(kNeverBelow, max_misfit * median(std::move(of_camera)))
+                            : std::numeric_limits<double>::infinity());
   }
   return limits;
 }
@@ -78,7 +92,8 @@ std::vector<double> misfit_limits(const Window& window, double max_misfit) {
 }  // namespace
 
 void LandmarkConfig::visit(ConfigFields& fields) {
-  fields.add("min_parallax_deg", min_parallax_deg, {"deg", 0.05, 10, "rays of a corner must differ by this to place it"});
+  fields.add("min_parallax_deg", min_parallax_deg,
+             {"deg", 0.05, 10, "rays of a corner must differ by this to place it"});
   fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
   fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
   fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
@@ -87,7 +102,8 @@ void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add(
       "max_misfit", max_misfit,
       {"", 1, 1000, "landmarks whose sights fit so much worse than the median landmark's are taken out: they move"});
-  fields.add("max_per_camera", max_per_camera, {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
+  fields.add("max_per_camera", max_per_camera,
+             {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
 
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
@@ -142,24 +158,13 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
       ++it;
       continue;
     }
-    bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
-                   rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
-    if (!dropped) {
-      std::erase_if(feature.seen, [&](const auto& sight) {
-        if (sight.first == *feature.anchor) return false;
-        const bool bad = residual_sigmas(window, feature, sight.first) > config.max_residual_sigma;
-        if (bad && window.alive(feature) && sight.first == feature.last_seen) wrong.push_back(it->first);
-        return bad;
-      });
-      // Right after a change of anchor a landmark has one sight until its camera's next image.
-      dropped = feature.seen.size() < 2 && !window.alive(feature);
-    }
-    if (dropped) {
-      if (window.alive(feature)) wrong.push_back(it->first);
-      it = window.features.erase(it);
-    } else {
-      ++it;
-    }
+    bool dropped = !depth_in_bounds(feature.inverse_depth, config);
+    const bool newest_wrong = !dropped && take_out_sights(window, feature, config.max_residual_sigma);
+    // Right after a change of anchor a landmark has one sight until its camera's next image.
+    dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature)) ||
+              rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
+    if (window.alive(feature) && (dropped || newest_wrong)) wrong.push_back(it->first);
+    it = dropped ? window.features.erase(it) : std::next(it);
   }
   return wrong;
 }
