@@ -3,6 +3,7 @@
 """What the benchmarks share: recordings made once, runs of the program, what counts as a failure, and the progress bar."""
 import concurrent.futures
 import csv
+import hashlib
 import json
 import os
 import pathlib
@@ -20,6 +21,7 @@ DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
 MODES = ["fused", "frames", "events"]
 NEVER_GOOD, NOT_TRUSTED = 4, 5  # exit codes of edged run
 MIRROR_RIG = "davis240c_ecd"
+STREAMS = {"fused": ("events", "frames", "imu"), "frames": ("frames", "imu"), "events": ("events", "imu")}
 # A run that loses its way has failed, and so has one that does not know that it has.
 LEAST_COVERAGE = 0.5
 WORST_SHARE_OF_PATH = 0.05
@@ -89,6 +91,32 @@ def unpacked_mirrors(data, cache):
             unfinished.rmdir()
         folders.append(folder)
     return folders
+
+
+def data_recordings(data, cache):
+    """(name, path, rig) of the mirrors, unpacked in the cache, and of EuRoC's MH_01, as far as they are there."""
+    mirrors = [*unpacked_mirrors(data, cache), *sorted((data / "mirror").glob("*.h5"))]
+    found = [(path.stem, path, MIRROR_RIG) for path in mirrors]
+    if (data / "euroc_mh01").is_dir():
+        found.append(("euroc_mh01", data / "euroc_mh01", None))
+    return found
+
+
+def extent(edged, cache, path, rig, modes):
+    """Begin and end of the recording [s], and those of the modes that it has sensors for; kept in the cache."""
+    known = cache / "info" / f"{file_name(str(path.resolve()))}_{path.stat().st_mtime_ns}.json"
+    if not known.exists():
+        known.parent.mkdir(parents=True, exist_ok=True)
+        known.write_text(call([edged, "info", path, "--json", "--quiet"] + (["--rig", rig] if rig else [])))
+    info = json.loads(known.read_text())
+    there = [info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0]
+    possible = [mode for mode in modes if all(info[kind]["count"] > 0 for kind in STREAMS[mode])]
+    return 1e-9 * min(s["begin_ns"] for s in there), 1e-9 * max(s["end_ns"] for s in there), possible
+
+
+def build_id(edged, *options):
+    """Names the build of the program and the options of its runs: runs of another are kept apart."""
+    return hashlib.sha256(edged.read_bytes() + repr(options).encode()).hexdigest()[:8]
 
 
 def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):

@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks of bench/ and tests/stress on recordings of a few seconds: that they run, go on where they stopped, and write their tables.
 Usage: EDGED=path/to/edged bench_test.py"""
+import importlib.machinery
+import importlib.util
 import pathlib
 import shutil
 import subprocess
@@ -11,11 +13,21 @@ import tempfile
 import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
+sys.path.insert(0, str(BENCH))
+import harness  # noqa: E402
 
 
 def bench(name, *args):
     return subprocess.run([sys.executable, BENCH / name, *map(str, args)], capture_output=True, text=True, check=False,
                           timeout=500)
+
+
+def script(name):
+    """A benchmark as a module."""
+    loader = importlib.machinery.SourceFileLoader(name, str(BENCH / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
 
 
 class Bench(unittest.TestCase):
@@ -24,7 +36,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "flights", "sim_suite", "starts", "../tests/stress"):
+        for name in ("ablation", "flights", "mirrors", "sim_suite", "starts", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -49,6 +61,33 @@ class Bench(unittest.TestCase):
         self.assertEqual(len(runs), 2)
         self.assertEqual(bench(*args).stdout, first.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_mirrors_prints_a_row_a_mode_that_has_its_sensors_and_keeps_what_it_has_run(self):
+        recording = harness.simulated(harness.DEFAULT_PROGRAM, self.folder, "room", 1, 3)
+        (recording / "events.txt").unlink()
+        args = ["mirrors", "--cache", self.folder / "cache", "--recordings", recording, "--repeats", 2, "--dim-frames", 0.5]
+        first = bench(*args)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertRegex(first.stdout, r"\| room_1_3s +\| frames +\|[^\n]+ of 2 +\|")
+        self.assertNotRegex(first.stdout, r"\| (fused|events) +\|")
+        self.assertIn("frames dimmed to 0.5", first.stdout)
+        self.assertIn("--repeats 2", first.stdout)
+        self.assertEqual((self.folder / "cache/table.md").read_text(), first.stdout)
+        runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
+        self.assertEqual(len(runs), 2)
+        self.assertEqual(bench(*args).stdout, first.stdout)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_mirrors_counts_runs_that_have_failed_and_holds_fused_against_its_better_part(self):
+        mirrors = script("mirrors")
+        good = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good",
+                "coverage": 0.9, "ate_rmse_m": 0.01}
+        lost = {**good, "status": "lost", "ate_rmse_m": 3.0}
+        twice = {**good, "ate_rmse_m": 0.02}
+        self.assertAlmostEqual(mirrors.mean_error([good, {**good, "ate_rmse_m": 0.04}, lost]), 20.0)
+        self.assertIsNone(mirrors.mean_error([lost]))
+        self.assertAlmostEqual(mirrors.over_its_parts({"fused": [twice], "events": [good], "frames": [lost]}), 2.0)
+        self.assertIsNone(mirrors.over_its_parts({"fused": [lost], "events": [good], "frames": [good]}))
 
     def test_a_missing_program_is_one_line(self):
         result = bench("flights", "--edged", self.folder / "none")
