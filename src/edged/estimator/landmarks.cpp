@@ -51,8 +51,8 @@ double residual_sigmas(const Window& window, const Feature& feature, StateId sta
 
 /// Root mean square of a landmark's residuals [sigma]; nothing when it has too few sights to be judged by.
 std::optional<double> rms_sigmas(const Window& window, const Feature& feature) {
-  constexpr std::size_t kMinSights = 4;
-  if (!feature.anchor || feature.seen.size() < kMinSights) return std::nullopt;
+  constexpr std::size_t kFewestSights = 4;
+  if (!feature.anchor || feature.seen.size() < kFewestSights) return std::nullopt;
   double sum = 0.0;
   for (const auto& [state, sight] : feature.seen) {
     if (state != *feature.anchor) sum += std::pow(residual_sigmas(window, feature, state), 2);
@@ -170,7 +170,7 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
 }
 
 std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights) {
-  constexpr std::size_t kMinSights = 12;
+  constexpr std::size_t kFewestSights = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.states.rbegin()->first;
   std::vector<double> residuals;
@@ -181,7 +181,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
       residuals.push_back(residual_sigmas(window, feature, state));
     }
   }
-  if (residuals.size() < kMinSights) return std::nullopt;
+  if (residuals.size() < kFewestSights) return std::nullopt;
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 

@@ -29,11 +29,11 @@ Container container_of(ByteSpan head) {
 }
 
 std::unique_ptr<MessageSource> open_container(const std::filesystem::path& file, Repairs* repairs) {
-  constexpr std::size_t kMagicBytes = 16;
+  constexpr std::size_t kContainerHeadBytes = 16;
   const auto unpacked = [&](std::unique_ptr<MessageSource> source) {
     return std::make_unique<UnpackedSource>(std::move(source), file.string(), repairs);
   };
-  switch (container_of(BinaryFile(file).read(0, kMagicBytes))) {
+  switch (container_of(BinaryFile(file).read(0, kContainerHeadBytes))) {
     case Container::Bag:
       return std::make_unique<Bag>(file, repairs);
     case Container::Mcap:
