@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
 /// One word of a command line.
 std::string shell_word(const std::string& text) {
@@ -97,7 +97,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
     const RigCamera& before = given.camera(camera.name);
     const Eigen::Vector3d turned = so3::log((before.T_B_C.inverse() * camera.T_B_C).rotation());
     CalibrationFound found{camera.name,
-                           kDegrees * turned.norm(),
+                           kDegreesPerRad * turned.norm(),
                            1e3 * to_seconds(camera.time_offset),
                            1e3 * to_seconds(before.time_offset),
                            false,
@@ -112,7 +112,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
       const double variance = turned.norm() > 0.0
                                   ? axis.dot(rotation * axis)
                                   : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation).eigenvalues()[2];
-      found.rotation_sigma_deg = kDegrees * std::sqrt(variance);
+      found.rotation_sigma_deg = kDegreesPerRad * std::sqrt(variance);
       found.time_sigma_ms = 1e3 * std::sqrt((*P)(3, 3));
     }
     out.push_back(found);

@@ -13,9 +13,9 @@
 namespace edged {
 namespace {
 
-constexpr int kParameters = 7;       // rotation, shift, bias
-constexpr std::size_t kBlocks = 10;  // of time, for the jackknife
-constexpr std::size_t kFewest = 30;  // turns
+constexpr int kParameters = 7;            // rotation, shift, bias
+constexpr std::size_t kTimeBlocks = 10;   // of time, for the jackknife
+constexpr std::size_t kFewestTurns = 30;  // turns
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Information = Eigen::Matrix<double, kParameters, kParameters>;
 
@@ -97,7 +97,7 @@ struct Normal {
 
 /// All turns at one mount.
 struct Sums {
-  std::array<Normal, kBlocks> blocks;
+  std::array<Normal, kTimeBlocks> blocks;
   std::size_t turns = 0;
   std::vector<double> errors, unexplained, turning;
 
@@ -115,7 +115,7 @@ Sums sums_at(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMo
     const auto predicted = predict(turns[i], gyro, mount);
     if (!predicted) continue;
     const TurnTerms terms = terms_of(turns[i], predicted->R, spread);
-    Normal& block = sums.blocks[i * kBlocks / turns.size()];
+    Normal& block = sums.blocks[i * kTimeBlocks / turns.size()];
     block.H += predicted->J.transpose() * terms.H * predicted->J;
     block.g += predicted->J.transpose() * terms.g;
     sums.unexplained.push_back(terms.g.dot((terms.H + 1e-9 * Eigen::Matrix3d::Identity()).ldlt().solve(terms.g)));
@@ -152,7 +152,7 @@ Information covariance_of(const Sums& sums, const GyroMount& mount, double varia
   for (const Normal& block : sums.blocks) {
     const Normal kept = with_prior({all.H - block.H, all.g - block.g}, mount, variance);
     const Parameters change = kept.H.ldlt().solve(kept.g);
-    covariance += (kBlocks - 1.0) / kBlocks * change * change.transpose();
+    covariance += (kTimeBlocks - 1.0) / kTimeBlocks * change * change.transpose();
   }
   return covariance;
 }
@@ -167,7 +167,7 @@ std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& 
   Sums sums;
   for (int round = 0;; ++round) {
     sums = sums_at(turns, gyro, fit.mount, spread);
-    if (sums.turns < kFewest) return std::nullopt;
+    if (sums.turns < kFewestTurns) return std::nullopt;
     spread = std::max(1.4826 * 2 * median(sums.errors), kLeastSpread);
     if (round == kRounds) break;
     const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4);

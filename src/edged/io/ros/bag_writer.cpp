@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kHeadBytes = 4096;  // of the first record, padded
+constexpr std::size_t kBagHeadBytes = 4096;  // of the first record, padded
 
 std::uint64_t bag_time(Timestamp t) {
   // Tools take the time zero for one that is not set.
@@ -73,7 +73,7 @@ void BagWriter::write_head(std::uint64_t index_place) {
   header.field("index_pos", index_place)
       .field("conn_count", static_cast<std::uint32_t>(connections_.size()))
       .field("chunk_count", static_cast<std::uint32_t>(chunks_.size()));
-  const std::string padding(kHeadBytes - 8 - header.bytes().size(), ' ');
+  const std::string padding(kBagHeadBytes - 8 - header.bytes().size(), ' ');
   const std::string record = bag_record(header, padding);
   if (index_place == 0) return file_.write(record);
   file_.overwrite(kBagMagic.size(), record);
