@@ -75,7 +75,7 @@ bool take_out_sights(const Window& window, Feature& feature, double max_sigmas) 
 /// One a camera: what its landmarks may be off by, over all their views [sigma].
 std::vector<double> misfit_limits(const Window& window, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
-  constexpr double kNeverBelow = 0.5;  // [sigma]: the best of fits condemns nothing
+  constexpr double kLeastMedian = 0.2;  // [sigma]: the best of fits condemns nothing
   std::vector<std::vector<double>> rms(window.cameras.size());
   for (const auto& [id, feature] : window.features) {
     if (const auto value = rms_sigmas(window, feature)) rms[feature.camera].push_back(*value);
@@ -83,7 +83,7 @@ std::vector<double> misfit_limits(const Window& window, double max_misfit) {
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
     const bool judged = of_camera.size() >= kMinLandmarks;
-    limits.push_back(judged ? std::max(kNeverBelow, max_misfit * median(std::move(of_camera)))
+    limits.push_back(judged ? max_misfit * std::max(kLeastMedian, median(std::move(of_camera)))
                             : std::numeric_limits<double>::infinity());
   }
   return limits;
@@ -158,11 +158,12 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
       ++it;
       continue;
     }
-    bool dropped = !depth_in_bounds(feature.inverse_depth, config);
+    // Before its worst sights are taken out: that it has some says more about it than those that are left.
+    bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
+                   rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
     const bool newest_wrong = !dropped && take_out_sights(window, feature, config.max_residual_sigma);
     // Right after a change of anchor a landmark has one sight until its camera's next image.
-    dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature)) ||
-              rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
+    dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature));
     if (window.alive(feature) && (dropped || newest_wrong)) wrong.push_back(it->first);
     it = dropped ? window.features.erase(it) : std::next(it);
   }

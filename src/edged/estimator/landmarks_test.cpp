@@ -48,6 +48,7 @@ FeatureId seen_by_all(const Window& window) {
 constexpr LandmarkConfig kGenerous = [] {
   LandmarkConfig config;
   config.max_per_camera = 500;
+  config.max_misfit = 1000.0;  // sights are judged one by one
   return config;
 }();
 
@@ -151,6 +152,26 @@ TEST(RemoveOutliers, TakesOutAnOldWrongSightWithoutEndingTheTrack) {
   std::next(window.features.at(id).seen.begin(), 2)->second.point.x() += 0.05;
   EXPECT_THAT(remove_outliers(window, kGenerous), IsEmpty());
   EXPECT_EQ(window.features.at(id).seen.size(), window.states.size() - 1);
+}
+
+TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoSightAlone) {
+  TestWorld world({});
+  Window window = window_at_truth(world);
+  triangulate_features(window, kGenerous);
+  const int landmarks = count_landmarks(window);
+  const FeatureId id = seen_by_all(window);
+  // It walks: to and fro by less than any one sight is taken out for.
+  double step = 1.5;
+  for (auto& [state, sight] : window.features.at(id).seen) {
+    sight.point.y() += step * sight.sigma;
+    step = -step;
+  }
+  LandmarkConfig strict = kGenerous;
+  strict.max_residual_sigma = 20.0;
+  EXPECT_THAT(remove_outliers(window, strict), IsEmpty());
+  strict.max_misfit = 2.5;
+  EXPECT_THAT(remove_outliers(window, strict), testing::Contains(id));
+  EXPECT_GE(count_landmarks(window), landmarks - 3);
 }
 
 TEST(RemoveOutliers, DropsALandmarkOutOfBoundsAndReportsItWhileItIsTracked) {

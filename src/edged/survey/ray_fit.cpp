@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kParameters = 7;            // rotation, shift, bias
 constexpr std::size_t kTimeBlocks = 10;   // of time, for the jackknife
-constexpr std::size_t kFewestTurns = 30;  // turns
+constexpr std::size_t kFewestToFit = 30;  // turns
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Information = Eigen::Matrix<double, kParameters, kParameters>;
 
@@ -167,7 +167,7 @@ std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& 
   Sums sums;
   for (int round = 0;; ++round) {
     sums = sums_at(turns, gyro, fit.mount, spread);
-    if (sums.turns < kFewestTurns) return std::nullopt;
+    if (sums.turns < kFewestToFit) return std::nullopt;
     spread = std::max(1.4826 * 2 * median(sums.errors), kLeastSpread);
     if (round == kRounds) break;
     const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4);
