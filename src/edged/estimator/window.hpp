@@ -29,7 +29,7 @@ using StateId = std::uint64_t;
 /// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given.
 struct CalibrationConfig {
   double rotation_sigma_deg = 1.0;
-  double time_offset_sigma_ms = 5.0;
+  double time_offset_sigma_ms = 8.0;
   void visit(ConfigFields& fields);
 };
 
