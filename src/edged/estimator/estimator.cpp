@@ -16,8 +16,8 @@ constexpr double kDoubtGain = 0.25;           // a packet
 constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
 constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
 constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
-constexpr double kMaxStandstillSpeed =
-    0.15;  // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure
+// [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
+constexpr double kMaxStandstillSpeed = 0.15;
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
@@ -64,7 +64,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   result.waiting_for = std::move(found.waiting_for);
   if (!found.start) return false;
   const bool at_rest = found.start->scale_sigma == 0.0;
-  agreed_ = at_rest || (initialized_ && agrees(predict(input), found.start->window.newest().nav()));
+  agreed_ = at_rest || (initialized_ && agrees(propagate(newest(), since_newest(input)), found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
   scale_sigma_ = found.start->scale_sigma;
@@ -83,10 +83,9 @@ void Estimator::settle_scale(const EstimatorInput& input) {
   if (!provisional()) window_.free_calibration(config_.calibration);
 }
 
-/// The newest state moved on by the input's IMU.
-NavState Estimator::predict(const EstimatorInput& input) const {
-  const NavState before = newest();
-  return propagate(before, Preintegration(input.imu, before.bias_gyro, before.bias_accel, noise_));
+Preintegration Estimator::since_newest(const EstimatorInput& input) const {
+  const NavState from = newest();
+  return {input.imu, from.bias_gyro, from.bias_accel, noise_};
 }
 
 Eigen::Vector3d Estimator::gyro_bias() const {
@@ -120,7 +119,7 @@ std::optional<LogScale> Estimator::depth_scale() const {
 
 void Estimator::append(const EstimatorInput& input) {
   const NavState before = newest();
-  Preintegration imu(input.imu, before.bias_gyro, before.bias_accel, noise_);
+  Preintegration imu = since_newest(input);
   NavState state = propagate(before, imu);
   state.t = input.t;
   const StateId id = window_.add_state(window_state(state, input.imu.back().gyro_B, std::move(imu), input.keyframe));

@@ -60,7 +60,7 @@ class Estimator {
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
   void settle_scale(const EstimatorInput& input);
-  NavState predict(const EstimatorInput& input) const;
+  Preintegration since_newest(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);
   bool take_depth();
   void optimize(EstimatorResult& result, int iterations);

@@ -23,9 +23,10 @@ struct LandmarkConfig {
   void visit(ConfigFields& fields);
 };
 
+enum class Tracks { Alive, All };
+
 /// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those that go on, or at a
 /// start in motion also those that have ended, as they are what its first views have seen.
-enum class Tracks { Alive, All };
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks = Tracks::Alive);
 
 /// Takes out what the newest state sees of landmarks far from where its predicted pose expects them: on something that
@@ -38,9 +39,10 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
 /// their tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
+enum class Sights { Newest, All };
+
 /// Spread of the residuals that one camera has in the newest state, or in all: the standard deviation of one coordinate
 /// by their median length, in sigmas; nothing with too few of them.
-enum class Sights { Newest, All };
 std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights = Sights::Newest);
 
 /// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and the
