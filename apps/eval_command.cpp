@@ -58,8 +58,8 @@ int run_eval(const EvalOptions& options) {
 
 void add_eval_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<EvalOptions>();
-  CLI::App* eval =
-      app.add_subcommand("eval", "Compare a trajectory with ground truth: ATE, RPE, error per metre, scale");
+  CLI::App* eval = app.add_subcommand(
+      "eval", "Compare a trajectory with ground truth: ATE, local error, RPE, error per metre, scale");
   eval->add_option("GROUNDTRUTH", options->truth, "Trajectory file: TUM, EuRoC csv or KITTI, found by content")
       ->required();
   eval->add_option("ESTIMATE", options->estimate, "Trajectory file of the same sensor on the same clock")->required();

@@ -35,6 +35,17 @@ std::string window_text(const TimeWindow& window) {
 
 }  // namespace
 
+std::string local_error_text(const std::vector<LocalError>& local) {
+  std::string errors, counts;
+  for (const LocalError& e : local) {
+    if (e.windows == 0) continue;
+    const char* comma = errors.empty() ? "" : ", ";
+    errors += fmt::format("{}{:.2f} mm over {} s", comma, 1e3 * e.rmse_m, e.window_s);
+    counts += fmt::format("{}{}", comma, e.windows);
+  }
+  return errors.empty() ? "- (too short)" : fmt::format("{} ({} windows)", errors, counts);
+}
+
 nlohmann::ordered_json to_json(const Evaluation& e) {
   nlohmann::ordered_json json = {
       {"protocol", e.protocol.name},
@@ -61,6 +72,10 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
     json["rpe"].push_back({{"delta_s", relative.delta_s},
                            {"translation_m", to_json(relative.translation_m)},
                            {"rotation_deg", to_json(relative.rotation_deg)}});
+  }
+  for (const LocalError& local : e.local) {
+    json["local_error"].push_back(
+        {{"window_s", local.window_s}, {"windows", local.windows}, {"rmse_m", local.rmse_m}});  // NaN becomes null
   }
   return json;
 }
@@ -94,6 +109,7 @@ std::string to_table(const Evaluation& e) {
     table += row(fmt::format("RPE position, {} s", relative.delta_s).c_str(), relative.translation_m, "m");
     table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
   }
+  table += fmt::format("  local error            {}\n", local_error_text(e.local));
   table += fmt::format("  mean position error    {:.4f} % of the path\n", e.mpe_percent);
   table +=
       fmt::format("  mean rotation error    {:.4f} deg/m, yaw {:.4f} deg/m\n", e.rotation_deg_per_m, e.yaw_deg_per_m);

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
@@ -14,5 +15,7 @@ namespace edged {
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
 nlohmann::ordered_json to_json(const Consistency& consistency);
 std::string to_table(const Evaluation& evaluation);
+/// In one line, of the windows that there are.
+std::string local_error_text(const std::vector<LocalError>& local);
 
 }  // namespace edged

@@ -39,13 +39,18 @@ std::string consistency_line(const Consistency& c) {
 
 nlohmann::ordered_json accuracy_json(const std::optional<Evaluation>& e) {
   const auto field = [&e](auto get) { return e ? number_or_null(get(*e)) : nlohmann::ordered_json(nullptr); };
-  return {{"alignment", to_string(e ? e->protocol.alignment : AlignmentKind::SE3)},
-          {"ate_rmse_m", field([](const Evaluation& v) { return v.ate_m.rmse; })},
-          {"ate_mean_m", field([](const Evaluation& v) { return v.ate_m.mean; })},
-          {"ate_max_m", field([](const Evaluation& v) { return v.ate_m.max; })},
-          {"mpe_percent", field([](const Evaluation& v) { return v.mpe_percent; })},
-          {"rotation_mean_deg", field([](const Evaluation& v) { return v.rotation_deg.mean; })},
-          {"scale", field([](const Evaluation& v) { return v.scale; })}};
+  nlohmann::ordered_json json = {{"alignment", to_string(e ? e->protocol.alignment : AlignmentKind::SE3)},
+                                 {"ate_rmse_m", field([](const Evaluation& v) { return v.ate_m.rmse; })},
+                                 {"ate_mean_m", field([](const Evaluation& v) { return v.ate_m.mean; })},
+                                 {"ate_max_m", field([](const Evaluation& v) { return v.ate_m.max; })},
+                                 {"mpe_percent", field([](const Evaluation& v) { return v.mpe_percent; })},
+                                 {"rotation_mean_deg", field([](const Evaluation& v) { return v.rotation_deg.mean; })},
+                                 {"scale", field([](const Evaluation& v) { return v.scale; })}};
+  for (std::size_t i = 0; i < kLocalWindows_s.size(); ++i) {
+    json[fmt::format("local_error_{}s_m", kLocalWindows_s[i])] =
+        field([i](const Evaluation& v) { return v.local.at(i).rmse_m; });
+  }
+  return json;
 }
 
 nlohmann::ordered_json live_json(const LiveSummary& live) {
@@ -111,7 +116,7 @@ void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& 
     summary.consistency = check_consistency(true_body, written.claims);
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
-        summary.mpe_percent[name] = evaluate(association, protocol(name), {}).mpe_percent;
+        summary.mpe_percent[name] = evaluate(association, protocol(name), {}, {}).mpe_percent;
       } catch (const InputError& e) {
         spdlog::info("protocol {} does not apply: {}", name, e.what());
       }
@@ -175,6 +180,7 @@ std::string to_table(const RunSummary& s) {
     table += line("ATE RMSE", fmt::format("{:.4f} m", e.ate_m.rmse),
                   fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
                               e.path_length_m));
+    table += line("local error", local_error_text(e.local));
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);
     table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);

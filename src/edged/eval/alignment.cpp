@@ -37,19 +37,19 @@ Moments moments(const std::vector<PosePair>& pairs) {
 // Singular values below this share of the largest are rounding, not motion.
 constexpr double kRankTolerance = 1e-12;
 
-Similarity umeyama(const Moments& m, bool with_scale) {
+struct Fit {
+  Similarity alignment;
+  bool unique = false;  ///< the positions fix the rotation
+};
+
+Fit umeyama(const Moments& m, bool with_scale) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d& d = svd.singularValues();
-  if (!(d(1) > kRankTolerance * d(0))) {
-    throw InputError(
-        "cannot align: the positions lie on a point or a line and leave the rotation free; "
-        "use alignment none or a longer window");
-  }
   Eigen::Vector3d s(1, 1, 1);
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) s(2) = -1;
   const Eigen::Matrix3d R = svd.matrixU() * s.asDiagonal() * svd.matrixV().transpose();
   const double scale = with_scale ? d.dot(s) / m.variance_estimate : 1.0;
-  return {scale, SE3(R, m.mean_truth - scale * R * m.mean_estimate)};
+  return {{scale, SE3(R, m.mean_truth - scale * R * m.mean_estimate)}, d(1) > kRankTolerance * d(0)};
 }
 
 Similarity position_yaw(const Moments& m) {
@@ -97,7 +97,19 @@ Similarity align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
         pairs.size());
   }
   const Moments m = moments(pairs);
-  return kind == AlignmentKind::PositionYaw ? position_yaw(m) : umeyama(m, kind == AlignmentKind::Sim3);
+  if (kind == AlignmentKind::PositionYaw) return position_yaw(m);
+  const Fit fit = umeyama(m, kind == AlignmentKind::Sim3);
+  if (!fit.unique) {
+    throw InputError(
+        "cannot align: the positions lie on a point or a line and leave the rotation free; "
+        "use alignment none or a longer window");
+  }
+  return fit.alignment;
+}
+
+Similarity align_rigidly(const std::vector<PosePair>& pairs) {
+  EDGED_CHECK(!pairs.empty(), "nothing to align");
+  return umeyama(moments(pairs), false).alignment;
 }
 
 }  // namespace edged

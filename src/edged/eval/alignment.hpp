@@ -47,4 +47,8 @@ std::vector<PosePair> within(const std::vector<PosePair>& pairs, const TimeWindo
 /// three pairs, or when the positions do not fix the rotation (all on one point or line).
 Similarity align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
+/// SE(3) in the same sense, where the positions need not fix it: at rest or on a line it is one of those that fit
+/// best. At least one pair.
+Similarity align_rigidly(const std::vector<PosePair>& pairs);
+
 }  // namespace edged

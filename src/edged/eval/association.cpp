@@ -30,6 +30,7 @@ Association associate(const Trajectory& truth, const Trajectory& estimate, Durat
   require_ascending(estimate, "estimate");
   Association result;
   result.pairs.reserve(estimate.size());
+  if (!truth.empty()) result.truth_begin = truth.front().t;
   std::size_t after = 0;  // first true pose at or after the estimate's stamp
   for (const StampedPose& pose : estimate) {
     while (after < truth.size() && truth[after].t < pose.t) ++after;
@@ -52,6 +53,7 @@ Association associate_by_index(const Trajectory& truth, const Trajectory& estima
                              truth.size(), estimate.size());
   }
   Association result;
+  if (!truth.empty()) result.truth_begin = truth.front().t;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     result.pairs.push_back({truth[i].t, truth[i].T, estimate[i].T});
   }

@@ -22,6 +22,7 @@ struct Association {
   std::vector<PosePair> pairs;  ///< in time order
   std::size_t outside = 0;      ///< estimates before the first or after the last true pose
   std::size_t in_gaps = 0;      ///< estimates where neighbouring true poses are too far apart
+  Timestamp truth_begin{};      ///< of the first true pose
 };
 
 /// True poses further apart than this [s] are not interpolated between.

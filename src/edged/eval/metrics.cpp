@@ -18,6 +18,9 @@ constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may c
 constexpr double kStart_s = 5.0;
 constexpr TimeWindow kFirst = {0.0, 2.0}, kLater = {10.0, 12.0};
 constexpr double kLeastStartPath_m = 0.1;  // less says nothing of the scale
+constexpr double kLocalAfter_s = 4.0;      // before, the start is judged, not the estimate
+constexpr double kLocalSteps = 4.0;        // windows begin so often in the length of one
+constexpr std::size_t kLeastLocalPairs = 11;
 
 double path_length(const std::vector<PosePair>& pairs) {
   double length = 0.0;
@@ -71,6 +74,14 @@ double extent_ratio(const std::vector<PosePair>& pairs) {
   return std::sqrt(true_extent / extent);
 }
 
+double mean_squared_error(const std::vector<PosePair>& pairs, const Similarity& alignment) {
+  double sum = 0.0;
+  for (const PosePair& pair : pairs) {
+    sum += (pair.truth.translation() - alignment * pair.estimate.translation()).squaredNorm();
+  }
+  return sum / static_cast<double>(pairs.size());
+}
+
 }  // namespace
 
 Statistics statistics(std::vector<double> errors) {
@@ -119,7 +130,30 @@ RelativeError relative_error(const std::vector<PosePair>& pairs, double delta_s)
   return {delta_s, statistics(std::move(translation)), statistics(std::move(rotation))};
 }
 
-Evaluation evaluate(const Association& association, const Protocol& protocol, const std::vector<double>& deltas_s) {
+LocalError local_error(const Association& association, double window_s) {
+  const std::vector<PosePair>& pairs = association.pairs;
+  LocalError result{window_s, 0, std::numeric_limits<double>::quiet_NaN()};
+  if (pairs.empty()) return result;
+  const Duration length = duration_from_seconds(window_s), step = duration_from_seconds(window_s / kLocalSteps);
+  EDGED_CHECK(step > Duration{0}, "windows of {} s", window_s);
+  const auto before = [](const PosePair& pair, Timestamp t) { return pair.t < t; };
+  double sum = 0.0;
+  auto first = pairs.begin();
+  for (Timestamp t = std::max(pairs.front().t, association.truth_begin + duration_from_seconds(kLocalAfter_s));
+       t + length < pairs.back().t; t += step) {
+    first = std::lower_bound(first, pairs.end(), t, before);
+    const auto last = std::lower_bound(first, pairs.end(), t + length, before);
+    const std::vector<PosePair> window(first, last);
+    if (window.size() < kLeastLocalPairs) continue;
+    sum += mean_squared_error(window, align_rigidly(window));
+    ++result.windows;
+  }
+  if (result.windows > 0) result.rmse_m = std::sqrt(sum / static_cast<double>(result.windows));
+  return result;
+}
+
+Evaluation evaluate(const Association& association, const Protocol& protocol, const std::vector<double>& deltas_s,
+                    std::span<const double> local_windows_s) {
   if (association.pairs.empty()) {
     throw InputError::format(
         "no estimated pose has ground truth ({} outside its time span, {} in its gaps); do the "
@@ -154,6 +188,7 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.rotation_deg_per_m = result.rotation_deg.mean * per_metre;
   result.yaw_deg_per_m = result.yaw_deg.mean * per_metre;
   for (const double delta_s : deltas_s) result.relative.push_back(relative_error(pairs, delta_s));
+  for (const double window_s : local_windows_s) result.local.push_back(local_error(association, window_s));
   return result;
 }
 

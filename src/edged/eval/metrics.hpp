@@ -3,7 +3,9 @@
 // How far an estimate is from the truth: absolute and relative errors under a named protocol.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +43,21 @@ struct RelativeError {
 /// true against estimated. Every i counts.
 RelativeError relative_error(const std::vector<PosePair>& pairs, double delta_s);
 
+/// How well the shape of the path is known over window_s: the ATE of windows that are each aligned by themselves.
+struct LocalError {
+  double window_s = 0.0;
+  std::size_t windows = 0;
+  double rmse_m = 0.0;  ///< over the windows; NaN where there is none
+};
+
+/// Those by which variants are compared.
+constexpr std::array<double, 3> kLocalWindows_s = {1.0, 3.0, 10.0};
+
+/// RMS over all windows [s, s + window_s), a quarter of a window apart, of the RMS position error after SE(3) alignment
+/// of the window alone. The first begins 4 s after the first true pose (or with the first pair, if that is later), the
+/// last ends before the last pair. Windows of 10 pairs or fewer do not count.
+LocalError local_error(const Association& association, double window_s);
+
 struct Evaluation {
   Protocol protocol;
   std::size_t pairs = 0, outside = 0, in_gaps = 0;
@@ -48,21 +65,23 @@ struct Evaluation {
   double path_length_m = 0.0;  ///< of the true poses at the pairs
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate
-  double start_scale = 1.0;  ///< the same over the first 5 s of the estimate; NaN when too little moved to tell
-  double first_scale = 1.0;  ///< extent of the truth over that of the estimate in its first 2 s; NaN as above
-  double later_scale = 1.0;  ///< the same ten seconds later
-  Statistics ate_m;    ///< position error
-  Statistics rotation_deg;              ///< angle between true and aligned rotation
-  Statistics yaw_deg;                   ///< size of its part about the world's z
-  double mpe_percent = 0.0;             ///< mean position error / path length
-  double rotation_deg_per_m = 0.0;      ///< mean rotation error / path length
-  double yaw_deg_per_m = 0.0;           ///< mean yaw error / path length
+  double start_scale = 1.0;         ///< the same over the first 5 s of the estimate; NaN when too little moved to tell
+  double first_scale = 1.0;         ///< extent of the truth over that of the estimate in its first 2 s; NaN as above
+  double later_scale = 1.0;         ///< the same ten seconds later
+  Statistics ate_m;                 ///< position error
+  Statistics rotation_deg;          ///< angle between true and aligned rotation
+  Statistics yaw_deg;               ///< size of its part about the world's z
+  double mpe_percent = 0.0;         ///< mean position error / path length
+  double rotation_deg_per_m = 0.0;  ///< mean rotation error / path length
+  double yaw_deg_per_m = 0.0;       ///< mean yaw error / path length
   std::vector<RelativeError> relative;  ///< one per requested delta
+  std::vector<LocalError> local;        ///< one per requested window, whatever the protocol
 };
 
 /// Both trajectories must be of the same sensor on the same clock (or pairs made by index). Throws InputError when
 /// nothing overlaps or the alignment is not possible.
 Evaluation evaluate(const Association& association, const Protocol& protocol,
-                    const std::vector<double>& deltas_s = {1.0, 10.0});
+                    const std::vector<double>& deltas_s = {1.0, 10.0},
+                    std::span<const double> local_windows_s = kLocalWindows_s);
 
 }  // namespace edged

@@ -119,6 +119,82 @@ TEST(RelativeError, SkipsPairsThatAGapTearsApart) {
   EXPECT_EQ(relative_error(association.pairs, 50.0).translation_m.count, 0u);
 }
 
+TEST(LocalError, OfAMovedEstimateIsZeroInEveryWindow) {
+  const Trajectory truth = winding_motion(20.0);
+  const Evaluation result = evaluate(associate(truth, moved(kTilted, truth)), protocol("P3"));
+  ASSERT_EQ(result.local.size(), 3U);
+  // From 4 s on, a quarter of the window apart, as long as one ends before 20 s.
+  EXPECT_EQ(result.local[0].windows, 60U);
+  EXPECT_EQ(result.local[1].windows, 18U);
+  EXPECT_EQ(result.local[2].windows, 3U);
+  for (const LocalError& local : result.local) EXPECT_LT(local.rmse_m, 1e-12) << local.window_s;
+}
+
+TEST(LocalError, OfASteadyDriftAlongALineIsItsSpreadOverAWindow) {
+  // Too fast by a hundredth: what is left of n steps of a window is uniform, of variance (n^2 - 1) / 12.
+  Trajectory truth, estimate;
+  for (int i = 0; i <= 2000; ++i) {
+    const double t = 0.01 * i;
+    truth.push_back({timestamp_from_seconds(t), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(t, 0, 0))});
+    estimate.push_back({timestamp_from_seconds(t), SE3(kTilted.rotation(), kTilted * Eigen::Vector3d(1.01 * t, 0, 0))});
+  }
+  const Association association = associate(truth, estimate);
+  for (const double window_s : {1.0, 3.0, 10.0}) {
+    const double n = 100.0 * window_s;
+    EXPECT_NEAR(local_error(association, window_s).rmse_m, 1e-4 * std::sqrt((n * n - 1.0) / 12.0), 1e-12) << window_s;
+  }
+}
+
+TEST(LocalError, OfASlowDriftIsSmallWhereTheATEIsNot) {
+  const Trajectory truth = winding_motion(40.0);
+  Trajectory estimate = truth;
+  for (StampedPose& pose : estimate) {
+    const double t = to_seconds(pose.t - truth.front().t);
+    pose.T = SE3(so3::exp({0, 0, 0.002 * t}), Eigen::Vector3d(0.01 * t, 0, 0)) * pose.T;
+  }
+  const Evaluation result = evaluate(associate(truth, estimate), protocol("P3"));
+  // At most the drift in a window about its middle: its translation, and its rotation 7 m from the axis.
+  for (const LocalError& local : result.local) {
+    EXPECT_LT(local.rmse_m, 0.024 * local.window_s / std::sqrt(12.0)) << local.window_s;
+    EXPECT_LT(local.rmse_m, 0.3 * result.ate_m.rmse) << local.window_s;
+  }
+  EXPECT_LT(2.0 * result.local[0].rmse_m, result.local[1].rmse_m);
+  EXPECT_LT(2.0 * result.local[1].rmse_m, result.local[2].rmse_m);
+}
+
+TEST(LocalError, ForgivesAStepOutsideItsWindowsAndTheStart) {
+  const Trajectory truth = winding_motion(20.0);
+  Trajectory estimate = truth;
+  for (StampedPose& pose : estimate) {
+    if (pose.t < timestamp_from_seconds(104.0)) pose.T.translation().x() += 0.5 * std::sin(8.0 * to_seconds(pose.t));
+  }
+  EXPECT_LT(local_error(associate(truth, estimate), 3.0).rmse_m, 1e-12);
+  // The truth, not the estimate, says where the 4 s begin.
+  estimate.erase(estimate.begin(), estimate.begin() + 150);
+  EXPECT_LT(local_error(associate(truth, estimate), 3.0).rmse_m, 1e-12);
+  EXPECT_EQ(local_error(associate(truth, estimate), 3.0).windows, 18U);
+}
+
+TEST(LocalError, OfARestIsWhatTheEstimateMoves) {
+  const Trajectory moving = winding_motion(20.0);
+  Trajectory resting = moving;
+  for (StampedPose& pose : resting) pose.T = moving.front().T;
+  EXPECT_LT(local_error(associate(resting, resting), 1.0).rmse_m, 1e-12);
+  EXPECT_GT(local_error(associate(resting, moving), 1.0).rmse_m, 0.1);
+}
+
+TEST(LocalError, OfWhatIsTooShortOrTooSparseIsNothing) {
+  const Trajectory truth = winding_motion(7.5);
+  const Evaluation result = evaluate(associate(truth, truth), protocol("P3"));
+  EXPECT_GT(result.local[0].windows, 0U);
+  EXPECT_EQ(result.local[2].windows, 0U);
+  EXPECT_TRUE(std::isnan(result.local[2].rmse_m));
+  const Trajectory sparse = winding_motion(20.0, 10.0);  // ten poses a second
+  EXPECT_EQ(local_error(associate(sparse, sparse), 1.0).windows, 0U);
+  EXPECT_GT(local_error(associate(sparse, sparse), 3.0).windows, 0U);
+  EXPECT_EQ(local_error(Association{}, 1.0).windows, 0U);
+}
+
 TEST(Protocol, NamesAreThoseOfTheLiterature) {
   EXPECT_EQ(protocol("P1").window, (TimeWindow{3.0, 8.0}));
   EXPECT_EQ(protocol("P2").window, (TimeWindow{0.0, 5.0}));
