@@ -30,7 +30,7 @@ def draw(options, results, found, folders):
 
 
 def variants_figure(options, results, found, folders):
-    """ATE of every variant over that of the defaults: a dot a recording, a bar for their geometric mean."""
+    """Local error of every variant over that of the defaults: a dot a recording, a bar for their geometric mean."""
     others = [variant for variant in found if variant != "defaults"]
     figure, axes = pyplot.subplots(1, len(options.modes), sharey=True, squeeze=False, layout="constrained",
                                    figsize=(3.5 + 4.5 * len(options.modes), 1.5 + 0.24 * max(4, len(others))))
@@ -39,17 +39,17 @@ def variants_figure(options, results, found, folders):
             ratios = []
             for folder, rig in folders:
                 run, usual = results[variant, mode, folder.name], results["defaults", mode, folder.name]
-                if harness.failure(usual):
-                    continue
                 failed = bool(harness.failure(run))
-                ratio = run["ate_rmse_m"] / usual["ate_rmse_m"] if not failed else 4.0
+                if not harness.scored([usual], harness.LOCAL) or not failed and run[harness.LOCAL] is None:
+                    continue
+                ratio = run[harness.LOCAL] / usual[harness.LOCAL] if not failed else 4.0
                 axis.plot(np.clip(ratio, 0.25, 4.0), height, "x" if failed else ("o" if rig else "."), markersize=5,
                           color="tab:red" if failed else ("tab:orange" if rig else "tab:blue"), alpha=0.7)
                 ratios += [] if failed else [ratio]
             if ratios:
                 axis.plot([statistics.geometric_mean(ratios)] * 2, [height - 0.35, height + 0.35], "k", linewidth=2)
         axis.axvline(1.0, color="grey", linewidth=0.8)
-        axis.set(xscale="log", xlim=(0.24, 4.2), title=mode, xlabel="ATE / ATE of the defaults")
+        axis.set(xscale="log", xlim=(0.24, 4.2), title=mode, xlabel="local error over 3 s / that of the defaults")
         axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], labels=["0.25", "0.5", "1", "2", "4"])
         axis.minorticks_off()
         axis.grid(axis="x", alpha=0.3)

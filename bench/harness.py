@@ -27,6 +27,9 @@ LEAST_COVERAGE = 0.5
 WORST_SHARE_OF_PATH = 0.05
 WHAT_FAILS = (f"Failed: never good, lost at the end, good for less than {LEAST_COVERAGE:.0%} of the time, or a mean error "
               f"above {WORST_SHARE_OF_PATH:.0%} of the path.")
+# What decides between variants: it scatters far less between runs than the ATE.
+LOCAL, LOCAL_HEAD = "local_error_3s_m", "local 3 s [mm]"
+WHAT_LOCAL = "Local 3 s: RMS of the ATE of every window of 3 s aligned by itself, from 4 s on"
 
 
 class ProgramError(Exception):
@@ -148,6 +151,11 @@ def failure(metrics):
         return f"coverage {metrics['coverage']:.0%}"
     share = evaluation["ate_m"]["mean"] / evaluation["path_length_m"]
     return f"error {share:.1%} of the path" if share > WORST_SHARE_OF_PATH else ""
+
+
+def scored(runs, key):
+    """The figures of the runs that have not failed and have one: a short run has no local error."""
+    return [metrics[key] for metrics in runs if not failure(metrics) and metrics[key] is not None]
 
 
 def file_name(text):

@@ -81,13 +81,32 @@ class Bench(unittest.TestCase):
     def test_mirrors_counts_runs_that_have_failed_and_holds_fused_against_its_better_part(self):
         mirrors = script("mirrors")
         good = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good",
-                "coverage": 0.9, "ate_rmse_m": 0.01}
+                "coverage": 0.9, "ate_rmse_m": 0.01, harness.LOCAL: 0.002}
         lost = {**good, "status": "lost", "ate_rmse_m": 3.0}
         twice = {**good, "ate_rmse_m": 0.02}
         self.assertAlmostEqual(mirrors.mean_error([good, {**good, "ate_rmse_m": 0.04}, lost]), 20.0)
         self.assertIsNone(mirrors.mean_error([lost]))
         self.assertAlmostEqual(mirrors.over_its_parts({"fused": [twice], "events": [good], "frames": [lost]}), 2.0)
         self.assertIsNone(mirrors.over_its_parts({"fused": [lost], "events": [good], "frames": [good]}))
+        short = {**good, harness.LOCAL: None}
+        self.assertAlmostEqual(mirrors.mean_error([good, {**good, harness.LOCAL: 0.008}, short, lost], harness.LOCAL), 4.0)
+        by_mode = {"fused": [{**twice, harness.LOCAL: 0.001}], "events": [good], "frames": [good]}
+        self.assertAlmostEqual(mirrors.over_its_parts(by_mode, harness.LOCAL), 0.5)
+        self.assertIsNone(mirrors.over_its_parts({**by_mode, "fused": [short]}, harness.LOCAL))
+
+    def test_ablation_holds_a_variant_against_the_defaults_by_the_local_error_too(self):
+        ablation = script("ablation")
+        usual = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good",
+                 "coverage": 0.9, "ate_rmse_m": 0.01, "mpe_percent": 0.2, harness.LOCAL: 0.004}
+        runs = {("defaults", "a"): usual, ("less", "a"): {**usual, harness.LOCAL: 0.002, "ate_rmse_m": 0.02},
+                ("defaults", "b"): usual, ("less", "b"): {**usual, harness.LOCAL: None},
+                ("defaults", "c"): {**usual, "status": "lost"}, ("less", "c"): usual}
+        results = {(variant, "fused", name): run for (variant, name), run in runs.items()}
+        self.assertEqual(ablation.ratios(results, "less", "fused", "abc", harness.LOCAL), [0.5])
+        self.assertEqual(ablation.ratios(results, "less", "fused", "abc", "ate_rmse_m"), [2.0, 1.0])
+        self.assertEqual(ablation.row(results, "less", "fused", "abc"),
+                         ["less", "3.00", "4.00", "0.0100", "0.0200", "0.200", "0.200", "0.50", "1 of 1", "1.41", "0 of 2",
+                          "0 of 3"])
 
     def test_a_missing_program_is_one_line(self):
         result = bench("flights", "--edged", self.folder / "none")

@@ -97,6 +97,11 @@ class Eval(WithFolder):
     def test_a_trajectory_equals_itself(self):
         result = json.loads(edged("eval", self.truth, self.truth, "--json").stdout)
         self.assertLess(result["ate_rmse_m"], 1e-9)
+        # Ten poses a second are too few for windows of 1 s.
+        self.assertEqual([(local["window_s"], local["windows"]) for local in result["local_error"]],
+                         [(1.0, 0), (3.0, 18), (10.0, 3)])
+        self.assertIsNone(result["local_error"][0]["rmse_m"])
+        self.assertLess(result["local_error"][1]["rmse_m"], 1e-9)
         self.assertAlmostEqual(result["scale"], 1.0)
         self.assertEqual(result["pairs"], 200)
 
@@ -105,7 +110,9 @@ class Eval(WithFolder):
                          [3.0, 8.0])
         custom = edged("eval", self.truth, self.truth, "--align", "yaw", "--first", "5", "--json")
         self.assertEqual(json.loads(custom.stdout)["alignment"], "position+yaw")
-        self.assertIn("ATE position", edged("eval", self.truth, self.truth).stdout)
+        table = edged("eval", self.truth, self.truth).stdout
+        self.assertIn("ATE position", table)
+        self.assertIn("0.00 mm over 3 s, 0.00 mm over 10 s (18, 3 windows)", table)
 
     def test_other_clocks_are_refused(self):
         later = self.folder / "later.txt"
@@ -394,8 +401,8 @@ class Run(WithFolder):
         self.assertEqual(result.stderr, "")
         summary = json.loads(result.stdout)
         self.assertEqual(summary, json.loads((a / "metrics.json").read_text()))
-        for key in ("ate_rmse_m", "mpe_percent", "scale", "alignment", "poses", "keyframes", "coverage",
-                    "real_time_factor", "cpu_s_per_s", "peak_rss_mb", "status"):
+        for key in ("ate_rmse_m", "local_error_1s_m", "local_error_3s_m", "local_error_10s_m", "mpe_percent", "scale",
+                    "alignment", "poses", "keyframes", "coverage", "real_time_factor", "cpu_s_per_s", "peak_rss_mb", "status"):
             self.assertIn(key, summary)
         self.assertLess(summary["ate_rmse_m"], 0.1)
         for name in ("trajectory_euroc.csv", "states.csv", "config_resolved.yaml", "timing.json", "run.log"):
@@ -405,9 +412,12 @@ class Run(WithFolder):
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual((a / "trajectory.tum").read_bytes(), (b / "trajectory.tum").read_bytes())
         self.assertIn("mean position error", again.stdout)
+        self.assertIn("local error", again.stdout)
         # The file says what metrics.json says.
         evaluated = json.loads(edged("eval", self.flight / "groundtruth.txt", a / "trajectory.tum", "--json").stdout)
         self.assertAlmostEqual(evaluated["ate_rmse_m"], summary["ate_rmse_m"], places=9)
+        self.assertEqual([local["windows"] for local in evaluated["local_error"]],
+                         [local["windows"] for local in summary["evaluation"]["local_error"]])
 
     def test_every_mode_runs_into_its_default_folder(self):
         for mode in ("events", "frames"):
@@ -444,6 +454,7 @@ class Run(WithFolder):
         result = edged("run", flight, "--out", self.folder / "run", "--json", "--quiet")
         self.assertEqual(result.returncode, 4, result.stderr)
         self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
+        self.assertIsNone(json.loads(result.stdout)["local_error_3s_m"])
         self.assertEqual(json.loads(result.stdout)["status"], "never good")
 
     def test_an_error_on_the_way_leaves_complete_files_of_what_came_before(self):
