@@ -106,15 +106,18 @@ def data_recordings(data, cache):
 
 
 def extent(edged, cache, path, rig, modes):
-    """Begin and end of the recording [s], and those of the modes that it has sensors for; kept in the cache."""
+    """Begin of the recording [s], and from when to when all streams are there that a mode needs, by mode, of those that it has
+    sensors for; kept in the cache."""
     known = cache / "info" / f"{file_name(str(path.resolve()))}_{path.stat().st_mtime_ns}.json"
     if not known.exists():
         known.parent.mkdir(parents=True, exist_ok=True)
         known.write_text(call([edged, "info", path, "--json", "--quiet"] + (["--rig", rig] if rig else [])))
     info = json.loads(known.read_text())
-    there = [info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0]
-    possible = [mode for mode in modes if all(info[kind]["count"] > 0 for kind in STREAMS[mode])]
-    return 1e-9 * min(s["begin_ns"] for s in there), 1e-9 * max(s["end_ns"] for s in there), possible
+    there = {kind: info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0}
+    return 1e-9 * min(stream["begin_ns"] for stream in there.values()), {
+        mode: (1e-9 * max(there[kind]["begin_ns"] for kind in STREAMS[mode]),
+               1e-9 * min(there[kind]["end_ns"] for kind in STREAMS[mode]))
+        for mode in modes if there.keys() >= set(STREAMS[mode])}
 
 
 def build_id(edged, *options):

@@ -10,7 +10,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 
 BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
 sys.path.insert(0, str(BENCH))
@@ -61,6 +63,15 @@ class Bench(unittest.TestCase):
         self.assertEqual(len(runs), 2)
         self.assertEqual(bench(*args).stdout, first.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_starts_leaves_out_what_begins_before_the_mode_has_all_its_streams(self):
+        starts = script("starts")
+        options = types.SimpleNamespace(edged=None, cache=None, modes=["fused", "frames"], length=3.0, least=3.0, every=1.0)
+        extent = (100.0, {"fused": (102.5, 107.0), "frames": (102.05, 106.5)})
+        with unittest.mock.patch.object(starts.harness, "extent", return_value=extent):
+            found = starts.pieces(options, [("late", "path", None)])
+        self.assertEqual([job[3:] for job in found], [("fused", 3.0, 103.0), ("fused", 4.0, 104.0), ("frames", 2.0, 102.0),
+                                                      ("frames", 3.0, 103.0)])
 
     def test_mirrors_prints_a_row_a_mode_that_has_its_sensors_and_keeps_what_it_has_run(self):
         recording = harness.simulated(harness.DEFAULT_PROGRAM, self.folder, "room", 1, 3)
