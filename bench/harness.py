@@ -3,11 +3,13 @@
 """What the benchmarks share: recordings made once, runs of the program, what counts as a failure, and the progress bar."""
 import concurrent.futures
 import csv
+import datetime
 import hashlib
 import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -17,6 +19,7 @@ import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+CACHE = pathlib.Path(os.environ.get("EDGED_CACHE", ROOT / "build"))  # holds a folder of each benchmark
 DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
 MODES = ["fused", "frames", "events"]
 NEVER_GOOD, NOT_TRUSTED = 4, 5  # exit codes of edged run
@@ -56,6 +59,15 @@ def add_data_option(parser):
 def check_program(edged):
     if not edged.is_file():
         sys.exit(f"{edged}: no such program; build it, or give --edged")
+
+
+def measured(edged):
+    """What a table begins with: by which program, when, with which command."""
+    script = pathlib.Path(sys.argv[0]).resolve()
+    name = script.relative_to(ROOT) if script.is_relative_to(ROOT) else script
+    today = datetime.date.today()
+    return (f"{call([edged, '--version']).strip()}, {today.day} {today:%B %Y}, "
+            f"`{shlex.join([str(name), *sys.argv[1:]])}`:")
 
 
 def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(), name=None):
@@ -133,6 +145,13 @@ def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
     for setting in settings:
         command += ["--set", setting]
     return json.loads(call(command, accepted=(0, NEVER_GOOD, NOT_TRUSTED)))
+
+
+def estimate_once(edged, recording, mode, out, settings=(), rig=None, extra=()):
+    """The same; a run that is finished is kept."""
+    finished = out / "metrics.json"
+    return json.loads(finished.read_text()) if finished.exists() else \
+        estimate(edged, recording, mode, out, settings, rig, extra)
 
 
 def read_states(folder):
