@@ -148,10 +148,11 @@ def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
 
 
 def estimate_once(edged, recording, mode, out, settings=(), rig=None, extra=()):
-    """The same; a run that is finished is kept."""
-    finished = out / "metrics.json"
-    return json.loads(finished.read_text()) if finished.exists() else \
-        estimate(edged, recording, mode, out, settings, rig, extra)
+    """The same; a run that is finished is kept. One that Ctrl-C ended has written its metrics, too."""
+    written = out / "metrics.json"
+    metrics = json.loads(written.read_text()) if written.exists() else None
+    finished = metrics is not None and metrics["status"] != "interrupted"
+    return metrics if finished else estimate(edged, recording, mode, out, settings, rig, extra)
 
 
 def read_states(folder):

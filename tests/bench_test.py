@@ -119,6 +119,12 @@ class Bench(unittest.TestCase):
                          ["less", "3.00", "4.00", "0.0100", "0.0200", "0.200", "0.200", "0.50", "1 of 1", "1.41", "0 of 2",
                           "0 of 3"])
 
+    def test_a_run_that_was_interrupted_is_run_again(self):
+        (self.folder / "metrics.json").write_text('{"status": "interrupted"}')
+        with unittest.mock.patch.object(harness, "estimate", return_value={"status": "good"}) as estimate:
+            self.assertEqual(harness.estimate_once(None, "recording", "fused", self.folder), {"status": "good"})
+        estimate.assert_called_once()
+
     def test_a_missing_program_is_one_line(self):
         result = bench("flights", "--edged", self.folder / "none")
         self.assertEqual(result.stderr.strip(), f"{self.folder / 'none'}: no such program; build it, or give --edged")
