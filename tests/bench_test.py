@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The benchmarks of bench/ and tests/stress on recordings of a few seconds: that they run, go on where they stopped, and write their tables.
+"""The benchmarks of bench/ and tests/stress on recordings of a few seconds: that they run, go on where they stopped, and write
+their tables.
 Usage: EDGED=path/to/edged bench_test.py"""
 import importlib.machinery
 import importlib.util
@@ -38,7 +39,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "flights", "mirrors", "sim_suite", "starts", "../tests/stress"):
+        for name in ("ablation", "figures", "flights", "mirrors", "sim_suite", "starts", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -118,6 +119,61 @@ class Bench(unittest.TestCase):
         self.assertEqual(ablation.row(results, "less", "fused", "abc"),
                          ["less", "3.00", "4.00", "0.0100", "0.0200", "0.200", "0.200", "0.50", "1 of 1", "1.41", "0 of 2",
                           "0 of 3"])
+
+    def test_figures_replaces_what_stands_between_the_markers_and_nothing_else(self):
+        figures = script("figures")
+        text = "before\n<!-- figures: a -->\nold\n<!-- end: a -->\n\n<!-- figures: ab -->\nkept\n<!-- end: ab -->\nafter\n"
+        once = figures.replaced(text, "a", "| new |\n")
+        self.assertEqual(once, text.replace("\nold\n", "\n\n| new |\n\n"))
+        self.assertEqual(figures.replaced(once, "a", "| new |"), once)
+        for name, broken in (("b", text), ("a", text + text), ("a", text.replace("<!-- end: a -->", "")),
+                             ("a", "<!-- end: a --><!-- figures: a -->")):
+            with self.assertRaises(figures.MarkerError):
+                figures.replaced(broken, name, "new")
+
+    def test_figures_has_a_place_for_every_part(self):
+        figures = script("figures")
+        results = (harness.ROOT / figures.RESULTS).read_text()
+        for name in figures.PARTS:
+            self.assertIn("new content", figures.replaced(results, name, "new content"))
+        figures.replaced((harness.ROOT / figures.README).read_text(), "mirrors", "new content")
+
+    def test_figures_takes_a_report_over_as_a_section(self):
+        report = "# Title\n\nwords\n\n## Every run\n\n| long |\n\n## Not as expected\n\n- one\n"
+        figures = script("figures")
+        self.assertEqual(figures.section(report, "Every run"), "words\n\n### Not as expected\n\n- one")
+        self.assertIn("| long |", figures.section(report, ""))
+
+    def test_figures_tells_the_readme_what_fused_reached_on_the_mirrors(self):
+        rows = ["| recording | mode | range | ATE [mm] |", "| --- | --- | --- | ---: |", "| mirror_poster | fused |  | 5.8 |",
+                "| mirror_poster | events |  | 19.9 |", "| mirror_boxes | fused | - | *failed* |",
+                "| euroc_mh01 | frames | | 6.6 |"]
+        text = script("figures").readme_text("# T\n\nedged 0.1.0 (abc, changed), 1 May 2026, `x`: y\n\n" + "\n".join(rows))
+        for words in ("(edged 0.1.0 (abc, changed))", "poster 5.8 mm", "boxes failed", "rad/s not measured", "with frames: 6.6 mm"):
+            self.assertIn(words, text)
+
+    def test_figures_puts_table_and_picture_into_the_documents(self):
+        figures = script("figures")
+        out, cache = self.folder / "out", self.folder / "cache"
+        for folder in (out / "docs", cache / "ablation"):
+            folder.mkdir(parents=True)
+        (out / figures.RESULTS).write_text((harness.ROOT / figures.RESULTS).read_text())
+        (cache / "ablation/table.md").write_text("# Ablation\n\n## Mirrors\n\n| new |\n")
+        (cache / figures.PARTS["ablation-filters"].picture[0]).write_text("picture")
+        options = types.SimpleNamespace(out=out, edged=pathlib.Path(__file__), quick=False, jobs=1, caveats="")
+        with unittest.mock.patch.object(figures, "run", return_value="") as run:
+            figures.measure(options, "ablation-filters", {"EDGED_CACHE": str(cache)})
+        self.assertIn("enhancement", run.call_args.args[0])
+        self.assertIn("<!-- figures: ablation-filters -->\n\n### Mirrors\n\n| new |\n\n<!-- end: ablation-filters -->",
+                      (out / figures.RESULTS).read_text())
+        self.assertEqual((out / "docs/images/ablation_filters.png").read_text(), "picture")
+
+    def test_figures_refuses_a_program_that_is_not_what_is_committed(self):
+        figures = script("figures")
+        for version, words in (("edged 0.1.0", "names no commit"), ("edged 0.1.0 (0123abcd, changed)", "not committed"),
+                               ("edged 0.1.0 (00000000)", "not in")):
+            self.assertIn(words, figures.what_differs(version))
+        self.assertIn("--out", bench("figures", "--quick").stderr)
 
     def test_a_run_that_was_interrupted_is_run_again(self):
         (self.folder / "metrics.json").write_text('{"status": "interrupted"}')
