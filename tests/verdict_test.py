@@ -3,24 +3,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run says of its own result: calibrations and recordings that contradict it. Usage: EDGED=path/to/edged verdict_test.py"""
 import json
-import os
-import pathlib
 import re
-import shutil
-import subprocess
-import tempfile
 import unittest
 
-EDGED = os.environ["EDGED"]
+from program import WithFlight, edged
+
 MODES = ("events", "frames", "fused")
 DEG = 57.29578
 G = 9.80665
 # The transform of the first camera in our own format; the second is behind the same lens.
 TRANSFORM = re.compile(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]")
-
-
-def edged(*args):
-    return subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, check=False, timeout=300)
 
 
 def with_transform(change):
@@ -45,27 +37,7 @@ def scaled(factor, v):
     return [factor * x for x in v]
 
 
-class Verdict(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="edged_verdict_"))
-        cls.addClassCleanup(shutil.rmtree, cls.shared)
-        cls.flight = cls.shared / "flight"
-        made = edged("simulate", "--duration", 5, "--seed", 2, "--out", cls.flight, "--quiet")
-        assert made.returncode == 0, made.stderr
-
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_verdict_"))
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def changed(self, name, change):
-        """The recording with one of its files changed."""
-        copy = self.folder / "changed"
-        shutil.rmtree(copy, ignore_errors=True)
-        shutil.copytree(self.flight, copy)
-        (copy / name).write_text(change((copy / name).read_text()))
-        return copy
-
+class Verdict(WithFlight):
     def run_it(self, recording, mode, *args):
         out = self.folder / "run"
         result = edged("run", recording, "--mode", mode, "--out", out, "--quiet", *args)

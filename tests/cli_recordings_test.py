@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""info, doctor and convert on one generated recording. Usage: EDGED=path/to/edged cli_recordings_test.py"""
+import json
+import re
+import unittest
+
+from program import WithFlight, edged
+
+
+class Recordings(WithFlight):
+    SIMULATION = ("--preset", "handheld-fast", "--duration", 3)
+
+    def test_info_counts_what_is_there(self):
+        found = json.loads(edged("info", self.flight, "--json").stdout)
+        self.assertEqual(found["events"]["count"], len((self.flight / "events.txt").read_text().splitlines()))
+        self.assertEqual(found["frames"]["count"], len((self.flight / "images.txt").read_text().splitlines()))
+        self.assertEqual((found["events"]["width"], found["events"]["height"]), (240, 180))
+        self.assertAlmostEqual(found["imu"]["mean_accel"], 10.5, delta=1.0)
+        text = edged("info", self.flight).stdout
+        for word in ("events", "no gaps", "highest rate", "hot pixels", "noise", "ground truth"):
+            self.assertIn(word, text)
+
+    def test_a_piece_holds_what_lies_between_its_bounds(self):
+        whole = json.loads(edged("info", self.flight, "--json").stdout)
+        begin = whole["imu"]["begin_ns"]
+        for name in ("flight", "part.h5", "part.bag"):
+            recording = self.flight if name == "flight" else self.folder / name
+            if recording != self.flight:
+                self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+            rig = ["--calib", self.flight / "calibration.yaml"]
+            piece = json.loads(edged("info", recording, *rig, "--from", 1, "--to", 1.5, "--json").stdout)
+            for stream, slack in (("events", 1), ("frames", 100), ("imu", 3)):  # [ms] clocks differ by 2.4 ms
+                self.assertGreaterEqual(piece[stream]["begin_ns"] - begin, 1e9 - 3e6, f"{name} {stream}")
+                self.assertLess(piece[stream]["begin_ns"] - begin, 1e9 + 1e6 * slack, f"{name} {stream}")
+                self.assertLess(piece[stream]["end_ns"] - begin, 1.5e9, f"{name} {stream}")
+                self.assertGreater(piece[stream]["end_ns"] - begin, 1.5e9 - 1e6 * slack - 3e6, f"{name} {stream}")
+        converted = self.folder / "piece"
+        self.assertEqual(edged("convert", self.flight, converted, "--from", 1, "--to", 1.5, "--quiet").returncode, 0)
+        self.assertEqual(json.loads(edged("info", converted, "--json").stdout)["events"]["count"], piece["events"]["count"])
+
+    def test_bounds_that_hold_nothing_are_refused(self):
+        self.assert_refused(edged("info", self.flight, "--from", 2, "--to", 1), "--from 2", "--to")
+        self.assert_refused(edged("run", self.flight, "--from", 60, "--out", self.folder / "run"), "--from 60", "3.0")
+        self.assertEqual(edged("info", self.flight, "--from", -1).returncode, 2)
+
+    def test_dimmed_frames_are_dark_whoever_reads_them(self):
+        bright = json.loads(edged("info", self.flight, "--json").stdout)["frames"]
+        dark = json.loads(edged("info", self.flight, "--dim-frames", 0.06, "--json").stdout)["frames"]
+        self.assertEqual(dark["count"], bright["count"])
+        self.assertAlmostEqual(dark["mean_brightness"], 0.06 * bright["mean_brightness"], delta=0.5)
+        folder = self.folder / "dark"
+        self.assertEqual(edged("convert", self.flight, folder, "--dim-frames", 0.06, "--quiet").returncode, 0)
+        self.assertEqual(json.loads(edged("info", folder, "--json").stdout)["frames"]["mean_brightness"],
+                         dark["mean_brightness"])
+
+    def test_the_doctor_finds_a_healthy_recording_healthy(self):
+        result = edged("doctor", self.flight)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("0 errors, 0 warnings", result.stdout)
+        for camera in ("events", "frames"):
+            self.assertRegex(result.stdout, rf"camera {camera}: t_imu = t_cam .* by its turning")
+            self.assertRegex(result.stdout, rf"camera {camera}: its rotation agrees with the gyro to [0-3]\.")
+
+    def test_the_doctor_names_wrong_units_with_the_remedy(self):
+        def in_degrees_and_g(text):
+            lines = []
+            for line in text.splitlines():
+                t, *v = line.split()
+                lines.append(" ".join([t] + [str(float(x) / 9.80665) for x in v[:3]] +
+                                      [str(float(x) * 57.29578) for x in v[3:]]))
+            return "\n".join(lines) + "\n"
+        result = edged("doctor", self.changed("imu.txt", in_degrees_and_g))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +accelerometer in g.*\n.*9.80665")
+        self.assertRegex(result.stdout, r"error +gyro in deg/s.*\n.*pi / 180")
+
+    def test_the_doctor_names_swapped_columns_of_the_imu_and_blames_no_unit(self):
+        def swapped(text):
+            return "".join(" ".join([t, *v[3:], *v[:3]]) + "\n" for t, *v in (line.split() for line in text.splitlines()))
+        result = edged("doctor", self.changed("imu.txt", swapped))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +gyro and accelerometer are swapped.*\n.*t ax ay az gx gy gz")
+        self.assertIn("\n1 errors, ", result.stdout)
+
+    def test_the_doctor_names_a_gyro_with_negated_axes(self):
+        def negated(text):
+            return "".join(" ".join([t, *v[:3], *(str(-float(x)) for x in v[3:])]) + "\n"
+                           for t, *v in (line.split() for line in text.splitlines()))
+        result = edged("doctor", self.changed("imu.txt", negated))
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +camera frames: the gyro turns the other way.*\n.*sign")
+
+    def test_the_doctor_counts_everything_that_it_prints(self):
+        lines = (self.flight / "imu.txt").read_text().splitlines()
+        broken = self.changed("imu.txt", lambda text: "\n".join(lines[:100] + ["x y z"] + lines[100:]) + "\n")
+        result = edged("doctor", broken)
+        self.assertEqual(result.stderr, "")
+        self.assertRegex(result.stdout, r"warning +.*imu.txt:101")
+        self.assertEqual(result.stdout.count("\nwarning "), 1)
+        self.assertIn("0 errors, 1 warnings", result.stdout)
+
+    def test_the_doctor_tells_what_it_saw_of_a_recording_that_breaks_off(self):
+        broken = self.changed("imu.txt", lambda text: text + "x y z\n" * 2000)
+        result = edged("doctor", broken)
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stdout, r"error +.*imu.txt:\d+.*damaged")
+        self.assertIn("IMU at 1000 Hz", result.stdout)
+
+    def test_the_doctor_names_a_calibration_that_contradicts_the_gyro(self):
+        rig = self.folder / "turned.yaml"
+        text = (self.flight / "calibration.yaml").read_text()
+
+        def quarter_turn(match):  # about the body's x: y' = -z, z' = y
+            x, y, z, last = match.group(0).splitlines()
+            minus_z = ", ".join(str(-float(v)) for v in z[z.index("[") + 1:-1].split(","))
+            return "\n".join([x, f"      - [{minus_z}]", y, last])
+
+        text = re.sub(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]", quarter_turn, text)
+        rig.write_text(text.replace("time_offset: 0.002400000", "time_offset: 0.030"))
+        result = edged("doctor", self.flight, "--calib", rig)
+        self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
+        self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5])\.\d deg \+- \d\.\d deg")
+        self.assertRegex(result.stdout, r"warning +camera frames: t_imu = t_cam .*\n.*set time_offset")
+
+    def test_convert_there_and_back_keeps_every_event(self):
+        for name in ("out.raw", "out.dat"):
+            target = self.folder / name
+            result = edged("convert", self.flight, target, "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("left out", result.stdout)
+            back = self.folder / (name + "_back")
+            self.assertEqual(edged("convert", target, back, "--format", "ecd", "--quiet").returncode, 0)
+            self.assertEqual((back / "events.txt").read_text(), (self.flight / "events.txt").read_text())
+            self.assert_refused(edged("convert", self.flight, target, "--quiet"), "is there already")
+
+    def test_a_converted_recording_gives_the_same_run_to_the_last_bit(self):
+        states = {}
+        for name in ("flight.bag", "flight.mcap", "flight"):
+            recording = self.flight if name == "flight" else self.folder / name
+            if name != "flight":
+                self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+            run = self.folder / ("run_" + name)
+            result = edged("run", recording, "--calib", self.flight / "calibration.yaml", "--out", run, "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            states[name] = (run / "states.csv").read_text()
+        self.assertEqual(states["flight.bag"], states["flight"])
+        self.assertEqual(states["flight.mcap"], states["flight"])
+
+    def test_convert_lists_the_formats_where_it_does_not_know_one(self):
+        self.assert_refused(edged("convert", self.flight, self.folder / "a.xyz"), "`.xyz`", "raw (.raw)")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

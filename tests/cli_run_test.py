@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""simulate, run and enhance on one short flight: run folders, live runs, interrupted ones.
+Usage: EDGED=path/to/edged cli_run_test.py"""
+import json
+import random
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import EDGED, WithFlight, edged
+
+
+class Run(WithFlight):
+    def test_simulate_says_what_it_wrote_and_does_not_overwrite(self):
+        self.assertGreater(self.simulated["events"], 10000)
+        with open(self.flight / "events.txt", encoding="ascii") as events:
+            self.assertEqual(sum(1 for _ in events), self.simulated["events"])
+        self.assert_refused(edged("simulate", "--duration", "1", "--out", self.flight, "--quiet"), str(self.flight))
+
+    def test_a_run_leaves_a_complete_folder_and_the_same_bytes_twice(self):
+        a, b = self.folder / "a", self.folder / "b"
+        result = edged("run", self.flight, "--out", a, "--json", "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr, "")
+        summary = json.loads(result.stdout)
+        self.assertEqual(summary, json.loads((a / "metrics.json").read_text()))
+        for key in ("ate_rmse_m", "local_error_1s_m", "local_error_3s_m", "local_error_10s_m", "mpe_percent", "scale",
+                    "alignment", "poses", "keyframes", "coverage", "real_time_factor", "cpu_s_per_s", "peak_rss_mb", "status"):
+            self.assertIn(key, summary)
+        self.assertLess(summary["ate_rmse_m"], 0.1)
+        for name in ("trajectory_euroc.csv", "states.csv", "config_resolved.yaml", "timing.json", "run.log"):
+            self.assertGreater((a / name).stat().st_size, 0, name)
+        # Again, from the options the first run resolved.
+        again = edged("run", self.flight, "--out", b, "--config", a / "config_resolved.yaml", "--quiet")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((a / "trajectory.tum").read_bytes(), (b / "trajectory.tum").read_bytes())
+        self.assertIn("mean position error", again.stdout)
+        self.assertIn("local error", again.stdout)
+        # The file says what metrics.json says.
+        evaluated = json.loads(edged("eval", self.flight / "groundtruth.txt", a / "trajectory.tum", "--json").stdout)
+        self.assertAlmostEqual(evaluated["ate_rmse_m"], summary["ate_rmse_m"], places=9)
+        self.assertEqual([local["windows"] for local in evaluated["local_error"]],
+                         [local["windows"] for local in summary["evaluation"]["local_error"]])
+
+    def test_every_mode_runs_into_its_default_folder(self):
+        for mode in ("events", "frames"):
+            result = edged("run", self.flight, "--mode", mode, cwd=self.folder)
+            self.assertIn(result.returncode, (0, 4), result.stderr)
+            self.assertTrue((self.folder / "runs" / f"flight-{mode}" / "metrics.json").is_file())
+
+    def test_a_live_run_takes_as_long_as_the_recording_and_uses_all_of_it(self):
+        out = self.folder / "live"
+        result = edged("run", self.flight, "--out", out, "--live", "--json", "--quiet", "--set", "depth.source=fused",
+                       "live.max_age_s=3600")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        live = json.loads(result.stdout)
+        self.assertGreaterEqual(live["wall_s"], 4.9)
+        latency = live["live"]["latency_s"]
+        self.assertEqual(sorted(latency.values()), [latency[key] for key in ("p50", "p95", "p99", "max")])
+        self.assertEqual(live["live"]["shed"], {"events": 0, "frames": 0, "packets": 0})
+        self.assertGreater(live["live"]["queue_peak"]["events"], 0)
+        edged("run", self.flight, "--out", self.folder / "run", "--quiet", "--set", "depth.source=fused")
+        offline = json.loads((self.folder / "run" / "metrics.json").read_text())
+        self.assertNotIn("live", offline)
+        self.assertEqual((live["packets"], live["repairs"]), (offline["packets"], offline["repairs"]))
+        self.assert_refused(edged("run", "sim:room", "--live"), "--live", "edged simulate")
+
+    def test_the_output_frame_can_be_chosen(self):
+        out = self.folder / "body"
+        edged("run", self.flight, "--out", out, "--frame", "body", "--quiet")
+        self.assertIn("body (IMU)", (out / "trajectory.tum").read_text().splitlines()[0])
+        self.assert_refused(edged("run", self.flight, "--frame", "left", "--out", out), "left")
+
+    def test_without_a_good_pose_the_code_is_4(self):
+        flight = self.folder / "short"
+        edged("simulate", "--duration", "0.2", "--out", flight, "--quiet")
+        result = edged("run", flight, "--out", self.folder / "run", "--json", "--quiet")
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
+        self.assertIsNone(json.loads(result.stdout)["local_error_3s_m"])
+        self.assertEqual(json.loads(result.stdout)["status"], "never good")
+
+    def test_an_error_on_the_way_leaves_complete_files_of_what_came_before(self):
+        damaged, out = self.folder / "damaged", self.folder / "run"
+        shutil.copytree(self.flight, damaged)
+        with open(damaged / "events.txt", "a", encoding="ascii") as events:
+            events.write("x" * 2_000_000)
+        self.assert_refused(edged("run", damaged, "--out", out, "--quiet"), "events.txt")
+        metrics = json.loads((out / "metrics.json").read_text())
+        self.assertEqual(metrics["status"], "broken off")
+        self.assertGreater(metrics["poses"], 0)
+        self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+        self.assertIn("events.txt", (out / "run.log").read_text())
+
+    def test_enhance_draws_every_step_and_a_sheet(self):
+        result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "enhance.erosion_px=3")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = sorted(file.name.partition("_")[2] for file in self.folder.iterdir())
+        for step in ("events_without_compensation", "event_frame_motion_compensated", "gaussian_blur", "clahe",
+                     "sharpened_paper", "sharpened_unsharp", "edges_canny", "edges_laplacian", "edges_sobel",
+                     "edges_scharr", "eroded_sobel", "blend_with_scharr"):
+            self.assertIn(f"{step}.png", names)
+        self.assertNotIn("eroded_canny.png", names)
+        self.assertTrue((self.folder / "sheet.png").is_file())
+
+    def test_enhance_wants_a_time_with_events(self):
+        out = self.folder / "steps"
+        self.assert_refused(edged("enhance", self.flight, "--at", "77", "--out", out, "--quiet"), "77", "0 to 5")
+        self.assert_refused(edged("enhance", self.flight, "--at", "-1", "--out", out, "--quiet"), "-1")
+        self.assert_refused(edged("enhance", self.flight, "--at", "0", "--out", out, "--quiet"), "no events", "--at")
+        self.assertFalse(out.exists())
+
+    def test_contradicting_options_are_refused_with_the_reason(self):
+        self.assert_refused(edged("run", self.flight, "--out", self.folder / "run", "enhance.method=canny",
+                                  "enhance.erosion_px=3"), "enhance.erosion_px", "one pixel wide")
+
+    def assert_readable(self, out):
+        """What a run wrote until it ended anyhow: complete lines, times that increase. Returns the number of poses."""
+        states = (out / "states.csv").read_text()
+        self.assertTrue(states == "" or states.endswith("\n"))
+        lines = [line for line in states.splitlines() if not line.startswith("#")]
+        columns = [line.split(",") for line in lines]
+        self.assertEqual([len(row) for row in columns], [len(columns[0])] * len(columns) if columns else [])
+        stamps = [int(row[0]) for row in columns[1:]]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        poses = sum(row[1] in ("Good", "Degraded") for row in columns[1:])
+        self.assertTrue((out / "run.log").read_text().endswith("\n"))
+        for name in ("trajectory.tum", "trajectory_euroc.csv"):
+            trajectory = (out / name).read_text()
+            self.assertTrue(trajectory.endswith("\n") or trajectory == "")
+            if poses > 2:
+                evaluated = edged("eval", self.flight / "groundtruth.txt", out / name, "--json")
+                self.assertEqual(evaluated.returncode, 0, evaluated.stderr)
+                self.assertAlmostEqual(json.loads(evaluated.stdout)["pairs"], poses, delta=2)
+        for name in ("metrics.json", "timing.json"):
+            if (out / name).exists():
+                json.loads((out / name).read_text())
+        return poses
+
+    def test_killed_at_any_moment_what_was_written_is_readable(self):
+        chance = random.Random(7)
+        poses = []
+        for trial in range(8):
+            out = self.folder / f"run{trial}"
+            process = subprocess.Popen([EDGED, "run", self.flight, "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
+            lines = chance.randrange(300)  # of about 300
+            states = out / "states.csv"
+            while process.poll() is None and (not states.exists() or states.read_bytes().count(b"\n") < lines):
+                time.sleep(0.005)
+            time.sleep(chance.uniform(0.0, 0.05))
+            process.kill()
+            self.assertIn(process.wait(timeout=60), (0, -signal.SIGKILL))
+            poses.append(self.assert_readable(out))
+        self.assertGreater(max(poses), 50)
+        # The last one's folder takes the next run.
+        self.assertEqual(edged("run", self.flight, "--out", out, "--quiet").returncode, 0)
+        self.assertTrue((out / "metrics.json").is_file())
+
+    def test_ctrl_c_leaves_complete_files(self):
+        out = self.folder / "run"
+        process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
+        while not (out / "run.log").exists() and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 130)
+        self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")
+        self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
