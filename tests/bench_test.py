@@ -39,7 +39,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "figures", "flights", "mirrors", "sim_suite", "starts", "../tests/stress"):
+        for name in ("ablation", "figures", "flights", "mirrors", "reading", "sim_suite", "starts", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -174,6 +174,14 @@ class Bench(unittest.TestCase):
                                ("edged 0.1.0 (00000000)", "not in")):
             self.assertIn(words, figures.what_differs(version))
         self.assertIn("--out", bench("figures", "--quick").stderr)
+
+    def test_reading_prints_the_fastest_format_first(self):
+        found = {"context": {"num_cpus": 2}, "benchmarks": [
+            {"name": f"{what}_recording/{name}", "items_per_second": rate}
+            for what, name, rate in (("read", "csv", 23e6), ("write", "csv", 5e6), ("read", "raw", 60e6), ("write", "raw", 8e6))]}
+        with unittest.mock.patch.object(harness, "call", return_value="edged 0.1.0 (abc)\n"):
+            text = script("reading").report(types.SimpleNamespace(edged=None), found)
+        self.assertRegex(text, r"(?s)\| raw +\| 60 +\| 8 +\|\n\| csv +\| 23 +\| 5 ")
 
     def test_a_run_that_was_interrupted_is_run_again(self):
         (self.folder / "metrics.json").write_text('{"status": "interrupted"}')
