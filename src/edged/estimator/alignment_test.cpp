@@ -99,7 +99,8 @@ TEST(Align, FindsGravityVelocityAndScaleThroughNoise) {
       SCOPED_TRACE(testing::Message() << cameras << " cameras, seed " << seed);
       const TestWorldOptions options{.cameras = cameras, .bias_accel = {0, 0, 0}, .seed = seed};
       TestWorld world(options);
-      const auto alignment = align(views_of(world, 0.7 * static_cast<double>(seed)), world.rig(), world.noise(), kAccelBiasSigma);
+      const auto alignment =
+          align(views_of(world, 0.7 * static_cast<double>(seed)), world.rig(), world.noise(), kAccelBiasSigma);
       ASSERT_TRUE(alignment.has_value());
       const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
       EXPECT_LT(e.gravity_deg, 1.0);                        // worst of these 0.29
@@ -118,6 +119,56 @@ TEST(Align, TurnsAnAccelerometerBiasIntoNoMoreTiltThanItsShareOfGravity) {
   ASSERT_TRUE(alignment.has_value());
   const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
   EXPECT_LT(e.gravity_deg, 2.5);
+}
+
+TestWorldOptions with_walker(std::uint64_t seed, double begin_s) {
+  return {.bias_accel = {0, 0, 0}, .walker = 65, .walker_comes_s = begin_s, .seed = seed};
+}
+
+// Seen from the walker the room walks: least squares over all corners lie between, 1 m/s off.
+TEST(Align, FollowsTheRoomThoughMostCornersWalk) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const double begin = 0.7 * static_cast<double>(seed);
+    const TestWorldOptions options = with_walker(seed, begin);
+    TestWorld world(options);
+    const auto alignment = align(views_of(world, begin), world.rig(), world.noise(), kAccelBiasSigma);
+    ASSERT_TRUE(alignment.has_value());
+    const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
+    EXPECT_LT(e.speed, 0.15);
+    EXPECT_LT(std::abs(e.scale), 0.15);
+    const auto walks = [](FeatureId id) { return id >= TestWorld::kWalkerId; };
+    const auto walking = std::count_if(alignment->outliers.begin(), alignment->outliers.end(), walks);
+    EXPECT_LT(static_cast<std::ptrdiff_t>(alignment->outliers.size()) - walking, 10);
+  }
+}
+
+TEST(Align, CallsNothingAnOutlierInAWorldThatHoldsStill) {
+  TestWorld world({});
+  const auto alignment = align(views_of(world, 1.0), world.rig(), world.noise(), kAccelBiasSigma);
+  ASSERT_TRUE(alignment.has_value());
+  EXPECT_TRUE(alignment->outliers.empty());
+}
+
+TEST(Align, TellsAnEstimateOfTheRoomFromOneOfWhatWalksInIt) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const double begin = 0.7 * static_cast<double>(seed);
+    TestWorld world(with_walker(seed, begin));
+    const std::vector<InitFrame> frames = views_of(world, begin);
+    const double t = to_seconds(frames.back().t);
+    NavState state;
+    state.t = frames.back().t;
+    state.T_W_B = world.T_W_B(t);
+    state.v_W = world.v_W(t);
+    const auto explained = [&](const NavState& s) {
+      return align(frames, world.rig(), world.noise(), kAccelBiasSigma, &s)->explained;
+    };
+    const double of_the_room = explained(state);
+    EXPECT_GT(of_the_room, 0.6);
+    state.v_W -= Eigen::Vector3d(0.6, 0.1, 0.0);
+    EXPECT_LT(explained(state), 0.5 * of_the_room);
+  }
 }
 
 }  // namespace

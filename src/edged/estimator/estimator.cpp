@@ -15,6 +15,8 @@ constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // 
 constexpr double kDoubtGain = 0.25;           // a packet
 constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
 constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
+// A start that explains less of the views than this share of what another motion does follows something that moves by itself.
+constexpr double kContradicted = 0.65;
 constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
 constexpr double kMaxStandstillSpeed = 0.15;
@@ -59,15 +61,18 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
   const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
-  StartResult found =
-      initializer_.add(input, initialized_ ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma));
+  const std::optional<NavState> now = initialized_ ? std::optional(propagate(newest(), since_newest(input))) : std::nullopt;
+  StartResult found = initializer_.add(input, now ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma),
+                                       now ? &*now : nullptr);
+  if (found.explained < kContradicted) agreed_by_itself_ = input.t + kUncontradicted;
   result.waiting_for = std::move(found.waiting_for);
   if (!found.start) return false;
   const bool at_rest = found.start->scale_sigma == 0.0;
-  agreed_ = at_rest || (initialized_ && agrees(propagate(newest(), since_newest(input)), found.start->window.newest().nav()));
+  agreed_ = at_rest || (now && agrees(*now, found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
   scale_sigma_ = found.start->scale_sigma;
+  result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
   initialized_ = result.new_frame = true;
   if (!provisional()) window_.free_calibration(config_.calibration);
   result.provisional = provisional();

@@ -86,18 +86,19 @@ double scale_sigma(Window& window) {
   return std::sqrt(way.dot(P->topLeftCorner<3, 3>() * way)) / way.squaredNorm();
 }
 
-StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma) {
+StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
+                             const NavState* running) {
   const bool new_view = buffer_view(input);
   if (rest != nullptr && rest->still()) {
     const double gravity = rest->mean_accel_B().norm();
     if (std::abs(gravity - kGravity) > kMaxGravityError) {
       return {{}, fmt::format("an accelerometer in m/s^2: it reads {:.2f} of 9.81 at rest", gravity)};
     }
-    return {StartWindow{start_at_rest(input, *rest)}, ""};
+    return {StartWindow{start_at_rest(input, *rest)}};
   }
   if (new_view) {
-    StartResult result = start_in_motion(most_scale_sigma);
-    if (result.start) return result;
+    StartResult result = start_in_motion(most_scale_sigma, running);
+    if (result.start || running != nullptr) return result;
     motion_lacks_ = std::move(result.waiting_for);
   }
   return {{}, rest == nullptr ? motion_lacks_ : fmt::format("rest ({}) or {}", rest->reason(), motion_lacks_)};
@@ -165,23 +166,30 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   return window;
 }
 
-StartResult Initializer::start_in_motion(double most_scale_sigma) {
+StartResult Initializer::start_in_motion(double most_scale_sigma, const NavState* running) {
   if (buffer_.size() < static_cast<std::size_t>(config_.init_min_views)) {
     return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
   }
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
-  const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma);
+  const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma, running);
   if (!alignment) return {{}, "corners that last for three views"};
-  if (std::abs(alignment->gravity_error) > kMaxFreeGravityError) {
-    const double seen = kGravity * (1.0 + alignment->gravity_error);
+  StartResult result = start_from(*alignment, most_scale_sigma);
+  result.explained = alignment->explained;
+  return result;
+}
+
+StartResult Initializer::start_from(const Alignment& alignment, double most_scale_sigma) {
+  if (std::abs(alignment.gravity_error) > kMaxFreeGravityError) {
+    const double seen = kGravity * (1.0 + alignment.gravity_error);
     return {{}, fmt::format("motion that fits gravity: it says {:.2f} of 9.81 m/s^2", seen)};
   }
-  if (!(alignment->scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
-    return {{}, scale_text(alignment->scale_sigma, most_scale_sigma)};
+  if (!(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
+    return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
+  const Timestamp now = buffer_.back().t;
   next_solve_ = now + kSolveEvery;
-  Window window = aligned_window(*alignment);
+  Window window = aligned_window(alignment);
   solve_start(window);
   std::string doubt = doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma);
   if (!doubt.empty()) return {{}, std::move(doubt)};
@@ -189,7 +197,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma) {
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
   spdlog::info("started in motion at {:.3f} s: scale known to {:.1f} %, speed {:.2f} m/s", to_seconds(now),
                100.0 * sigma, window.newest().nav().v_W.norm());
-  return {StartWindow{std::move(window), sigma}, ""};
+  return {StartWindow{std::move(window), sigma, alignment.outliers}};
 }
 
 void Initializer::solve_start(Window& window) const {
@@ -252,6 +260,7 @@ Window Initializer::aligned_window(const Alignment& alignment) const {
     window.add_observations(id, buffer_[i].observations);
     if (depth_due(window)) window.states.at(id).depth = buffer_[i].depth;
   }
+  std::erase_if(window.features, [&](const auto& entry) { return alignment.outliers.contains(entry.first); });
   const auto& [first, state] = *window.states.begin();
   window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
   NavState unbiased = state.nav();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,14 @@ namespace edged {
 struct StartWindow {
   Window window;
   double scale_sigma = 0.0;  ///< of ln scale; 0 from rest, where nothing has been scaled yet
+  std::set<FeatureId> outliers = {};  ///< corners that move by themselves
 };
 
 /// What a packet brought the start.
 struct StartResult {
   std::optional<StartWindow> start;
-  std::string waiting_for;  ///< else what is missing, with numbers
+  std::string waiting_for = {};  ///< else what is missing, with numbers
+  double explained = 1.0;        ///< see Alignment
 };
 
 /// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state
@@ -38,15 +41,17 @@ class Initializer {
       : rig_(rig), noise_(noise), config_(config) {}
 
   /// Inputs in time order. rest, which knows the input already: for a start from rest; null where that is not wanted. A
-  /// start in motion must know the scale to most_scale_sigma.
-  StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma);
+  /// start in motion must know the scale to most_scale_sigma. running: the estimate at the input, where there is one already.
+  StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
+                  const NavState* running = nullptr);
 
  private:
   bool buffer_view(const EstimatorInput& input);
   bool view_due(const EstimatorInput& input) const;
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
   void make_room();
-  StartResult start_in_motion(double most_scale_sigma);
+  StartResult start_in_motion(double most_scale_sigma, const NavState* running);
+  StartResult start_from(const Alignment& alignment, double most_scale_sigma);
   Window aligned_window(const Alignment& alignment) const;
   void solve_start(Window& window) const;
   void weigh_sights(Window& window) const;

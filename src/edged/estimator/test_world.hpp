@@ -29,11 +29,15 @@ struct TestWorldOptions {
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
   double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
+  int walker = 0;                              ///< so many of the 120 corners are of a body of half a metre that passes by
+  double walker_comes_s = 0.0;                 ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
 class TestWorld {
  public:
+  static constexpr FeatureId kWalkerId = 700;  ///< the walker's corners are from here to 999
+
   explicit TestWorld(const TestWorldOptions& options) : options_(options), random_(options.seed) {
     rig_.name = "test";
     rig_.cameras.push_back({"frames", Modality::Frames, CameraModel(240, 180, 200, 200, 119.5, 89.5),
@@ -48,6 +52,7 @@ class TestWorld {
     for (int i = 0; i < 600; ++i) {
       points_W_.emplace_back(uniform(-side, side), uniform(-side, side), uniform(options_.near_m, options_.far_m));
     }
+    for (int i = 0; i < options_.walker; ++i) walker_.emplace_back(uniform(-0.8, -0.3), uniform(-0.4, 0.4), uniform(1.6, 1.8));
   }
 
   const Rig& rig() const { return rig_; }
@@ -85,11 +90,13 @@ class TestWorld {
     CameraObservations out{camera.name, {}};
     const SE3 T_B_C = camera.T_B_C * SE3(so3::exp(options_.rotation_error), Eigen::Vector3d::Zero());
     const SE3 T_C_W = (T_W_B(t + options_.time_error) * T_B_C).inverse();
-    for (std::size_t i = 0; i < points_W_.size() && out.features.size() < 120; ++i) {
-      const Eigen::Vector3d p_C = T_C_W * points_W_[i];
+    const Eigen::Vector3d walked = (t - options_.walker_comes_s) * Eigen::Vector3d(0.6, 0.1, 0.0);
+    for (std::size_t i = 0; i < walker_.size() + points_W_.size() && out.features.size() < 120; ++i) {
+      const bool walks = i < walker_.size();
+      const Eigen::Vector3d p_C = T_C_W * (walks ? walker_[i] + walked : points_W_[i - walker_.size()]);
       const auto pixel = camera.model.project(p_C);
       if (!pixel || !camera.model.contains(*pixel)) continue;
-      const FeatureId id = i + 1 + 1000 * camera_index;
+      const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + 1000 * camera_index;
       Eigen::Vector2d noise(normal(), normal());
       noise *= options_.pixel_noise;
       if (options_.pixel_walk > 0.0) noise += drifted(id, t);
@@ -160,7 +167,7 @@ class TestWorld {
     Eigen::Vector2d px = Eigen::Vector2d::Zero();
   };
 
-  std::vector<Eigen::Vector3d> points_W_;
+  std::vector<Eigen::Vector3d> points_W_, walker_;
   std::map<FeatureId, Drift> drift_;
   std::optional<ImuSample> last_imu_;
 };

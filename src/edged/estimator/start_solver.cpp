@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/start_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace edged {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::size_t kMinSights = 3;  // of a corner
+constexpr double kRayNoise = 5e-3;     // [rad]
+constexpr double kHuber = 1.5;         // [kRayNoise]
+
+/// Of a track: its point P, then the start.
+using PointAndStart = Eigen::Matrix<double, 12, 1>;
+using PointAndStartMatrix = Eigen::Matrix<double, 12, 12>;
+
+std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, const Rig& rig) {
+  std::map<FeatureId, std::vector<StartSight>> seen;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (const CameraObservations& view : frames[i].observations) {
+      const auto camera = std::find_if(rig.cameras.begin(), rig.cameras.end(),
+                                       [&](const RigCamera& c) { return c.name == view.camera; });
+      if (camera == rig.cameras.end()) continue;
+      const auto index = static_cast<std::size_t>(camera - rig.cameras.begin());
+      for (const FeatureObservation& f : view.features) seen[f.id].push_back({i, index, f.point, f.sigma});
+    }
+  }
+  std::vector<StartTrack> tracks;
+  for (auto& [id, sights] : seen) {
+    if (sights.size() >= kMinSights) tracks.push_back({id, std::move(sights)});
+  }
+  return tracks;
+}
+
+std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames, const Vector3d& bg,
+                                            const ImuNoise& noise) {
+  std::vector<RelativeMotion> motion(1);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const Preintegration imu(frames[i].imu, bg, Vector3d::Zero(), noise);
+    const RelativeMotion& m = motion.back();
+    RelativeMotion next;
+    next.t = m.t + imu.dt();
+    next.R = m.R * imu.dR(bg).toRotationMatrix();
+    next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, Vector3d::Zero());
+    next.beta = m.beta + m.R * imu.dv(bg, Vector3d::Zero());
+    next.d_alpha = m.d_alpha + m.d_beta * imu.dt() + m.R * imu.d_dp_d_ba();
+    next.d_beta = m.d_beta + m.R * imu.d_dv_d_ba();
+    motion.push_back(next);
+  }
+  return motion;
+}
+
+/// The directions in which a start is free: gravity keeps its length.
+Eigen::Matrix<double, 9, 8> free_directions(const Start& x) {
+  const Vector3d up = -x.segment<3>(3).normalized(), tangent = up.unitOrthogonal();
+  Eigen::Matrix<double, 9, 8> free = Eigen::Matrix<double, 9, 8>::Zero();
+  free.topLeftCorner<3, 3>().setIdentity();
+  free.block<3, 1>(3, 3) = tangent;
+  free.block<3, 1>(3, 4) = up.cross(tangent);
+  free.bottomRightCorner<3, 3>().setIdentity();
+  return free;
+}
+
+/// How a point's place on the unit plane changes with the point, seen from a camera of rotation R at p_C.
+Eigen::Matrix<double, 2, 3> d_seen_d_point(const Matrix3d& R_W_C, const Vector3d& p_C) {
+  Eigen::Matrix<double, 2, 3> d;
+  d << 1, 0, -p_C.x() / p_C.z(), 0, 1, -p_C.y() / p_C.z();
+  return d * R_W_C.transpose() / p_C.z();
+}
+
+}  // namespace
+
+/// Normal equations H x = b of the start.
+struct StartEquations {
+  StartMatrix H = StartMatrix::Zero();
+  Start b = Start::Zero();
+
+  /// Adds those of a track, its point eliminated.
+  void add(const PointAndStartMatrix& N, const PointAndStart& c) {
+    const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
+    H += N.bottomRightCorner<9, 9>() - N.bottomLeftCorner<9, 3>() * P_P.solve(N.topRightCorner<3, 9>());
+    b += c.tail<9>() - N.bottomLeftCorner<9, 3>() * P_P.solve(c.head<3>());
+  }
+
+  /// min x^T H x - 2 b^T x over x = (v, g), the bias zero, with |g| = kGravity: v is eliminated, g solves (D + lambda
+  /// I) g = d, the largest root of |g(lambda)| = kGravity being the global minimum. free_length: |g| at lambda = 0.
+  Start solved_with_gravity_length(double* free_length) const {
+    const Eigen::Matrix<double, 6, 6> H_6 = H.topLeftCorner<6, 6>();
+    const Eigen::Matrix<double, 6, 1> b_6 = b.head<6>();
+    const Eigen::LDLT<Matrix3d> H_vv(H_6.topLeftCorner<3, 3>());
+    const Matrix3d D =
+        H_6.bottomRightCorner<3, 3>() - H_6.bottomLeftCorner<3, 3>() * H_vv.solve(H_6.topRightCorner<3, 3>());
+    const Vector3d d = b_6.tail<3>() - H_6.bottomLeftCorner<3, 3>() * H_vv.solve(b_6.head<3>());
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(0.5 * (D + D.transpose()));
+    const Vector3d w = eigen.eigenvectors().transpose() * d;
+    const Vector3d values = eigen.eigenvalues();
+    const auto g_of = [&](double lambda) { return Vector3d(w.array() / (values.array() + lambda)); };
+    *free_length = g_of(1e-12 * values.maxCoeff()).norm();
+    double low = -values[0] + 1e-12 * values[2], high = w.norm() / kGravity + values[2];
+    for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
+      const double middle = 0.5 * (low + high);
+      (g_of(middle).norm() > kGravity ? low : high) = middle;
+    }
+    const Vector3d g = eigen.eigenvectors() * g_of(high);
+    Start x;
+    x << H_vv.solve(b_6.head<3>() - H_6.topRightCorner<3, 3>() * g), g, Vector3d::Zero();
+    return x;
+  }
+};
+
+StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Vector3d& gyro_bias,
+                         const ImuNoise& noise, double accel_bias_sigma)
+    : rig_(&rig),
+      accel_bias_sigma_(accel_bias_sigma),
+      motion_(relative_motion(frames, gyro_bias, noise)),
+      tracks_(gather_tracks(frames, rig)) {}
+
+/// Pi_j (P - p_j) = Pi_j R_j p_B_C of every view j.
+void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equations) const {
+  PointAndStartMatrix N = PointAndStartMatrix::Zero();
+  PointAndStart c = PointAndStart::Zero();
+  for (const StartSight& sight : track.sights) {
+    const RelativeMotion& m = motion_[sight.frame];
+    const SE3& T_B_C = rig_->cameras[sight.camera].T_B_C;
+    Eigen::Matrix<double, 2, 3> pi;
+    pi << 1, 0, -sight.point.x(), 0, 1, -sight.point.y();
+    pi *= T_B_C.R().transpose() * m.R.transpose();
+    Eigen::Matrix<double, 2, 12> A;
+    A << pi, -pi * m.d_position();
+    N += A.transpose() * A;
+    c += A.transpose() * (pi * (m.alpha + m.R * T_B_C.translation()));
+  }
+  equations.add(N, c);
+}
+
+/// A track's cameras in the frame of the first body.
+std::vector<View> StartSolver::views(const StartTrack& track, const Start& x) const {
+  std::vector<View> views;
+  for (const StartSight& sight : track.sights) {
+    const RelativeMotion& m = motion_[sight.frame];
+    views.push_back({SE3(m.R, m.position(x)) * rig_->cameras[sight.camera].T_B_C, sight.point});
+  }
+  return views;
+}
+
+/// One Gauss-Newton term around x, the track's point at its best place and eliminated.
+void StartSolver::add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const {
+  const std::vector<View> seen_from = views(track, x);
+  const auto point = triangulate(seen_from, kRayNoise);
+  if (!point) return;
+  PointAndStartMatrix N = PointAndStartMatrix::Zero();
+  PointAndStart c = PointAndStart::Zero();
+  for (std::size_t k = 0; k < seen_from.size(); ++k) {
+    const Vector3d p_C = seen_from[k].T_W_C.inverse() * point->p_W;
+    const Eigen::Vector2d r = (p_C.hnormalized() - seen_from[k].point) / kRayNoise;
+    const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(seen_from[k].T_W_C.R(), p_C) / kRayNoise;
+    Eigen::Matrix<double, 2, 12> J;
+    J << d_r_d_P, -d_r_d_P * motion_[track.sights[k].frame].d_position();
+    const double weight = r.norm() < kHuber ? 1.0 : kHuber / r.norm();
+    N += weight * J.transpose() * J;
+    c -= weight * J.transpose() * r;
+  }
+  equations.add(N, c);
+}
+
+std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_length) const {
+  StartEquations equations;
+  for (const std::size_t track : chosen) add_algebraic(tracks_[track], equations);
+  const Start x = equations.solved_with_gravity_length(free_length);
+  return x.allFinite() ? std::optional(x) : std::nullopt;
+}
+
+std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, int iterations) const {
+  const double bias_information = 1.0 / (accel_bias_sigma_ * accel_bias_sigma_);
+  Eigen::Matrix<double, 8, 8> H;
+  Eigen::Matrix<double, 9, 8> free;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    StartEquations equations;
+    for (const std::size_t track : chosen) add_reprojection(tracks_[track], x, equations);
+    equations.H.bottomRightCorner<3, 3>() += bias_information * Matrix3d::Identity();
+    equations.b.tail<3>() -= bias_information * x.tail<3>();
+    free = free_directions(x);
+    H = free.transpose() * equations.H * free;
+    const Eigen::Matrix<double, 8, 1> step = H.ldlt().solve(free.transpose() * equations.b);
+    if (!step.allFinite()) return std::nullopt;
+    x += free * step;
+    x.segment<3>(3) *= kGravity / x.segment<3>(3).norm();
+    if (step.norm() < 1e-4) break;
+  }
+  return RefinedStart{x, free * H.inverse() * free.transpose()};
+}
+
+Start StartSolver::start_of(const NavState& last) const {
+  const RelativeMotion& m = motion_.back();
+  const Matrix3d R_0_W = m.R * last.T_W_B.R().transpose();
+  Start x;
+  x << Vector3d::Zero(), R_0_W * Vector3d(0.0, 0.0, -kGravity), last.bias_accel;
+  x.head<3>() = R_0_W * last.v_W - m.velocity(x);
+  return x;
+}
+
+double StartSolver::misfit(std::size_t track, const Start& x) const {
+  const auto point = triangulate(views(tracks_[track], x), 0.0);
+  if (!point) return std::numeric_limits<double>::infinity();
+  return point->rms_residual / tracks_[track].sights.front().sigma;
+}
+
+double StartSolver::relative_sigma(const RefinedStart& start) const {
+  const auto way_of = [&](const RelativeMotion& m) { return m.position(start.x).norm(); };
+  const RelativeMotion& farthest = *std::max_element(
+      motion_.begin(), motion_.end(), [&](const auto& a, const auto& b) { return way_of(a) < way_of(b); });
+  const Vector3d way = farthest.position(start.x);
+  const Start d_way = farthest.d_position().transpose() * way;
+  return std::sqrt(d_way.dot(start.covariance * d_way)) / way.squaredNorm();
+}
+
+Vector3d StartSolver::direction(std::size_t track) const {
+  const std::vector<StartSight>& sights = tracks_[track].sights;
+  const StartSight& sight = sights[sights.size() / 2];
+  return motion_[sight.frame].R * (rig_->cameras[sight.camera].T_B_C.R() * sight.point.homogeneous().normalized());
+}
+
+}  // namespace edged

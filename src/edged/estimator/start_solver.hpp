@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Steps 2 and 3 of the alignment: first velocity, gravity and accelerometer bias from tracks whose rotations are known.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "edged/camera/two_view.hpp"
+#include "edged/estimator/alignment.hpp"
+
+namespace edged {
+
+struct StartEquations;
+
+/// One view of a corner.
+struct StartSight {
+  std::size_t frame, camera;
+  Eigen::Vector2d point;
+  double sigma;
+};
+
+/// A corner over the views.
+struct StartTrack {
+  FeatureId id;
+  std::vector<StartSight> sights;
+};
+
+/// What is unknown once rotations are: first velocity, gravity, both in the first body frame, and accelerometer bias.
+using Start = Eigen::Matrix<double, 9, 1>;
+using StartMatrix = Eigen::Matrix<double, 9, 9>;
+
+/// Poses relative to the first body frame: p_j = alpha_j + B_j x, x being the start.
+struct RelativeMotion {
+  double t = 0.0;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d alpha = Eigen::Vector3d::Zero(),
+                  beta = Eigen::Vector3d::Zero();  ///< position and velocity from the accelerometer
+  Eigen::Matrix3d d_alpha = Eigen::Matrix3d::Zero(),
+                  d_beta = Eigen::Matrix3d::Zero();  ///< their derivatives by its bias
+
+  Eigen::Matrix<double, 3, 9> d_position() const {
+    Eigen::Matrix<double, 3, 9> B;
+    B << t * Eigen::Matrix3d::Identity(), 0.5 * t * t * Eigen::Matrix3d::Identity(), d_alpha;
+    return B;
+  }
+  Eigen::Vector3d position(const Start& x) const { return alpha + d_position() * x; }
+  Eigen::Vector3d velocity(const Start& x) const {
+    return beta + x.head<3>() + t * x.segment<3>(3) + d_beta * x.tail<3>();
+  }
+};
+
+struct RefinedStart {
+  Start x;
+  StartMatrix covariance;
+};
+
+/// Tracks of a start-up buffer, and the starts that some of them make. Tracks are named by their place in tracks().
+class StartSolver {
+ public:
+  using Chosen = std::vector<std::size_t>;
+
+  /// accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2].
+  StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
+              const ImuNoise& noise, double accel_bias_sigma);
+
+  /// Corners seen in three views or more.
+  const std::vector<StartTrack>& tracks() const { return tracks_; }
+  /// One a frame.
+  const std::vector<RelativeMotion>& motion() const { return motion_; }
+
+  /// The linear solution, |g| imposed and the accelerometer bias zero; free_length: |g| without that. Nothing when it
+  /// is not determined.
+  std::optional<Start> linear(const Chosen& chosen, double* free_length) const;
+
+  /// Noise makes the linear solution too small, points too near: this minimises the reprojection error itself, |g|
+  /// kept, the accelerometer bias held near zero.
+  std::optional<RefinedStart> refine(const Chosen& chosen, Start x, int iterations) const;
+
+  /// The start from which the IMU leads to a state at the time of the last view.
+  Start start_of(const NavState& last) const;
+
+  /// Root mean square of a track's reprojection errors under a start, its point at its best place [sigma]; infinite
+  /// where it has none.
+  double misfit(std::size_t track, const Start& x) const;
+
+  /// Standard deviation of the longest baseline over its length.
+  double relative_sigma(const RefinedStart& start) const;
+
+  /// Direction of a track in the middle of its life, in the first body frame.
+  Eigen::Vector3d direction(std::size_t track) const;
+
+ private:
+  std::vector<View> views(const StartTrack& track, const Start& x) const;
+  void add_algebraic(const StartTrack& track, StartEquations& equations) const;
+  void add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const;
+
+  const Rig* rig_;
+  double accel_bias_sigma_;
+  std::vector<RelativeMotion> motion_;
+  std::vector<StartTrack> tracks_;
+};
+
+}  // namespace edged
