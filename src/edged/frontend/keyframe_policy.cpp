@@ -34,12 +34,6 @@ void KeyframeConfig::visit(ConfigFields& fields) {
              {.unit = "deg", .min = 0, .max = 10, .effect = "below this parallax time alone makes no keyframe"});
 }
 
-KeyframeTracks& KeyframeTracks::operator+=(const KeyframeTracks& other) {
-  at_keyframe += other.at_keyframe;
-  parallax_rad.insert(parallax_rad.end(), other.parallax_rad.begin(), other.parallax_rad.end());
-  return *this;
-}
-
 KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   if (!since.any) return KeyframeReason::First;

@@ -24,13 +24,12 @@ struct KeyframeConfig {
   void visit(ConfigFields& fields);
 };
 
-/// What became of the last keyframe's corners, in one camera or, added up, in all.
+/// What became of the last keyframe's corners in one camera.
 struct KeyframeTracks {
   int at_keyframe = 0;               ///< tracks the keyframe had
   std::vector<double> parallax_rad;  ///< of each that is still alive, with the rotation taken out
 
   int alive() const { return static_cast<int>(parallax_rad.size()); }
-  KeyframeTracks& operator+=(const KeyframeTracks& other);
 };
 
 struct SinceKeyframe {

@@ -43,13 +43,5 @@ TEST(KeyframePolicy, AsksForAKeyframeWhenNoTrackIsLeft) {
   EXPECT_EQ(keyframe_reason(since(0, 0, 0, 0.1), {}), KeyframeReason::FewTracks);
 }
 
-TEST(KeyframePolicy, AddsUpTheTracksOfTwoCameras) {
-  SinceKeyframe both = since(40, 0.1, 0, 0.2);
-  both.tracks += since(90, 3.0, 0, 0.2).tracks;
-  EXPECT_EQ(both.tracks.at_keyframe, 200);
-  EXPECT_EQ(both.tracks.alive(), 130);
-  EXPECT_EQ(keyframe_reason(both, {}), KeyframeReason::Parallax);
-}
-
 }  // namespace
 }  // namespace edged

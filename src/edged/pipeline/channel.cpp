@@ -86,4 +86,12 @@ void Channel::move(const SE3& T_new_old) {
   T_W_Bkeyframe = T_new_old * T_W_Bkeyframe;
 }
 
+const Channel* leading_channel(std::span<const Channel> channels) {
+  const Channel* leading = nullptr;
+  for (const Channel& channel : channels) {
+    if (channel.has_image() && (leading == nullptr || channel.carried() >= leading->carried())) leading = &channel;
+  }
+  return leading;
+}
+
 }  // namespace edged

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "edged/camera/rig.hpp"
 #include "edged/frontend/tracker.hpp"
@@ -55,6 +56,8 @@ class Channel {
 
   /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
   double survival() const { return survival_; }
+  /// Tracks as they count: as many as are likely to be there in the next image.
+  double carried() const { return survival_ * static_cast<double>(tracker.tracks().size()); }
   /// The sights of the present image, less sure the fewer tracks survive; none when the camera is ignored.
   CameraObservations observations() const;
 
@@ -82,5 +85,8 @@ class Channel {
   // to shift the places where they are searched instead is the same, and leaves the frame where the poses put it.
   Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();
 };
+
+/// Of the channels with an image the one that carries the most tracks, the last of equals (frames); null without any.
+const Channel* leading_channel(std::span<const Channel> channels);
 
 }  // namespace edged

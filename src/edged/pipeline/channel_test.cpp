@@ -86,5 +86,18 @@ TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
   EXPECT_EQ(channel.tracker.tracks().size(), 25U) << "live tracks stay";
 }
 
+TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
+  std::vector<Channel> channels(2, Channel(camera_, scene_.camera(), {}, {}, {}));
+  EXPECT_EQ(leading_channel(channels), nullptr);
+  for (Channel& channel : channels) show(channel, scene_.image({}), 0);
+  channels[0].mark_keyframe({}, next_id_, 40);
+  channels[1].mark_keyframe({}, next_id_, 1000);
+  EXPECT_EQ(leading_channel(channels), &channels[1]);
+  channels[1].show({}, {});
+  EXPECT_EQ(leading_channel(channels), &channels[0]) << "the other one has no image now";
+  show(channels[1], darkness(), 1);
+  EXPECT_EQ(leading_channel(channels), &channels[0]) << "the other one has lost its tracks";
+}
+
 }  // namespace
 }  // namespace edged

@@ -257,8 +257,8 @@ void Odometry::Impl::reject(Channel& channel) {
 }
 
 bool Odometry::Impl::is_keyframe(const Packet& packet) const {
-  const bool any_image = std::any_of(channels.begin(), channels.end(), [](const Channel& c) { return c.has_image(); });
-  if (!any_image) return false;
+  const Channel* leader = leading_channel(channels);
+  if (leader == nullptr) return false;
   // With both cameras at work a keyframe waits for the next frame, so that both see it.
   const bool frame_due =
       mode == Mode::Fused && !packet.frame && last_frame && packet.t - *last_frame < std::chrono::milliseconds(60);
@@ -267,12 +267,11 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   since.any = last_keyframe.has_value();
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe;
-  for (const Channel& channel : channels) {
-    if (!channel.has_image()) continue;
-    const Eigen::Matrix3d R_Ckf_C = channel.since_keyframe(T_W_B_of(channel));
-    since.tracks += channel.tracker.since_keyframe(R_Ckf_C);
-    since.rotation_rad = std::max(since.rotation_rad, so3::log(Eigen::Quaterniond(R_Ckf_C)).norm());
-  }
+  // Only the camera that carries the most: corners on event frames drift and end sooner, and would ask for keyframes that
+  // good frames do not need.
+  const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_W_B_of(*leader));
+  since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
+  since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
   return keyframe_reason(since, config.keyframes) != KeyframeReason::None;
 }
 
@@ -283,9 +282,7 @@ int Odometry::Impl::corners_wanted(const Channel& channel) const {
   const bool frames_at_work = mode == Mode::Fused && last_frame && body.now().t - *last_frame < kFramesMissing;
   if (channel.camera.modality == Modality::Frames) return config.frame_tracker.detector.max_features;
   if (!frames_at_work) return all;
-  const Channel& frames = channels.back();
-  const double carried = frames.survival() * static_cast<double>(frames.tracker.tracks().size());
-  return std::max(config.health.min_event_corners, all - static_cast<int>(carried));
+  return std::max(config.health.min_event_corners, all - static_cast<int>(channels.back().carried()));
 }
 
 void Odometry::Impl::mark_keyframe(Timestamp t) {
