@@ -12,10 +12,11 @@ namespace edged {
 namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
-constexpr double kDoubtGain = 0.25;           // a packet
+constexpr double kDoubtGain = 0.25;                                          // a packet
 constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
 constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
-// A start that explains less of the views than this share of what another motion does follows something that moves by itself.
+// A start that explains less of the views than this share of what another motion does follows something that moves by
+// itself.
 constexpr double kContradicted = 0.65;
 constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
@@ -36,8 +37,12 @@ bool agrees(const NavState& a, const NavState& b) {
 }  // namespace
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
-    : noise_(noise), config_(config), window_(rig, config.cauchy_scale, config.depth_factor),
-      standstill_(config.standstill), initializer_(rig, noise, config), depth_scale_{0.0, config.depth_factor.scale_sigma} {}
+    : noise_(noise),
+      config_(config),
+      window_(rig, config.cauchy_scale, config.depth_factor),
+      standstill_(config.standstill),
+      initializer_(rig, noise, config),
+      depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
@@ -61,7 +66,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
   const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
-  const std::optional<NavState> now = initialized_ ? std::optional(propagate(newest(), since_newest(input))) : std::nullopt;
+  const std::optional<NavState> now =
+      initialized_ ? std::optional(propagate(newest(), since_newest(input))) : std::nullopt;
   StartResult found = initializer_.add(input, now ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma),
                                        now ? &*now : nullptr);
   if (found.explained < kContradicted) agreed_by_itself_ = input.t + kUncontradicted;
@@ -93,9 +99,7 @@ Preintegration Estimator::since_newest(const EstimatorInput& input) const {
   return {input.imu, from.bias_gyro, from.bias_accel, noise_};
 }
 
-Eigen::Vector3d Estimator::gyro_bias() const {
-  return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero();
-}
+Eigen::Vector3d Estimator::gyro_bias() const { return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero(); }
 
 std::optional<Matrix15d> Estimator::covariance() {
   if (!initialized_) return std::nullopt;
@@ -132,8 +136,8 @@ void Estimator::append(const EstimatorInput& input) {
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {
     window_.states.at(id).rested = true;
-    window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, MotionBlock{},
-                                               {config_.zero_velocity_sigma, kFree, kFree}));
+    window_.soft_priors.push_back(
+        motion_prior({BlockKind::Motion, id}, MotionBlock{}, {config_.zero_velocity_sigma, kFree, kFree}));
   }
 }
 
@@ -170,7 +174,8 @@ void Estimator::adapt_noise(double imu_strain) {
     if (!spread) continue;
     const double wanted = std::max(*spread, 1e-3) * config_.noise_inflation;
     double& scale = window_.noise_scale[camera];
-    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale, config_.max_noise_scale);
+    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale,
+                       config_.max_noise_scale);
   }
 }
 
@@ -184,7 +189,8 @@ void Estimator::slide() {
     drop_oldest_keyframe(window_, config_.landmarks);
   }
   // Tracks that ended before they became landmarks.
-  std::erase_if(window_.features, [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
+  std::erase_if(window_.features,
+                [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
 }
 
 }  // namespace edged

@@ -23,9 +23,9 @@ struct EstimatorResult {
   int landmarks_seen = 0;           ///< of them, seen by the newest state
   double imu_strain = 0.0;          ///< of the window: see Window::imu_strain [sigma]
   bool standstill = false;
-  bool new_frame = false;           ///< the estimator has started (again) with this input, in a frame of its own
-  bool provisional = false;         ///< the start does not know the scale well enough yet
-  bool plausible = true;            ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
+  bool new_frame = false;    ///< the estimator has started (again) with this input, in a frame of its own
+  bool provisional = false;  ///< the start does not know the scale well enough yet
+  bool plausible = true;     ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
 
 class Estimator {
@@ -45,7 +45,8 @@ class Estimator {
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 
-  /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the start.
+  /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the
+  /// start.
   std::optional<Matrix15d> covariance();
   /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
   std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera);

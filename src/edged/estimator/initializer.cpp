@@ -126,8 +126,8 @@ bool Initializer::view_due(const EstimatorInput& input) const {
          turned_rad(pending_imu_) > config_.init_turn_deg * kDeg;
 }
 
-/// Slow motion needs time to tell the scale, fast motion close views. Of a full buffer that view goes that is closest to
-/// its neighbours for its age, so that views stand the farther apart the older they are.
+/// Slow motion needs time to tell the scale, fast motion close views. Of a full buffer that view goes that is closest
+/// to its neighbours for its age, so that views stand the farther apart the older they are.
 void Initializer::make_room() {
   const Timestamp newest = buffer_.back().t;
   if (to_seconds(newest - buffer_.front().t) > config_.init_max_span_s) {
@@ -160,8 +160,9 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   window.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
   window.soft_priors.push_back(rest_prior(pose, window.states.at(id).pose, motion, window.states.at(id).motion,
                                           standstill.mean_accel_B(), kRestAccelSigma));
-  window.soft_priors.push_back(motion_prior(
-      motion, motion_block(state), {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
+  window.soft_priors.push_back(
+      motion_prior(motion, motion_block(state),
+                   {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
   spdlog::info("started at rest at {:.3f} s", to_seconds(input.t));
   return window;
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The start of the estimator: from rest when the IMU and the cameras say rest, else by visual-inertial alignment in motion.
+// The start of the estimator: from rest when the IMU and the cameras say rest, else by visual-inertial alignment in
+// motion.
 #pragma once
 
 #include <optional>
@@ -20,7 +21,7 @@ namespace edged {
 /// A window to go on from: its newest state is that of the packet.
 struct StartWindow {
   Window window;
-  double scale_sigma = 0.0;  ///< of ln scale; 0 from rest, where nothing has been scaled yet
+  double scale_sigma = 0.0;           ///< of ln scale; 0 from rest, where nothing has been scaled yet
   std::set<FeatureId> outliers = {};  ///< corners that move by themselves
 };
 
@@ -41,7 +42,8 @@ class Initializer {
       : rig_(rig), noise_(noise), config_(config) {}
 
   /// Inputs in time order. rest, which knows the input already: for a start from rest; null where that is not wanted. A
-  /// start in motion must know the scale to most_scale_sigma. running: the estimate at the input, where there is one already.
+  /// start in motion must know the scale to most_scale_sigma. running: the estimate at the input, where there is one
+  /// already.
   StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
                   const NavState* running = nullptr);
 
@@ -60,9 +62,9 @@ class Initializer {
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
-  std::vector<InitFrame> buffer_;       ///< views
-  std::vector<ImuSample> pending_imu_;  ///< since the last view
-  Timestamp next_solve_;                ///< a refused window is not solved anew with every view
+  std::vector<InitFrame> buffer_;                   ///< views
+  std::vector<ImuSample> pending_imu_;              ///< since the last view
+  Timestamp next_solve_;                            ///< a refused window is not solved anew with every view
   std::string motion_lacks_ = "corners to follow";  ///< what kept the last view from starting in motion
 };
 

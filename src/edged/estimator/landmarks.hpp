@@ -13,13 +13,13 @@
 namespace edged {
 
 struct LandmarkConfig {
-  double min_parallax_deg = 0.6;   ///< a corner becomes a landmark once its rays differ by this
+  double min_parallax_deg = 0.6;  ///< a corner becomes a landmark once its rays differ by this
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
   double max_residual_sigma = 2.5;    ///< a sight that fits worse is taken out
   double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
   double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
-  int max_per_camera = 70;         ///< landmarks in the cost, longest seen first
+  int max_per_camera = 70;            ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
 
@@ -45,8 +45,8 @@ enum class Sights { Newest, All };
 /// by their median length, in sigmas; nothing with too few of them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights = Sights::Newest);
 
-/// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and the
-/// feature is a plain track again, when it would lie out of the depth bounds there.
+/// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and
+/// the feature is a plain track again, when it would lie out of the depth bounds there.
 bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config);
 
 }  // namespace edged

@@ -15,22 +15,22 @@
 namespace edged {
 
 struct TestWorldOptions {
-  double rest_s = 0.0;          ///< at the beginning
-  int cameras = 1;              ///< 2: one more, "events", turned and shifted against "frames"
-  double speed = 1.0;           ///< scales the amplitude of the motion; 0: rotation only
-  double turn = 1.0;            ///< scales the amplitude of the rotation
-  double tempo = 1.0;           ///< how fast the motion runs
-  double turn_only_s = 0.0;     ///< no translation before this, at full speed a second later
+  double rest_s = 0.0;               ///< at the beginning
+  int cameras = 1;                   ///< 2: one more, "events", turned and shifted against "frames"
+  double speed = 1.0;                ///< scales the amplitude of the motion; 0: rotation only
+  double turn = 1.0;                 ///< scales the amplitude of the rotation
+  double tempo = 1.0;                ///< how fast the motion runs
+  double turn_only_s = 0.0;          ///< no translation before this, at full speed a second later
   double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
-  double pixel_noise = 0.5;     ///< [px]
-  double pixel_walk = 0.0;      ///< [px/sqrt(s)] how fast tracks drift from their points
-  double imu_noise = 1.0;       ///< times the densities of ImuNoise
+  double pixel_noise = 0.5;          ///< [px]
+  double pixel_walk = 0.0;           ///< [px/sqrt(s)] how fast tracks drift from their points
+  double imu_noise = 1.0;            ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
   double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
-  int walker = 0;                              ///< so many of the 120 corners are of a body of half a metre that passes by
-  double walker_comes_s = 0.0;                 ///< when it enters the view
+  int walker = 0;               ///< so many of the 120 corners are of a body of half a metre that passes by
+  double walker_comes_s = 0.0;  ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
@@ -52,7 +52,8 @@ class TestWorld {
     for (int i = 0; i < 600; ++i) {
       points_W_.emplace_back(uniform(-side, side), uniform(-side, side), uniform(options_.near_m, options_.far_m));
     }
-    for (int i = 0; i < options_.walker; ++i) walker_.emplace_back(uniform(-0.8, -0.3), uniform(-0.4, 0.4), uniform(1.6, 1.8));
+    for (int i = 0; i < options_.walker; ++i)
+      walker_.emplace_back(uniform(-0.8, -0.3), uniform(-0.4, 0.4), uniform(1.6, 1.8));
   }
 
   const Rig& rig() const { return rig_; }
@@ -76,8 +77,8 @@ class TestWorld {
     sample.t = timestamp_from_seconds(t);
     sample.gyro_B = so3::log(before.rotation().conjugate() * after.rotation()) / (2 * h) + options_.bias_gyro +
                     noise_.gyro_noise * density * normal3();
-    sample.accel_B = T.rotation().conjugate() * (a_W - kGravity_W) + options_.bias_accel +
-                     noise_.accel_noise * density * normal3();
+    sample.accel_B =
+        T.rotation().conjugate() * (a_W - kGravity_W) + options_.bias_accel + noise_.accel_noise * density * normal3();
     return sample;
   }
 
@@ -143,7 +144,8 @@ class TestWorld {
   }
 
   Eigen::Vector3d position(double s) const {
-    return options_.speed * Eigen::Vector3d(0.8 * std::sin(0.9 * s), 0.6 * std::sin(1.4 * s + 0.3) - 0.6 * std::sin(0.3),
+    return options_.speed * Eigen::Vector3d(0.8 * std::sin(0.9 * s),
+                                            0.6 * std::sin(1.4 * s + 0.3) - 0.6 * std::sin(0.3),
                                             0.3 * std::sin(1.1 * s));
   }
 

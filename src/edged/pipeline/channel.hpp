@@ -32,10 +32,7 @@ class Channel {
   /// image_model: of the images given to it (the ideal pinhole for undistorted event frames).
   Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
           const AlignmentConfig& alignment, const HealthConfig& health)
-      : camera(rig_camera),
-        tracker(rig_camera.name, image_model, config),
-        alignment_(alignment),
-        health_(health) {}
+      : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
 
   /// The next image: corners are followed on `image` and found on `corners`. Empty: this packet brought none.
   void show(const cv::Mat& image, const cv::Mat& corners);

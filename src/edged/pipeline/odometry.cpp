@@ -95,7 +95,7 @@ struct Odometry::Impl {
   SE3 T_W_S;  ///< the estimator's own frame in the world: moved when it starts again after a loss
   StatusJudge judge;
   FeatureId next_feature = 1;
-  BodyMotion body;              ///< predicted, then optimised
+  BodyMotion body;  ///< predicted, then optimised
   DimImageStretch dim_frames;
   bool gyro_saturated = false;  ///< since the last keyframe
   bool quiet = false;           ///< the event camera sees nothing move
@@ -179,7 +179,8 @@ void Odometry::Impl::measure_depth(const Packet& packet) {
 std::span<const Event> Odometry::Impl::drawn_events(const Packet& packet) const {
   const std::span<const Event> window = packet.window();
   const CameraModel& camera = renderer->camera();
-  const auto least = static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * camera.width() * camera.height()));
+  const auto least =
+      static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * camera.width() * camera.height()));
   if (window.size() < least) return {};
   if (!estimator.initialized()) return window;
   const double travel_px_per_s = camera.mean_focal() * body.now().v_W.norm() / scene_depth;
@@ -267,8 +268,8 @@ bool Odometry::Impl::is_keyframe(const Packet& packet) const {
   since.any = last_keyframe.has_value();
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe;
-  // Only the camera that carries the most: corners on event frames drift and end sooner, and would ask for keyframes that
-  // good frames do not need.
+  // Only the camera that carries the most: corners on event frames drift and end sooner, and would ask for keyframes
+  // that good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_W_B_of(*leader));
   since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
   since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
