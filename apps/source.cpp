@@ -9,22 +9,12 @@
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/sim/dimmed_frames.hpp"
-#include "edged/sim/simulator.hpp"
 #include "interrupt.hpp"
 
 namespace edged {
 namespace {
 
 constexpr std::string_view kSimulatorPrefix = "sim:";
-
-/// "sim:room" or "sim:room:7".
-SimulatorConfig simulator_config(const std::string& recording) {
-  const std::string text = recording.substr(kSimulatorPrefix.size());
-  const std::size_t colon = text.find(':');
-  SimulatorConfig config = simulator_preset(text.substr(0, colon));
-  if (colon != std::string::npos) ConfigFields::of(config).set("seed", text.substr(colon + 1));
-  return config;
-}
 
 /// What the user chose, if anything.
 std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
@@ -60,8 +50,8 @@ RecordingOptions recording_options(const SourceOptions& options) {
 /// With the calibration that was chosen, or which the recording brings, if any.
 Recording open_whole(const SourceOptions& options) {
   std::optional<Calibration> calibration = chosen_calibration(options);
-  if (options.recording.starts_with(kSimulatorPrefix)) {
-    auto simulator = std::make_unique<Simulator>(simulator_config(options.recording));
+  if (const std::optional<SimulatorConfig> config = simulator_config(options)) {
+    auto simulator = std::make_unique<Simulator>(*config);
     if (!calibration) calibration = simulator->calibration();
     return {std::move(simulator), std::move(calibration)};
   }
@@ -72,6 +62,15 @@ Recording open_whole(const SourceOptions& options) {
 }
 
 }  // namespace
+
+std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
+  if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
+  const std::string text = options.recording.substr(kSimulatorPrefix.size());
+  const std::size_t colon = text.find(':');
+  SimulatorConfig config = simulator_preset(text.substr(0, colon));
+  if (colon != std::string::npos) ConfigFields::of(config).set("seed", text.substr(colon + 1));
+  return config;
+}
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
   command
@@ -127,7 +126,7 @@ Source open_source(const SourceOptions& options) {
         options.calib.empty() ? options.recording : options.calib.string());
   if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
   std::optional<int> seed;
-  if (options.recording.starts_with(kSimulatorPrefix)) seed = simulator_config(options.recording).seed;
+  if (const std::optional<SimulatorConfig> config = simulator_config(options)) seed = config->seed;
   return {std::move(recording.dataset), std::move(*recording.calibration), seed};
 }
 

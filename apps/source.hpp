@@ -14,6 +14,7 @@
 #include "edged/core/dataset.hpp"
 #include "edged/core/recording_piece.hpp"
 #include "edged/io/recording.hpp"
+#include "edged/sim/simulator.hpp"
 
 namespace edged {
 
@@ -33,6 +34,9 @@ struct Source {
   Calibration calibration;
   std::optional<int> seed;  ///< of the simulator
 };
+
+/// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for a preset that there is not.
+std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
 /// Adds RECORDING, --rig, --calib, --geometry, --time-unit, --topic, --from, --to and --dim-frames.
 void add_source_options(CLI::App& command, SourceOptions& options);

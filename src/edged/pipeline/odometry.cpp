@@ -80,7 +80,7 @@ struct Odometry::Impl {
   NavState in_world(const NavState& state) const;
   void update_covariance(Timestamp t);
   void restart(Timestamp t);
-  int tracks(Modality modality) const;
+  std::span<const Track> tracks(Modality modality) const;
 
   Mode mode;
   OdometryConfig config;
@@ -150,8 +150,8 @@ OdometryOutput Odometry::Impl::process(const Packet& packet) {
   update_covariance(packet.t);
   output.covariance = covariance;
   output.keyframe = keyframe;
-  output.event_tracks = tracks(Modality::Events);
-  output.frame_tracks = tracks(Modality::Frames);
+  output.event_tracks = static_cast<int>(tracks(Modality::Events).size());
+  output.frame_tracks = static_cast<int>(tracks(Modality::Frames).size());
   output.landmarks = result.landmarks;
   output.event_rate_hz = packet.event_rate_hz;
   output.scene_depth = scene_depth;
@@ -358,11 +358,11 @@ void Odometry::Impl::restart(Timestamp t) {
   estimator = Estimator(used_rig, noise, config.estimator);
 }
 
-int Odometry::Impl::tracks(Modality modality) const {
+std::span<const Track> Odometry::Impl::tracks(Modality modality) const {
   for (const Channel& channel : channels) {
-    if (channel.camera.modality == modality) return static_cast<int>(channel.tracker.tracks().size());
+    if (channel.camera.modality == modality) return channel.tracker.tracks();
   }
-  return 0;
+  return {};
 }
 
 Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
@@ -386,5 +386,6 @@ std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::strin
 }
 const StageTimings& Odometry::timings() const { return impl_->timings; }
 const cv::Mat& Odometry::event_frame() const { return impl_->event_frame; }
+std::span<const Track> Odometry::tracks(Modality modality) const { return impl_->tracks(modality); }
 
 }  // namespace edged

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "edged/camera/rig.hpp"
@@ -62,6 +63,11 @@ class Odometry {
 
   /// The motion-compensated event frame of the last packet (CV_8UC1, undistorted), empty when it had none.
   const cv::Mat& event_frame() const;
+
+  /// The corners that are alive after the last packet, by id; none for a camera that the mode does not use. Pixels are
+  /// those of the undistorted event frame (ideal_pinhole) or of the frame as given. Where the packet brought no image of
+  /// the camera they are those of its last one.
+  std::span<const Track> tracks(Modality modality) const;
 
  private:
   struct Impl;

@@ -26,6 +26,7 @@ class Renderer {
   const Rendering& render(const SE3& T_W_C, double t_s = 0.0);
 
   const Rendering& last() const { return out_; }
+  const Scene& scene() const { return scene_; }
 
   /// Fastest image motion [px/s] in the last picture, for a camera that moves with v_C [m/s] and turns with omega_C
   /// [rad/s], both in its own frame; of surfaces and of the edge of a wandering light; looked at on every fourth pixel.

@@ -80,6 +80,8 @@ class Simulator : public Dataset {
   std::size_t renderings() const { return renderings_; }
   Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
   const Rendering& last_rendering() const { return renderer_.last(); }
+  /// All there is to be seen.
+  const Scene& scene() const { return renderer_.scene(); }
 
  private:
   void advance();

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the corners that a tracker follows truly are: from the scene of a simulation, or from the true poses alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "edged/camera/rig.hpp"
+#include "edged/core/dataset.hpp"
+#include "edged/core/types.hpp"
+#include "edged/sim/simulator.hpp"
+
+namespace edged {
+
+/// A corner as it was seen in one image.
+struct Sight {
+  Timestamp t;            ///< of the packet, on the IMU clock
+  Eigen::Vector2d pixel;  ///< of the image that the tracker was given
+  Eigen::Vector2d point;  ///< the same on the unit plane
+  bool tracking;          ///< the odometry had an estimate
+};
+
+/// All sights of one corner, in time order.
+struct Trail {
+  FeatureId id = 0;
+  std::vector<Sight> sights;
+  std::optional<Eigen::Vector3d> p_W;  ///< where it truly is, in the world of the true poses
+  bool at_edge = false;                ///< near the rim of what hides something behind it: p_W may be either's
+};
+
+/// The corners of one camera. image: model of the images given to its tracker.
+struct CameraTrails {
+  RigCamera camera;
+  CameraModel image;
+  std::vector<Trail> trails;
+};
+
+class TrackTruth {
+ public:
+  virtual ~TrackTruth() = default;
+
+  /// The body at t on the IMU clock; nothing where the truth does not reach.
+  virtual std::optional<SE3> T_W_B(Timestamp t) const = 0;
+
+  /// Sets p_W, and at_edge, of the trails for which it can be known.
+  virtual void locate(CameraTrails& seen) const = 0;
+
+  std::optional<SE3> T_W_C(const RigCamera& camera, Timestamp t) const {
+    const std::optional<SE3> body = T_W_B(t);
+    return body ? std::optional(*body * camera.T_B_C) : std::nullopt;
+  }
+};
+
+/// The exact motion and scene: a corner is the scene's point that its first sight shows. Throws InputError where
+/// something in the scene moves.
+std::unique_ptr<TrackTruth> simulated_truth(const SimulatorConfig& config);
+
+/// The poses that came with a recording: a corner is where the rays of all its sights meet; sights that are few, or
+/// hardly differ in direction, tell no place.
+std::unique_ptr<TrackTruth> recorded_truth(const GroundTruth& truth, const Rig& rig);
+
+}  // namespace edged
