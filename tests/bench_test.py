@@ -6,8 +6,10 @@ their tables.
 Usage: EDGED=path/to/edged bench_test.py"""
 import importlib.machinery
 import importlib.util
+import math
 import pathlib
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -29,6 +31,7 @@ def script(name):
     """A benchmark as a module."""
     loader = importlib.machinery.SourceFileLoader(name, str(BENCH / name))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    sys.modules[name] = module  # where dataclasses look
     loader.exec_module(module)
     return module
 
@@ -39,7 +42,8 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "figures", "flights", "mirrors", "reading", "sim_suite", "starts", "../tests/stress"):
+        for name in ("ablation", "figures", "flights", "mirrors", "reading", "sim_suite", "starts", "tracks",
+                     "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -182,6 +186,39 @@ class Bench(unittest.TestCase):
         with unittest.mock.patch.object(harness, "call", return_value="edged 0.1.0 (abc)\n"):
             text = script("reading").report(types.SimpleNamespace(edged=None), found)
         self.assertRegex(text, r"(?s)\| raw +\| 60 +\| 8 +\|\n\| csv +\| 23 +\| 5 ")
+
+    def test_tracks_measures_corners_against_the_scene_of_a_simulation(self):
+        if not pathlib.Path(harness.DEFAULT_PROGRAM).with_name("edged_tracks").is_file():
+            self.skipTest("built without EDGED_BENCH")
+        result = bench("tracks", "--cache", self.folder, "--presets", "poster", "--duration", 3, "--modes", "fused")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for camera in ("events", "frames"):
+            self.assertIn(f"## poster, fused: {camera}", result.stdout)
+        sights = script("tracks").read_tracks(next(self.folder.glob("*.csv")))
+        # Errors are counted from a corner's first sight on, and a frame moves a corner by far less than a pixel.
+        steps = [abs(track[1].error - track[0].error) for track in sights["frames"]]
+        self.assertGreater(len(steps), 20)
+        self.assertLess(statistics.median(steps), 0.2)
+
+    def test_tracks_finds_a_clock_that_is_late_and_a_camera_that_is_turned(self):
+        tracks = script("tracks")
+        late_s, turn_z = 2e-3, 0.01
+
+        def sight(k, start):
+            t = 0.05 * k
+            velocity = complex(60 * math.cos(3 * t + start), 40 * math.sin(2 * t))
+            bearing, turned = (0.3 * math.sin(start), 0.2 * math.cos(start)), (0.2 * math.sin(t), 0.1 * t, 0.0)
+            lag = -late_s * velocity
+            then = tracks.rotated(turned, [0.0, 0.0, 1.0])
+            off = tracks.turn(bearing, 200.0, [turn_z * (now - was) for now, was in zip((0.0, 0.0, 1.0), then)])
+            return tracks.Sight(t, t, lag + off, 0j, velocity, bearing, 200.0, turned)
+
+        systems = [tracks.normal_equations([tracks.regressors([sight(k, start) for k in range(20)])], ["late", "turn_z"])[0]
+                   for start in range(30)]
+        found, explained = tracks.fit(systems)
+        self.assertAlmostEqual(found[0], late_s, 6)
+        self.assertAlmostEqual(found[1], turn_z, 6)
+        self.assertAlmostEqual(explained, 1.0, 6)
 
     def test_a_run_that_was_interrupted_is_run_again(self):
         (self.folder / "metrics.json").write_text('{"status": "interrupted"}')
