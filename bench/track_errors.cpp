@@ -131,6 +131,8 @@ int run(const ErrorOptions& options) {
   std::unique_ptr<TrackTruth> truth;
   Source source;
   if (auto simulated = simulator_config(options.source)) {
+    if (options.source.dim_frames || options.source.piece.from_s > 0.0)
+      throw InputError("--dim-frames, --from: not for simulations; set --sim frames.electrons_per_ms=... instead");
     if (options.source.piece.to_s) simulated->duration_s = *options.source.piece.to_s;
     ConfigFields fields = ConfigFields::of(*simulated);
     for (const std::string& assignment : options.simulator) fields.set(assignment);
