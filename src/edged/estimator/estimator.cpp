@@ -77,6 +77,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   agreed_ = at_rest || (now && agrees(*now, found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
+  window_.track_noise = config_.track_noise;
   scale_sigma_ = found.start->scale_sigma;
   result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
   initialized_ = result.new_frame = true;

@@ -29,12 +29,13 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
   fields.add("noise_inflation", noise_inflation,
              {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});
-  fields.add("min_noise_scale", min_noise_scale, {"", 0.01, 1, "least adapted noise over the configured one"});
+  fields.add("min_noise_scale", min_noise_scale, {"", 0.001, 1, "least adapted noise over the configured one"});
   fields.add("max_imu_strain", max_imu_strain,
              {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less"});
   fields.add("max_noise_scale", max_noise_scale, {"", 1, 100, "largest adapted noise over the configured one"});
   fields.add("sigma_inflation", sigma_inflation,
              {"", 0.1, 100, "reported standard deviations over those of independent corner errors"});
+  fields.group("track_noise", track_noise);
   fields.group("calibration", calibration);
   fields.group("landmarks", landmarks);
   fields.group("standstill", standstill);

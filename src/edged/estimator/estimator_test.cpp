@@ -49,7 +49,8 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     last_true = truth.translation();
     last_estimated = state.T_W_B.translation();
     const SE3 aligned = T_true_est * state.T_W_B;
-    result.max_position_error = std::max(result.max_position_error, (aligned.translation() - truth.translation()).norm());
+    result.max_position_error =
+        std::max(result.max_position_error, (aligned.translation() - truth.translation()).norm());
     result.max_tilt_error = std::max(result.max_tilt_error, (aligned.R().row(2) - truth.R().row(2)).norm());
     result.bias_gyro = state.bias_gyro;
     result.bias_accel = state.bias_accel;
@@ -118,10 +119,55 @@ TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
 
 TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   const TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0};
-  const RigCamera given = TestWorld(options).rig().cameras[0],
-                  found = run(options, 15.0, self_calibrating()).camera;
+  const RigCamera given = TestWorld(options).rig().cameras[0], found = run(options, 15.0, self_calibrating()).camera;
   EXPECT_LT(so3::log((given.T_B_C.inverse() * found.T_B_C).rotation()).norm(), 2e-3);
   EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
+}
+
+/// Of the body's velocity in its own frame, over seeds and time: mean square error over what is reported, and its root.
+struct VelocityErrors {
+  double nees = 0.0, rms = 0.0;
+};
+
+VelocityErrors velocity_errors(const TestWorldOptions& world_options, const EstimatorConfig& config) {
+  VelocityErrors sum;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    TestWorldOptions options = world_options;
+    options.seed = seed;
+    TestWorld world(options);
+    Estimator estimator(world.rig(), world.noise(), config);
+    for (int i = 1; i <= 160; ++i) {
+      const double t = 0.05 * i;
+      estimator.add(world.packet(t, 0.05, i % 3 == 0));
+      if (!estimator.initialized() || t < 3.0 || i % 10 != 0) continue;
+      const NavState state = estimator.newest();
+      const Eigen::Matrix3d R_W_B = state.T_W_B.R();
+      const Eigen::Vector3d error = R_W_B.transpose() * state.v_W - world.T_W_B(t).R().transpose() * world.v_W(t);
+      const auto P = estimator.covariance();
+      if (!P) continue;
+      // v_B = R' v_W turns with the attitude.
+      Eigen::Matrix<double, 3, 15> J = Eigen::Matrix<double, 3, 15>::Zero();
+      J.middleCols<3>(3) = skew(R_W_B.transpose() * state.v_W);
+      J.middleCols<3>(6) = R_W_B.transpose();
+      sum.nees += error.dot((J * *P * J.transpose()).ldlt().solve(error)) / 3.0;
+      sum.rms += error.squaredNorm() / 3.0;
+      ++count;
+    }
+  }
+  return {sum.nees / count, std::sqrt(sum.rms / count)};
+}
+
+TEST(Estimator, KnowsThatWhatATrackHasDriftedByStays) {
+  const TestWorldOptions drifting{.rest_s = 1.0, .pixel_noise = 0.05, .pixel_walk = 0.3};
+  EstimatorConfig config;
+  config.sigma_inflation = 1.0;
+  const VelocityErrors with = velocity_errors(drifting, config);
+  config.track_noise.correlation = 0.0;
+  const VelocityErrors without = velocity_errors(drifting, config);
+  EXPECT_LT(with.rms, 0.85 * without.rms);
+  EXPECT_GT(with.nees, 0.3);  // noise_inflation is 1.5: 0.44 where it counts for all
+  EXPECT_LT(with.nees, 1.0);
 }
 
 TEST(Estimator, GivesTheSameBitsTwice) {

@@ -213,7 +213,7 @@ void Initializer::solve_start(Window& window) const {
 /// What a sight is worth is told by how well the solved window fits it.
 void Initializer::weigh_sights(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
-    const std::optional<double> spread = median_residual(window, camera, Sights::All);
+    const std::optional<double> spread = median_residual(window, camera, Newness::Any);
     if (!spread) continue;
     const double scale =
         std::clamp(*spread * config_.noise_inflation, config_.min_noise_scale, config_.max_noise_scale);

@@ -41,12 +41,17 @@ bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig&
   return true;
 }
 
-/// Residual of one sight of a landmark in standard deviations; infinite when it is behind the camera.
-double residual_sigmas(const Window& window, const Feature& feature, StateId state) {
+/// Where a landmark is expected less where it was seen, on the unit plane; nothing when it is behind the camera.
+std::optional<Eigen::Vector2d> sight_error(const Window& window, const Feature& feature, StateId state) {
   const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * window.position(feature);
-  if (p_C.z() <= 0.0) return std::numeric_limits<double>::infinity();
-  const FeatureObservation& seen = feature.seen.at(state);
-  return (p_C.hnormalized() - seen.point).norm() / seen.sigma;
+  if (p_C.z() <= 0.0) return std::nullopt;
+  return p_C.hnormalized() - feature.seen.at(state).point;
+}
+
+/// Of one sight of a landmark, in standard deviations; infinite when it is behind the camera.
+double residual_sigmas(const Window& window, const Feature& feature, StateId state) {
+  const std::optional<Eigen::Vector2d> error = sight_error(window, feature, state);
+  return error ? error->norm() / feature.seen.at(state).sigma : std::numeric_limits<double>::infinity();
 }
 
 /// Root mean square of a landmark's residuals [sigma]; nothing when it has too few sights to be judged by.
@@ -170,16 +175,22 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   return wrong;
 }
 
-std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights) {
+std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {
   constexpr std::size_t kFewestSights = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.states.rbegin()->first;
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features) {
     if (feature.camera != camera || !feature.anchor) continue;
-    for (const auto& [state, sight] : feature.seen) {
-      if (state == *feature.anchor || (sights == Sights::Newest && state != newest)) continue;
-      residuals.push_back(residual_sigmas(window, feature, state));
+    Eigen::Vector2d before = Eigen::Vector2d::Zero();
+    for (const TrackStep& step : window.steps(feature)) {
+      if (step.before == *feature.anchor) before.setZero();
+      const std::optional<Eigen::Vector2d> error = sight_error(window, feature, step.seen);
+      if (!error) break;
+      if (newness == Newness::Any || step.seen == newest) {
+        residuals.push_back((*error - step.correlation * before).norm() / step.sigma);
+      }
+      before = *error;
     }
   }
   if (residuals.size() < kFewestSights) return std::nullopt;

@@ -39,11 +39,11 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
 /// their tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
-enum class Sights { Newest, All };
+enum class Newness { Newest, Any };
 
-/// Spread of the residuals that one camera has in the newest state, or in all: the standard deviation of one coordinate
-/// by their median length, in sigmas; nothing with too few of them.
-std::optional<double> median_residual(const Window& window, std::size_t camera, Sights sights = Sights::Newest);
+/// Spread of what one camera's sights, in the newest state or in any, are off by beyond what the sight before tells
+/// (Window::steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of them.
+std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
 /// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and
 /// the feature is a plain track again, when it would lie out of the depth bounds there.

@@ -14,7 +14,7 @@ constexpr double kRestStretch = 10.0;
 
 /// The prior (always) and every other factor with a block that leaves.
 std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
-  std::vector<Factor> factors = window.factors();
+  std::vector<Factor> factors = window.factors(Sights::OfKeyframes);
   const bool has_prior = !window.prior.empty();
   std::size_t index = 0;
   std::erase_if(factors, [&](const Factor& factor) {
@@ -47,7 +47,7 @@ bool stays_out(const Factor& factor, const Window& window, const std::map<Featur
   const auto found = inherited.find(depth.id);
   if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
   // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
-  return !window.states.at(seen_by).keyframe || (found->second && seen_by >= heir);
+  return found->second && seen_by > heir;
 }
 
 }  // namespace

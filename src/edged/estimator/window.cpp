@@ -3,6 +3,7 @@
 #include "edged/estimator/window.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numbers>
 
@@ -52,6 +53,12 @@ void CalibrationConfig::visit(ConfigFields& fields) {
              {"deg", 0, 10, "how far each camera's rotation against the IMU may be off; 0 holds it as given"});
   fields.add("time_offset_sigma_ms", time_offset_sigma_ms,
              {"ms", 0, 50, "how far each camera's time offset may be off; 0 holds it as given"});
+}
+
+void TrackNoise::visit(ConfigFields& fields) {
+  fields.add("correlation", correlation,
+             {"1", 0, 0.999, "of the errors of two sights of a track right after one another; 0: all independent"});
+  fields.add("time_s", time_s, {"s", 0.01, 1000, "after this time the correlation has fallen to 1/e of that"});
 }
 
 MotionBlock motion_block(const NavState& state) {
@@ -127,7 +134,8 @@ RigCamera Window::calibrated(std::size_t camera) const {
 }
 
 void Window::free_calibration(const CalibrationConfig& config) {
-  std::erase_if(soft_priors, [](const LinearPrior& soft) { return soft.blocks.front().kind == BlockKind::Calibration; });
+  std::erase_if(soft_priors,
+                [](const LinearPrior& soft) { return soft.blocks.front().kind == BlockKind::Calibration; });
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     soft_priors.push_back(calibration_prior({BlockKind::Calibration, camera}, calibration[camera], config));
   }
@@ -166,14 +174,14 @@ void Window::drop_orphaned_priors() {
   });
 }
 
-std::vector<Factor> Window::factors() {
+std::vector<Factor> Window::factors(Sights sights) {
   std::vector<Factor> out;
   if (!prior.empty()) out.push_back({std::make_unique<LinearPriorFactor>(prior), nullptr, prior.blocks});
   for (const LinearPrior& soft : soft_priors) {
     out.push_back({std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
   }
   add_motion_factors(out);
-  add_visual_factors(out);
+  add_visual_factors(out, sights);
   add_depth_factors(*this, out);
   return out;
 }
@@ -202,19 +210,47 @@ double Window::imu_strain() {
   return std::sqrt(sum / (15.0 * static_cast<double>(states.size() - 1)));
 }
 
-void Window::add_visual_factors(std::vector<Factor>& out) {
-  for (auto& [id, feature] : features) {
+std::vector<TrackStep> Window::steps(const Feature& feature, Sights sights) const {
+  std::vector<TrackStep> steps;
+  const auto anchor = feature.seen.find(*feature.anchor);
+  const auto follow = [&](auto first, auto last) {
+    StateId before = anchor->first;
+    for (auto sight = first; sight != last; ++sight) {
+      if (sights == Sights::OfKeyframes && !states.at(sight->first).keyframe) continue;
+      const double dt = std::abs(to_seconds(states.at(sight->first).t - states.at(before).t));
+      const double correlation = track_noise.correlation * std::exp(-dt / track_noise.time_s);
+      const double own = std::sqrt(1.0 - correlation * correlation);
+      steps.push_back({before, sight->first, correlation, sight->second.sigma * own});
+      before = sight->first;
+    }
+  };
+  follow(std::next(anchor), feature.seen.end());
+  follow(std::make_reverse_iterator(anchor), feature.seen.rend());
+  return steps;
+}
+
+void Window::add_visual_factors(std::vector<Factor>& out, Sights sights) {
+  for (const auto& [id, feature] : features) {
     if (!feature.anchor) continue;
-    const ReprojectionFactor::View anchor{feature.seen.at(*feature.anchor).point, states.at(*feature.anchor).rate()};
-    for (const auto& [state, seen] : feature.seen) {
-      if (state == *feature.anchor) continue;
-      const ReprojectionFactor::View view{seen.point, states.at(state).rate()};
-      out.push_back({std::make_unique<ReprojectionFactor>(cameras[feature.camera].T_B_C, anchor, view, seen.sigma),
-                     visual_loss_.get(),
-                     {{BlockKind::Pose, *feature.anchor},
-                      {BlockKind::Pose, state},
-                      {BlockKind::Calibration, feature.camera},
-                      {BlockKind::InverseDepth, id}}});
+    const auto view = [&](StateId state) {
+      return LandmarkView{feature.seen.at(state).point, states.at(state).rate()};
+    };
+    const auto pose = [](StateId state) { return BlockKey{BlockKind::Pose, state}; };
+    const BlockKey calib{BlockKind::Calibration, feature.camera}, depth{BlockKind::InverseDepth, id};
+    const SE3& T_B_C = cameras[feature.camera].T_B_C;
+    const StateId anchor = *feature.anchor;
+    for (const TrackStep& step : steps(feature, sights)) {
+      Factor factor{nullptr, visual_loss_.get(), {pose(anchor), pose(step.seen)}};
+      // The anchor's sight is exact by the choice of the landmark: the first step has no error to start from.
+      if (step.before == anchor || step.correlation == 0.0) {
+        factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, view(anchor), view(step.seen), step.sigma);
+      } else {
+        factor.cost = std::make_unique<TrackStepFactor>(T_B_C, view(anchor), view(step.seen), view(step.before),
+                                                        step.correlation, step.sigma);
+        factor.blocks.push_back(pose(step.before));
+      }
+      factor.blocks.insert(factor.blocks.end(), {calib, depth});
+      out.push_back(std::move(factor));
     }
   }
 }

@@ -33,6 +33,19 @@ struct CalibrationConfig {
   void visit(ConfigFields& fields);
 };
 
+/// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
+/// two sights dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov process, and
+/// on top of it what each image has of its own.
+struct TrackNoise {
+  double correlation = 0.95;
+  double time_s = 2.0;
+  void visit(ConfigFields& fields);
+};
+
+/// Which sights count. What stays of a landmark when its anchor leaves may only hang on states that will be
+/// marginalised, not dropped.
+enum class Sights { All, OfKeyframes };
+
 /// One instant of the window: a keyframe, or one of the newest states.
 struct WindowState {
   Timestamp t;
@@ -40,9 +53,9 @@ struct WindowState {
   MotionBlock motion{};
   bool keyframe = false;
   bool rested = false;  ///< the body did not move since the state before this one
-  Preintegration imu;  ///< from the state before this one; of the window's first state unused
+  Preintegration imu;   ///< from the state before this one; of the window's first state unused
   Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();  ///< the reading at t [rad/s]
-  std::optional<RegionDepth> depth;  ///< of a keyframe: what a depth source says
+  std::optional<RegionDepth> depth;                  ///< of a keyframe: what a depth source says
 
   SE3 T_W_B() const { return pose_of(pose.data()); }
   NavState nav() const;
@@ -54,11 +67,18 @@ WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Pre
 
 /// A tracked corner and, once triangulated, the landmark behind it.
 struct Feature {
-  std::size_t camera = 0;                           ///< index into Window::cameras
-  std::map<StateId, FeatureObservation> seen;       ///< in the window
-  StateId last_seen = 0;                            ///< the newest sight, even if its state has been dropped since
-  std::optional<StateId> anchor;                    ///< set when it is a landmark
-  double inverse_depth = 0.0;                       ///< [1/m] along z of the anchor camera
+  std::size_t camera = 0;                      ///< index into Window::cameras
+  std::map<StateId, FeatureObservation> seen;  ///< in the window
+  StateId last_seen = 0;                       ///< the newest sight, even if its state has been dropped since
+  std::optional<StateId> anchor;               ///< set when it is a landmark
+  double inverse_depth = 0.0;                  ///< [1/m] along z of the anchor camera
+};
+
+/// A sight of a landmark and its neighbour towards the anchor.
+struct TrackStep {
+  StateId before, seen;
+  double correlation;  ///< of the errors of the two
+  double sigma;        ///< of what the sight before does not tell, on the unit plane
 };
 
 /// One term of the cost.
@@ -74,16 +94,19 @@ class Window {
   /// held as given until free_calibration().
   Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
-  // --- contents -------------------------------------------------------------------------------------------------------
-  std::map<StateId, WindowState> states;      ///< ids grow with time
+  // --- contents
+  // -------------------------------------------------------------------------------------------------------
+  std::map<StateId, WindowState> states;  ///< ids grow with time
   std::map<FeatureId, Feature> features;
   LinearPrior prior;
   std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
   std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
   std::vector<CalibrationBlock> calibration;  ///< one a camera
   std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
+  TrackNoise track_noise{0.0, 1.0};           ///< of all cameras; independent sights until set
   DepthFactorConfig depth_config;
-  std::map<std::uint64_t, double> ln_scale;   ///< the present piece of ln s (Eq. 5), and the next while one is left behind
+  std::map<std::uint64_t, double>
+      ln_scale;  ///< the present piece of ln s (Eq. 5), and the next while one is left behind
 
   /// Index into `cameras`; the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
@@ -97,16 +120,17 @@ class Window {
 
   const WindowState& newest() const { return states.rbegin()->second; }
   SE3 T_W_C(StateId state, std::size_t camera) const;
-  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a turned
-  /// camera looks like another scale.
+  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a
+  /// turned camera looks like another scale.
   void free_calibration(const CalibrationConfig& config);
   /// The camera by what has been seen: its rotation against the body, and the time offset that is left over.
   RigCamera calibrated(std::size_t camera) const;
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
-  /// Root mean square of what the IMU's factors are off by [sigma]. Small as long as nothing pulls against the IMU, because
-  /// it is the stiffest of all: to make up motion that it has not felt takes more than any right landmark asks for.
+  /// Root mean square of what the IMU's factors are off by [sigma]. Small as long as nothing pulls against the IMU,
+  /// because it is the stiffest of all: to make up motion that it has not felt takes more than any right landmark asks
+  /// for.
   double imu_strain();
 
   /// Storage of a block, null when it is no longer in the window.
@@ -118,12 +142,16 @@ class Window {
   /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
   void drop_orphaned_priors();
 
-  /// The terms of the present window, each once, the prior first. They borrow from the window: use them before it changes.
-  std::vector<Factor> factors();
+  /// The terms of the present window, each once, the prior first. They borrow from the window: use them before it
+  /// changes.
+  std::vector<Factor> factors(Sights sights = Sights::All);
+
+  /// The sights of a landmark one after the other, from its anchor's on, then those before the anchor's, back in time.
+  std::vector<TrackStep> steps(const Feature& feature, Sights sights = Sights::All) const;
   ceres::LossFunction* depth_loss() { return depth_loss_.get(); }
 
  private:
-  void add_visual_factors(std::vector<Factor>& out);
+  void add_visual_factors(std::vector<Factor>& out, Sights sights);
   void add_motion_factors(std::vector<Factor>& out);
 
   StateId next_state_ = 0;

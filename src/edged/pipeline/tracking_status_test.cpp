@@ -45,9 +45,9 @@ TEST(StatusJudge, IsGoodAtRestWithoutAnyLandmark) {
 TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
   StatusJudge judge({});
   EstimatorResult strained = healthy();
-  strained.imu_strain = 0.47;
+  strained.imu_strain = 0.8;
   EXPECT_EQ(judge.judge(strained, true, at(0.0)), TrackingStatus::Degraded);
-  strained.imu_strain = 0.6;
+  strained.imu_strain = 1.0;
   EXPECT_EQ(judge.judge(strained, true, at(0.1)), TrackingStatus::Lost);
   EXPECT_THAT(judge.reason(), testing::HasSubstr("contradict"));
 }
@@ -55,13 +55,13 @@ TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
 TEST(StatusJudge, BearsMoreStrainAfterALossByIt) {
   StatusJudge judge({});
   EstimatorResult strained = healthy();
-  strained.imu_strain = 0.6;
+  strained.imu_strain = 1.0;
   EXPECT_EQ(judge.judge(strained, true, at(0.0)), TrackingStatus::Lost);
   judge.judge({}, false, at(1.0));
   EXPECT_EQ(judge.judge(strained, true, at(2.0)), TrackingStatus::Good);
-  strained.imu_strain = 0.7;
+  strained.imu_strain = 1.2;
   EXPECT_EQ(judge.judge(strained, true, at(2.1)), TrackingStatus::Degraded);
-  strained.imu_strain = 0.8;
+  strained.imu_strain = 1.3;
   EXPECT_EQ(judge.judge(strained, true, at(2.2)), TrackingStatus::Lost);
 }
 

@@ -98,14 +98,15 @@ TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
   start.bias_accel = imu.bias_accel();
   const NavState end = propagate(start, imu);
   const auto motion = [](const NavState& s) {
-    return std::vector<double>{s.v_W.x(),       s.v_W.y(),       s.v_W.z(),        s.bias_gyro.x(), s.bias_gyro.y(),
+    return std::vector<double>{s.v_W.x(),       s.v_W.y(),        s.v_W.z(),        s.bias_gyro.x(), s.bias_gyro.y(),
                                s.bias_gyro.z(), s.bias_accel.x(), s.bias_accel.y(), s.bias_accel.z()};
   };
   const auto block = [](const SE3& T) {
     const PoseBlock b = to_block(T);
     return std::vector<double>(b.begin(), b.end());
   };
-  const Eigen::VectorXd r = evaluate(ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end)});
+  const Eigen::VectorXd r =
+      evaluate(ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end)});
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
 }
 
@@ -120,12 +121,39 @@ TEST(ReprojectionFactor, JacobiansMatchCentralDifferences) {
   for (const double rho : {0.02, 0.5, 2.0}) {
     const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3);
     for (const auto& calibration : {std::vector<double>(4, 0.0), std::vector<double>{0.03, -0.02, 0.04, 0.012}}) {
-      check_jacobians(factor,
-                      {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
-                      {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), calibration,
-                       {rho}});
+      check_jacobians(
+          factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
+          {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), calibration, {rho}});
     }
   }
+}
+
+TEST(TrackStepFactor, JacobiansMatchCentralDifferences) {
+  const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
+  const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
+      rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
+  for (const double rho : {0.02, 0.5, 2.0}) {
+    const TrackStepFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, {{0.22, -0.08}, rate_2}, 0.9,
+                                 5e-3);
+    check_jacobians(
+        factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
+        {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
+         pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
+         pose({0.12, 0.18, -0.08}, {1.05, 0.48, 0.21}),
+         {0.03, -0.02, 0.04, 0.012},
+         {rho}});
+  }
+}
+
+TEST(TrackStepFactor, ChargesATrackForADriftOnce) {
+  const SE3 T_B_C;
+  const auto anchor = pose({0, 0, 0}, {0, 0, 0}), before = pose({0, 0, 0}, {0.1, 0, 0}),
+             seen = pose({0, 0, 0}, {0.2, 0, 0});
+  const Eigen::Vector2d drift(3e-3, -1e-3);
+  const auto view = [&](double x) { return LandmarkView{Eigen::Vector2d(0.1 - x, 0.2) + drift, {}}; };
+  const TrackStepFactor factor(T_B_C, {{0.1, 0.2}, {}}, view(0.2 * 0.5), view(0.1 * 0.5), 0.9, 1e-3);
+  const Eigen::VectorXd r = evaluate(factor, {anchor, seen, before, std::vector<double>(4, 0.0), {0.5}});
+  EXPECT_LT((r + 0.1 * drift / 1e-3).norm(), 1e-9);
 }
 
 TEST(ReprojectionFactor, IsZeroForAPointWhereItWasSeen) {
@@ -162,8 +190,7 @@ TEST(ReprojectionFactor, RefusesAPointBehindTheCamera) {
 /// Three landmarks of two cameras, anchored in the observing state and in two others.
 struct DepthScene {
   SE3 T_B_E{so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}}, T_B_F{so3::exp({-0.1, 0.05, 1.4}), {-0.04, 0.01, 0.0}};
-  std::vector<DepthLandmark> landmarks = {
-      {T_B_E, {0.2, -0.1}, 0}, {T_B_F, {-0.1, 0.15}, 1}, {T_B_E, {0.05, 0.0}, 2}};
+  std::vector<DepthLandmark> landmarks = {{T_B_E, {0.2, -0.1}, 0}, {T_B_F, {-0.1, 0.15}, 1}, {T_B_E, {0.05, 0.0}, 2}};
   Blocks blocks = {{0.3},
                    pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
                    pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
