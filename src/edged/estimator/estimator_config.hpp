@@ -14,7 +14,7 @@ struct EstimatorConfig {
   int recent_states = 3;           ///< newest states, keyframes or not
   int keyframes = 8;               ///< older keyframes
   double max_interval_s = 1.0;     ///< IMU between two keyframes
-  int iterations = 4;              ///< of the solver, a packet
+  int iterations = 2;              ///< of the solver, a packet
   double cauchy_scale = 1.0;       ///< robust loss of visual residuals
   double gyro_bias_sigma = 0.02;   ///< prior of a start in motion
   double rest_gyro_bias_sigma = 0.005;  ///< prior of a start at rest, where the bias has been measured

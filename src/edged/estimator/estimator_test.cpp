@@ -117,6 +117,21 @@ TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
   }
 }
 
+TEST(Estimator, FindsWhatScaleAndAxesOfTheGyroAreOffBy) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
+    // Symmetric: the rest is a turn of the gyro, which cannot be told from one of the camera.
+    options.gyro_error << 6e-3, 2e-3, -3e-3, 2e-3, -5e-3, 1e-3, -3e-3, 1e-3, 4e-3;
+    TestWorld world(options);
+    Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
+    for (int i = 1; i <= 300; ++i) estimator.add(world.packet(0.05 * i, 0.05, i % 4 == 0));
+    const auto& block = estimator.window().imu_intrinsics;
+    const Eigen::Matrix3d found = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(block.data());
+    const Eigen::Matrix3d off = 0.5 * (found + found.transpose()) - options.gyro_error;
+    EXPECT_LT(off.norm(), 0.5 * options.gyro_error.norm()) << off;
+  }
+}
+
 TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   const TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0};
   const RigCamera given = TestWorld(options).rig().cameras[0], found = run(options, 15.0, self_calibrating()).camera;
@@ -158,10 +173,11 @@ VelocityErrors velocity_errors(const TestWorldOptions& world_options, const Esti
   return {sum.nees / count, std::sqrt(sum.rms / count)};
 }
 
-TEST(Estimator, KnowsThatWhatATrackHasDriftedByStays) {
+TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   const TestWorldOptions drifting{.rest_s = 1.0, .pixel_noise = 0.05, .pixel_walk = 0.3};
   EstimatorConfig config;
   config.sigma_inflation = 1.0;
+  config.calibration = {.rotation_sigma_deg = 0.0, .time_offset_sigma_ms = 0.0, .imu_sigma = 0.0};
   const VelocityErrors with = velocity_errors(drifting, config);
   config.track_noise.correlation = 0.0;
   const VelocityErrors without = velocity_errors(drifting, config);

@@ -15,16 +15,17 @@
 namespace edged {
 
 struct TestWorldOptions {
-  double rest_s = 0.0;               ///< at the beginning
-  int cameras = 1;                   ///< 2: one more, "events", turned and shifted against "frames"
-  double speed = 1.0;                ///< scales the amplitude of the motion; 0: rotation only
-  double turn = 1.0;                 ///< scales the amplitude of the rotation
-  double tempo = 1.0;                ///< how fast the motion runs
-  double turn_only_s = 0.0;          ///< no translation before this, at full speed a second later
-  double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
-  double pixel_noise = 0.5;          ///< [px]
-  double pixel_walk = 0.0;           ///< [px/sqrt(s)] how fast tracks drift from their points
-  double imu_noise = 1.0;            ///< times the densities of ImuNoise
+  double rest_s = 0.0;                                   ///< at the beginning
+  int cameras = 1;                                       ///< 2: one more, "events", turned and shifted against "frames"
+  double speed = 1.0;                                    ///< scales the amplitude of the motion; 0: rotation only
+  double turn = 1.0;                                     ///< scales the amplitude of the rotation
+  double tempo = 1.0;                                    ///< how fast the motion runs
+  double turn_only_s = 0.0;                              ///< no translation before this, at full speed a second later
+  double near_m = 1.5, far_m = 4.0;                      ///< heights of the points over the origin
+  Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< of scale and axes: measured = (I + E) true + bias
+  double pixel_noise = 0.5;                              ///< [px]
+  double pixel_walk = 0.0;                               ///< [px/sqrt(s)] how fast tracks drift from their points
+  double imu_noise = 1.0;                                ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
@@ -75,8 +76,9 @@ class TestWorld {
     const double density = options_.imu_noise * std::sqrt(200.0);
     ImuSample sample;
     sample.t = timestamp_from_seconds(t);
-    sample.gyro_B = so3::log(before.rotation().conjugate() * after.rotation()) / (2 * h) + options_.bias_gyro +
-                    noise_.gyro_noise * density * normal3();
+    const Eigen::Vector3d omega_B = so3::log(before.rotation().conjugate() * after.rotation()) / (2 * h);
+    sample.gyro_B =
+        omega_B + options_.gyro_error * omega_B + options_.bias_gyro + noise_.gyro_noise * density * normal3();
     sample.accel_B =
         T.rotation().conjugate() * (a_W - kGravity_W) + options_.bias_accel + noise_.accel_noise * density * normal3();
     return sample;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <span>
 
 #include "edged/core/check.hpp"
 #include "edged/estimator/depth_terms.hpp"
@@ -15,19 +16,20 @@
 namespace edged {
 namespace {
 
+constexpr BlockKey kImuKey{BlockKind::ImuIntrinsics, 0};
+
 // What is called rest may be this far from it, whatever the time between the two states.
 constexpr double kRestSigma_m = 2e-3, kRestSigma_rad = 1e-3;
 
-/// A calibration near what was given. A part that is held gets a sigma too small to move by.
-LinearPrior calibration_prior(BlockKey camera, const CalibrationBlock& given, const CalibrationConfig& config) {
-  constexpr double kHeld = 1e-9, kDeg = std::numbers::pi / 180.0;
-  const double rotation = std::max(config.rotation_sigma_deg * kDeg, kHeld);
-  const double time = std::max(config.time_offset_sigma_ms * 1e-3, kHeld);
+/// A block near what it is now, by one sigma for each of its numbers. One that is held gets a sigma too small to move
+/// by.
+LinearPrior near_present(BlockKey key, std::span<const double> present, const Eigen::VectorXd& sigmas) {
+  constexpr double kHeld = 1e-9;
   LinearPrior prior;
-  prior.blocks = {camera};
-  prior.x0 = {{given.begin(), given.end()}};
-  prior.J = Eigen::Vector4d(1.0 / rotation, 1.0 / rotation, 1.0 / rotation, 1.0 / time).asDiagonal();
-  prior.r = Eigen::VectorXd::Zero(4);
+  prior.blocks = {key};
+  prior.x0 = {{present.begin(), present.end()}};
+  prior.J = sigmas.cwiseMax(kHeld).cwiseInverse().asDiagonal();
+  prior.r = Eigen::VectorXd::Zero(sigmas.size());
   return prior;
 }
 
@@ -53,6 +55,9 @@ void CalibrationConfig::visit(ConfigFields& fields) {
              {"deg", 0, 10, "how far each camera's rotation against the IMU may be off; 0 holds it as given"});
   fields.add("time_offset_sigma_ms", time_offset_sigma_ms,
              {"ms", 0, 50, "how far each camera's time offset may be off; 0 holds it as given"});
+  fields.add(
+      "imu_sigma", imu_sigma,
+      {"1", 0, 0.1, "how far scale and axes of gyro and accelerometer may be off, as a share; 0 holds them as given"});
 }
 
 void TrackNoise::visit(ConfigFields& fields) {
@@ -89,7 +94,7 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     calibration[camera][3] = to_seconds(cameras[camera].time_offset);
   }
-  free_calibration({0.0, 0.0});
+  free_calibration({0.0, 0.0, 0.0});
   if (!depth.enabled) return;
   ln_scale[0] = 0.0;
   soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
@@ -134,11 +139,16 @@ RigCamera Window::calibrated(std::size_t camera) const {
 }
 
 void Window::free_calibration(const CalibrationConfig& config) {
-  std::erase_if(soft_priors,
-                [](const LinearPrior& soft) { return soft.blocks.front().kind == BlockKind::Calibration; });
+  std::erase_if(soft_priors, [](const LinearPrior& soft) {
+    const BlockKind kind = soft.blocks.front().kind;
+    return kind == BlockKind::Calibration || kind == BlockKind::ImuIntrinsics;
+  });
+  const double rotation = config.rotation_sigma_deg * std::numbers::pi / 180.0;
+  const Eigen::Vector4d of_camera(rotation, rotation, rotation, config.time_offset_sigma_ms * 1e-3);
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
-    soft_priors.push_back(calibration_prior({BlockKind::Calibration, camera}, calibration[camera], config));
+    soft_priors.push_back(near_present({BlockKind::Calibration, camera}, calibration[camera], of_camera));
   }
+  soft_priors.push_back(near_present(kImuKey, imu_intrinsics, Eigen::VectorXd::Constant(18, config.imu_sigma)));
 }
 
 Eigen::Vector3d Window::position(const Feature& feature) const {
@@ -156,13 +166,14 @@ double* Window::block(BlockKey key) {
     return found == ln_scale.end() ? nullptr : &found->second;
   }
   if (key.kind == BlockKind::Calibration) return calibration.at(key.id).data();
+  if (key.kind == BlockKind::ImuIntrinsics) return imu_intrinsics.data();
   const auto found = states.find(key.id);
   if (found == states.end()) return nullptr;
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
 const double* Window::linearisation_point(BlockKey key) {
-  if (key.kind == BlockKind::Calibration) return block(key);
+  if (key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics) return block(key);
   const auto in_prior = std::find(prior.blocks.begin(), prior.blocks.end(), key);
   if (in_prior == prior.blocks.end()) return block(key);
   return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
@@ -191,7 +202,7 @@ void Window::add_motion_factors(std::vector<Factor>& out) {
   for (auto b = std::next(states.begin()); b != states.end(); ++b) {
     const BlockKey pose_a{BlockKind::Pose, std::prev(b)->first}, pose_b{BlockKind::Pose, b->first};
     const BlockKey motion_a{BlockKind::Motion, pose_a.id}, motion_b{BlockKind::Motion, pose_b.id};
-    out.push_back({std::make_unique<ImuFactor>(b->second.imu), nullptr, {pose_a, motion_a, pose_b, motion_b}});
+    out.push_back({std::make_unique<ImuFactor>(b->second.imu), nullptr, {pose_a, motion_a, pose_b, motion_b, kImuKey}});
     if (!b->second.rested) continue;
     out.push_back({std::make_unique<StandstillFactor>(kRestSigma_m, kRestSigma_rad), nullptr, {pose_a, pose_b}});
   }
@@ -202,7 +213,7 @@ double Window::imu_strain() {
   double sum = 0.0;
   for (auto a = states.begin(), b = std::next(a); b != states.end(); ++a, ++b) {
     const double* blocks[] = {a->second.pose.data(), a->second.motion.data(), b->second.pose.data(),
-                              b->second.motion.data()};
+                              b->second.motion.data(), imu_intrinsics.data()};
     Eigen::Matrix<double, 15, 1> r;
     ImuFactor(b->second.imu).Evaluate(blocks, r.data(), nullptr);
     sum += r.squaredNorm();

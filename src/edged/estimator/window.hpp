@@ -26,10 +26,11 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
-/// How far a camera's calibration may be off: it is estimated along. Zero holds that part as it is given.
+/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds that part as it is given.
 struct CalibrationConfig {
   double rotation_sigma_deg = 1.0;
   double time_offset_sigma_ms = 8.0;
+  double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
   void visit(ConfigFields& fields);
 };
 
@@ -102,6 +103,7 @@ class Window {
   std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
   std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
   std::vector<CalibrationBlock> calibration;  ///< one a camera
+  ImuIntrinsicsBlock imu_intrinsics{};
   std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
   TrackNoise track_noise{0.0, 1.0};           ///< of all cameras; independent sights until set
   DepthFactorConfig depth_config;

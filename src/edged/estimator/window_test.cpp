@@ -47,14 +47,14 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   const TestWorldOptions options{.cameras = 2};
   TestWorld world(options);
   Window window = window_at_truth(world, options);
-  EXPECT_EQ(window.factors().size(), 2U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
+  EXPECT_EQ(window.factors().size(), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
   std::size_t sights = 0;
   for (const auto& [id, feature] : window.features) {
     if (feature.anchor) sights += feature.seen.size() - 1;
   }
   EXPECT_GT(sights, 100U);
-  EXPECT_EQ(window.factors().size(), 2U + 1U + 5U + sights);
+  EXPECT_EQ(window.factors().size(), 3U + 1U + 5U + sights);
 }
 
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
@@ -105,11 +105,12 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   TestWorld world(options);
   Window window = window_at_truth(world, options);
   window.drop_orphaned_priors();
-  EXPECT_EQ(window.soft_priors.size(), 2U);  // calibration and gauge
+  EXPECT_EQ(window.soft_priors.size(), 3U);  // calibrations of camera and IMU, gauge
   window.states.erase(window.states.begin());
   window.drop_orphaned_priors();
-  ASSERT_EQ(window.soft_priors.size(), 1U);
+  ASSERT_EQ(window.soft_priors.size(), 2U);
   EXPECT_EQ(window.soft_priors.front().blocks.front().kind, BlockKind::Calibration);
+  EXPECT_EQ(window.soft_priors.back().blocks.front().kind, BlockKind::ImuIntrinsics);
 }
 
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {

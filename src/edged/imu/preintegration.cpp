@@ -113,6 +113,8 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   dv_ += dv_step;
   dR_ = dR_next;
   dt_ += dt;
+  sum_gyro_ += 0.5 * dt * (a.gyro_B + b.gyro_B);
+  sum_accel_ += 0.5 * dt * (a.accel_B + b.accel_B);
 
   StepJacobians step;
   step.dt = dt;

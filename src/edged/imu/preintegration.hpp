@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,10 @@ class Preintegration {
   const Eigen::Vector3d& bias_gyro() const { return bias_gyro_; }
   const Eigen::Vector3d& bias_accel() const { return bias_accel_; }
 
+  /// Mean readings over the interval, less the biases that it was integrated with.
+  Eigen::Vector3d mean_gyro() const { return sum_gyro_ / std::max(dt_, 1e-9) - bias_gyro_; }
+  Eigen::Vector3d mean_accel() const { return sum_accel_ / std::max(dt_, 1e-9) - bias_accel_; }
+
   /// The deltas corrected to first order for other biases.
   Eigen::Quaterniond dR(const Eigen::Vector3d& bias_gyro) const;
   Eigen::Vector3d dv(const Eigen::Vector3d& bias_gyro, const Eigen::Vector3d& bias_accel) const;
@@ -72,6 +77,7 @@ class Preintegration {
   ImuNoise noise_;
   Eigen::Vector3d bias_gyro_ = Eigen::Vector3d::Zero(), bias_accel_ = Eigen::Vector3d::Zero();
   double dt_ = 0.0;
+  Eigen::Vector3d sum_gyro_ = Eigen::Vector3d::Zero(), sum_accel_ = Eigen::Vector3d::Zero();  // times the time
   Eigen::Quaterniond dR_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d dv_ = Eigen::Vector3d::Zero(), dp_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d d_dR_d_bg_ = Eigen::Matrix3d::Zero(), d_dv_d_bg_ = Eigen::Matrix3d::Zero(),

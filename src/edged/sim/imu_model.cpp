@@ -43,6 +43,8 @@ void ImuModelConfig::visit(ConfigFields& fields) {
   fields.add("accel_walk", accel_walk, {"m/s^3/sqrt(Hz)", 0, 10, "random walk of the accelerometer's bias"});
   fields.add("gyro_bias", gyro_bias, {"rad/s", 0, 10, "length of the gyroscope's bias at the start"});
   fields.add("accel_bias", accel_bias, {"m/s^2", 0, 100, "length of the accelerometer's bias at the start"});
+  fields.add("scale_error", scale_error, {"1", 0, 0.2, "spread of the scales of gyroscope and accelerometer about 1"});
+  fields.add("cross_axis_mrad", cross_axis_mrad, {"mrad", 0, 200, "spread of what each axis feels of the others"});
   fields.add("gyro_range", gyro_range, {"rad/s", 0.1, 1000, "the gyroscope reads no more than this"});
   fields.add("accel_range", accel_range, {"m/s^2", 10, 10000, "the accelerometer reads no more than this"});
   fields.add("vibration_hz", vibration_hz, {"Hz", 1, 5000, "speed of the motors"});
@@ -69,14 +71,22 @@ ImuModel::ImuModel(const ImuModelConfig& config, std::uint64_t seed)
     : config_(config), random_(seed, 5), vibration_(seed, 8), hums_(make_hums(config)) {
   bias_gyro_ = config.gyro_bias * random_.normal3().normalized();
   bias_accel_ = config.accel_bias * random_.normal3().normalized();
+  Random axes(seed, 10);
+  for (Eigen::Matrix3d* of_sensor : {&gyro_axes_, &accel_axes_}) {
+    for (int i = 0; i < 9; ++i) {
+      const bool own = i % 4 == 0;
+      (*of_sensor)(i / 3, i % 3) =
+          (own ? 1.0 : 0.0) + (own ? config.scale_error : 1e-3 * config.cross_axis_mrad) * axes.normal();
+    }
+  }
 }
 
 ImuSample ImuModel::measure(Timestamp t, const Kinematics& truth) {
   const double root_rate = std::sqrt(config_.rate_hz);
   ImuSample sample;
   sample.t = t;
-  sample.gyro_B = truth.omega_B + bias_gyro_ + config_.gyro_noise * root_rate * random_.normal3();
-  sample.accel_B = truth.T_W_B.rotation().conjugate() * (truth.a_W - kGravity_W) + bias_accel_ +
+  sample.gyro_B = gyro_axes_ * truth.omega_B + bias_gyro_ + config_.gyro_noise * root_rate * random_.normal3();
+  sample.accel_B = accel_axes_ * (truth.T_W_B.rotation().conjugate() * (truth.a_W - kGravity_W)) + bias_accel_ +
                    config_.accel_noise * root_rate * random_.normal3();
   shake(sample);
   const auto limit = [](const Eigen::Vector3d& v, double range) { return v.cwiseMax(-range).cwiseMin(range).eval(); };

@@ -24,8 +24,11 @@ struct ImuModelConfig {
   double accel_walk = 1e-4;     ///< [m/s^3/sqrt(Hz)]
   double gyro_bias = 0.012;     ///< length of each constant bias, its direction is random [rad/s]
   double accel_bias = 0.1;      ///< [m/s^2]
-  double gyro_range = 34.9;     ///< readings end here [rad/s]
-  double accel_range = 156.9;   ///< [m/s^2]
+  /// Errors of scale and of the axes' directions, standard deviation of each, of either sensor.
+  double scale_error = 0.0;
+  double cross_axis_mrad = 0.0;
+  double gyro_range = 34.9;    ///< readings end here [rad/s]
+  double accel_range = 156.9;  ///< [m/s^2]
   /// What motors shake into the sensor while they run: a narrow band at their speed and half as much at twice of it,
   /// too small a motion to be seen by a camera, and a broad band.
   double vibration_hz = 130.0;
@@ -73,6 +76,7 @@ class ImuModel {
   Random random_, vibration_;
   std::array<Hum, 12> hums_;  // gyroscope, accelerometer; one and twice the frequency
   Eigen::Vector3d bias_gyro_, bias_accel_;
+  Eigen::Matrix3d gyro_axes_, accel_axes_;  // what is measured of a true vector
 };
 
 }  // namespace edged

@@ -12,6 +12,17 @@
 namespace edged {
 namespace {
 
+/// Length of the mean acceleration [m/s^2].
+double mean_accel(const SimulatorConfig& config) {
+  Simulator simulator(config);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  while (const auto measurement = simulator.next()) {
+    if (const auto* sample = std::get_if<ImuSample>(&*measurement)) sum += sample->accel_B, ++count;
+  }
+  return (sum / count).norm();
+}
+
 TEST(Simulator, GivesTheSameBitsForTheSameSeedOnly) {
   SimulatorConfig config = small("room", 1.2);
   const Recorded first = record(config), second = record(config);
@@ -49,6 +60,18 @@ TEST(Simulator, HandsOutEverySensorInOneOrderOfTime) {
     EXPECT_EQ(frames, 24U);
     EXPECT_EQ(samples, 1001U);
   }
+}
+
+TEST(Simulator, TurnsAndStretchesTheAxesOfTheImuAsMuchAsItIsTold) {
+  SimulatorConfig config = small("room", 1.2);
+  config.motion.rest_s = 1.2;
+  const double exact = mean_accel(config);
+  config.imu.scale_error = 0.05;
+  const double stretched = mean_accel(config);
+  config.imu.cross_axis_mrad = 50.0;
+  EXPECT_GT(std::abs(stretched - exact), 1e-3);
+  EXPECT_LT(std::abs(stretched - exact), 3.0 * 0.05 * 9.81);
+  EXPECT_NE(mean_accel(config), stretched);
 }
 
 TEST(Simulator, BlursFramesInMotionButNotAtRest) {

@@ -23,16 +23,19 @@ using MotionBlock = std::array<double, 9>;
 /// t_imu = t_given + time.
 using CalibrationBlock = std::array<double, 4>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, Calibration };
+/// What scale and axes of the IMU are off by: E_g row by row, then E_a. measured = (I + E) true + bias.
+using ImuIntrinsicsBlock = std::array<double, 18>;
+
+enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, Calibration, ImuIntrinsics };
 
 /// Of the anchor depth: nearer than this counts as behind the camera.
 inline constexpr double kMinDepthShare = 1e-3;
 
-/// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5), or a
-/// camera's calibration.
+/// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5), a
+/// camera's calibration, or the IMU's.
 struct BlockKey {
   BlockKind kind;
-  std::uint64_t id;  ///< state number, FeatureId, number of the piece of ln s, or index of the camera
+  std::uint64_t id;  ///< state number, FeatureId, number of the piece of ln s, index of the camera, or 0
   auto operator<=>(const BlockKey&) const = default;
 };
 
@@ -44,6 +47,8 @@ constexpr int block_size(BlockKind kind) {
       return 9;
     case BlockKind::Calibration:
       return 4;
+    case BlockKind::ImuIntrinsics:
+      return 18;
     default:
       return 1;
   }

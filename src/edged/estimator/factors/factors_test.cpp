@@ -82,11 +82,15 @@ Preintegration some_motion() {
 TEST(ImuFactor, JacobiansMatchCentralDifferences) {
   const Preintegration imu = some_motion();
   const ImuFactor factor(imu);
-  check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion, BlockKind::Pose, BlockKind::Motion},
+  const std::vector<double> intrinsics = {3e-3, -2e-3, 1e-3,  2e-3, -4e-3, 1e-3,  0.5e-3, -1e-3, 2e-3,
+                                          1e-3, 2e-3,  -3e-3, 1e-3, 5e-3,  -2e-3, 1e-3,   2e-3,  -1e-3};
+  check_jacobians(factor,
+                  {BlockKind::Pose, BlockKind::Motion, BlockKind::Pose, BlockKind::Motion, BlockKind::ImuIntrinsics},
                   {pose({0.3, -0.8, 0.2}, {1, 2, 3}),
                    {0.4, -0.3, 0.2, 0.02, -0.01, 0.025, 0.12, 0.02, -0.05},
                    pose({0.45, -0.85, 0.25}, {1.1, 1.9, 3.05}),
-                   {0.5, -0.2, 0.3, 0.021, -0.012, 0.026, 0.13, 0.03, -0.06}});
+                   {0.5, -0.2, 0.3, 0.021, -0.012, 0.026, 0.13, 0.03, -0.06},
+                   intrinsics});
 }
 
 TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
@@ -105,8 +109,8 @@ TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
     const PoseBlock b = to_block(T);
     return std::vector<double>(b.begin(), b.end());
   };
-  const Eigen::VectorXd r =
-      evaluate(ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end)});
+  const Eigen::VectorXd r = evaluate(
+      ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end), std::vector<double>(18, 0.0)});
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
 }
 

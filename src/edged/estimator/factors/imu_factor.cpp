@@ -14,6 +14,9 @@ using Eigen::Vector3d;
 using PoseJacobian = Eigen::Matrix<double, 15, 7, Eigen::RowMajor>;
 using MotionJacobian = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
 
+using BiasJacobian = Eigen::Matrix<double, 15, 3>;
+using RowMajor3 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
 // Rows of the residual.
 constexpr int kPhi = 0, kV = 3, kP = 6, kBg = 9, kBa = 12;
 // Columns of a pose tangent and of a motion block.
@@ -42,17 +45,19 @@ ImuFactor::ImuFactor(const Preintegration& imu) : imu_(imu) {
 bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   const SE3 T_0 = pose_of(blocks[0]), T_1 = pose_of(blocks[2]);
   const Motion m_0(blocks[1]), m_1(blocks[3]);
+  const Vector3d bg = m_0.bg + RowMajor3(blocks[4]) * imu_.mean_gyro(),
+                 ba = m_0.ba + RowMajor3(blocks[4] + 9) * imu_.mean_accel();
   const double dt = imu_.dt();
   const Matrix3d R_0_inv = T_0.R().transpose();
-  const Vector3d dR_error = so3::log(imu_.dR(m_0.bg).conjugate() * (T_0.rotation().conjugate() * T_1.rotation()));
+  const Vector3d dR_error = so3::log(imu_.dR(bg).conjugate() * (T_0.rotation().conjugate() * T_1.rotation()));
   const Vector3d v_change_B0 = R_0_inv * (m_1.v - m_0.v - kGravity_W * dt);
   const Vector3d p_change_B0 =
       R_0_inv * (T_1.translation() - T_0.translation() - m_0.v * dt - 0.5 * kGravity_W * dt * dt);
 
   Eigen::Map<Eigen::Matrix<double, 15, 1>> r(residuals);
   r.segment<3>(kPhi) = dR_error;
-  r.segment<3>(kV) = v_change_B0 - imu_.dv(m_0.bg, m_0.ba);
-  r.segment<3>(kP) = p_change_B0 - imu_.dp(m_0.bg, m_0.ba);
+  r.segment<3>(kV) = v_change_B0 - imu_.dv(bg, ba);
+  r.segment<3>(kP) = p_change_B0 - imu_.dp(bg, ba);
   r.segment<3>(kBg) = m_1.bg - m_0.bg;
   r.segment<3>(kBa) = m_1.ba - m_0.ba;
   r = sqrt_information_ * r;
@@ -67,17 +72,20 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     J.block<3, 3>(kP, kPosePos) = -R_0_inv;
     Eigen::Map<PoseJacobian>(jacobians[0]).noalias() = sqrt_information_ * J;
   }
+  const Vector3d correction = imu_.d_dR_d_bg() * (bg - imu_.bias_gyro());
+  BiasJacobian by_bg = BiasJacobian::Zero(), by_ba = BiasJacobian::Zero();
+  by_bg.middleRows<3>(kPhi) =
+      -J_r_inv * so3::exp(-dR_error).toRotationMatrix() * so3::right_jacobian(correction) * imu_.d_dR_d_bg();
+  by_bg.middleRows<3>(kV) = -imu_.d_dv_d_bg();
+  by_bg.middleRows<3>(kP) = -imu_.d_dp_d_bg();
+  by_ba.middleRows<3>(kV) = -imu_.d_dv_d_ba();
+  by_ba.middleRows<3>(kP) = -imu_.d_dp_d_ba();
   if (jacobians[1] != nullptr) {
     MotionJacobian J = MotionJacobian::Zero();
-    const Vector3d correction = imu_.d_dR_d_bg() * (m_0.bg - imu_.bias_gyro());
-    J.block<3, 3>(kPhi, kMotionBg) = -J_r_inv * so3::exp(-dR_error).toRotationMatrix() *
-                                     so3::right_jacobian(correction) * imu_.d_dR_d_bg();
     J.block<3, 3>(kV, kMotionV) = -R_0_inv;
-    J.block<3, 3>(kV, kMotionBg) = -imu_.d_dv_d_bg();
-    J.block<3, 3>(kV, kMotionBa) = -imu_.d_dv_d_ba();
     J.block<3, 3>(kP, kMotionV) = -R_0_inv * dt;
-    J.block<3, 3>(kP, kMotionBg) = -imu_.d_dp_d_bg();
-    J.block<3, 3>(kP, kMotionBa) = -imu_.d_dp_d_ba();
+    J.middleCols<3>(kMotionBg) = by_bg;
+    J.middleCols<3>(kMotionBa) = by_ba;
     J.block<3, 3>(kBg, kMotionBg) = -Matrix3d::Identity();
     J.block<3, 3>(kBa, kMotionBa) = -Matrix3d::Identity();
     Eigen::Map<MotionJacobian>(jacobians[1]).noalias() = sqrt_information_ * J;
@@ -94,6 +102,15 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     J.block<3, 3>(kBg, kMotionBg) = Matrix3d::Identity();
     J.block<3, 3>(kBa, kMotionBa) = Matrix3d::Identity();
     Eigen::Map<MotionJacobian>(jacobians[3]).noalias() = sqrt_information_ * J;
+  }
+  if (jacobians[4] != nullptr) {
+    using IntrinsicsJacobian = Eigen::Matrix<double, 15, 18, Eigen::RowMajor>;
+    IntrinsicsJacobian J;
+    for (int row = 0; row < 3; ++row) {
+      J.middleCols<3>(3 * row) = by_bg.col(row) * imu_.mean_gyro().transpose();
+      J.middleCols<3>(9 + 3 * row) = by_ba.col(row) * imu_.mean_accel().transpose();
+    }
+    Eigen::Map<IntrinsicsJacobian>(jacobians[4]).noalias() = sqrt_information_ * J;
   }
   return true;
 }
