@@ -28,7 +28,7 @@ void EstimatorConfig::visit(ConfigFields& fields) {
              {"", 0.01, 1, "knowing it only to this, a start is used, Degraded, and refined"});
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
   fields.add("noise_inflation", noise_inflation,
-             {"", 0.5, 20, "assumed noise over the spread of the residuals, because errors last from image to image"});
+             {"", 0.5, 20, "assumed noise over the spread of what each sight adds to the one before"});
   fields.add("min_noise_scale", min_noise_scale, {"", 0.001, 1, "least adapted noise over the configured one"});
   fields.add("max_imu_strain", max_imu_strain,
              {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less"});

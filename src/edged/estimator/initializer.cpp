@@ -25,8 +25,11 @@ constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: calm is n
 constexpr double kMaxFreeGravityError = 0.3;  // of a start in motion, when gravity's length is left free
 constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
 constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's sights: more is a wrong start
-constexpr double kMaxTiltSigma_deg = 2.0;     // the accelerometer bias by itself makes it 0.9
-constexpr double kMaxBiasSigmas = 4.0;        // of the accelerometer bias
+// The start-up window takes the errors of a track for independent: their noise over the spread of the residuals, and
+// the least of it over the configured one.
+constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
+constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias by itself makes it 0.9
+constexpr double kMaxBiasSigmas = 4.0;     // of the accelerometer bias
 constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
 constexpr double kAlignmentSlack = 1.5;  // the solved window may know the scale better than the alignment
 
@@ -215,8 +218,7 @@ void Initializer::weigh_sights(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Newness::Any);
     if (!spread) continue;
-    const double scale =
-        std::clamp(*spread * config_.noise_inflation, config_.min_noise_scale, config_.max_noise_scale);
+    const double scale = std::clamp(*spread * kStartNoiseInflation, kLeastStartNoise, config_.max_noise_scale);
     window.noise_scale[camera] = scale;
     for (auto& [id, feature] : window.features) {
       if (feature.camera != camera) continue;
