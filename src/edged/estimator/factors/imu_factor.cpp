@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using PoseJacobian = Eigen::Matrix<double, 15, 7, Eigen::RowMajor>;
 using MotionJacobian = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
 
-using BiasJacobian = Eigen::Matrix<double, 15, 3>;
+using IntrinsicsJacobian = Eigen::Matrix<double, 15, 18, Eigen::RowMajor>;
 using RowMajor3 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
 // Rows of the residual.
@@ -25,6 +25,32 @@ constexpr int kPosePos = 0, kPosePhi = 3, kMotionV = 0, kMotionBg = 3, kMotionBa
 struct Motion {
   explicit Motion(const double* b) : v(b), bg(b + 3), ba(b + 6) {}
   Eigen::Map<const Vector3d> v, bg, ba;
+};
+
+/// Derivatives of the residual, before it is whitened, with respect to the biases over the interval.
+struct BiasDerivatives {
+  BiasDerivatives(const Preintegration& imu, const Vector3d& bias_gyro, const Matrix3d& J_r_inv,
+                  const Vector3d& dR_error) {
+    const Vector3d correction = imu.d_dR_d_bg() * (bias_gyro - imu.bias_gyro());
+    gyro.middleRows<3>(kPhi) =
+        -J_r_inv * so3::exp(-dR_error).toRotationMatrix() * so3::right_jacobian(correction) * imu.d_dR_d_bg();
+    gyro.middleRows<3>(kV) = -imu.d_dv_d_bg();
+    gyro.middleRows<3>(kP) = -imu.d_dp_d_bg();
+    accel.middleRows<3>(kV) = -imu.d_dv_d_ba();
+    accel.middleRows<3>(kP) = -imu.d_dp_d_ba();
+  }
+
+  /// Row i of E times the mean reading is what bias i gains.
+  IntrinsicsJacobian by_intrinsics(const Preintegration& imu) const {
+    IntrinsicsJacobian J;
+    for (int row = 0; row < 3; ++row) {
+      J.middleCols<3>(3 * row) = gyro.col(row) * imu.mean_gyro().transpose();
+      J.middleCols<3>(9 + 3 * row) = accel.col(row) * imu.mean_accel().transpose();
+    }
+    return J;
+  }
+
+  Eigen::Matrix<double, 15, 3> gyro = Eigen::Matrix<double, 15, 3>::Zero(), accel = gyro;
 };
 
 }  // namespace
@@ -72,20 +98,13 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     J.block<3, 3>(kP, kPosePos) = -R_0_inv;
     Eigen::Map<PoseJacobian>(jacobians[0]).noalias() = sqrt_information_ * J;
   }
-  const Vector3d correction = imu_.d_dR_d_bg() * (bg - imu_.bias_gyro());
-  BiasJacobian by_bg = BiasJacobian::Zero(), by_ba = BiasJacobian::Zero();
-  by_bg.middleRows<3>(kPhi) =
-      -J_r_inv * so3::exp(-dR_error).toRotationMatrix() * so3::right_jacobian(correction) * imu_.d_dR_d_bg();
-  by_bg.middleRows<3>(kV) = -imu_.d_dv_d_bg();
-  by_bg.middleRows<3>(kP) = -imu_.d_dp_d_bg();
-  by_ba.middleRows<3>(kV) = -imu_.d_dv_d_ba();
-  by_ba.middleRows<3>(kP) = -imu_.d_dp_d_ba();
+  const BiasDerivatives by_bias(imu_, bg, J_r_inv, dR_error);
   if (jacobians[1] != nullptr) {
     MotionJacobian J = MotionJacobian::Zero();
     J.block<3, 3>(kV, kMotionV) = -R_0_inv;
     J.block<3, 3>(kP, kMotionV) = -R_0_inv * dt;
-    J.middleCols<3>(kMotionBg) = by_bg;
-    J.middleCols<3>(kMotionBa) = by_ba;
+    J.middleCols<3>(kMotionBg) = by_bias.gyro;
+    J.middleCols<3>(kMotionBa) = by_bias.accel;
     J.block<3, 3>(kBg, kMotionBg) = -Matrix3d::Identity();
     J.block<3, 3>(kBa, kMotionBa) = -Matrix3d::Identity();
     Eigen::Map<MotionJacobian>(jacobians[1]).noalias() = sqrt_information_ * J;
@@ -104,13 +123,7 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     Eigen::Map<MotionJacobian>(jacobians[3]).noalias() = sqrt_information_ * J;
   }
   if (jacobians[4] != nullptr) {
-    using IntrinsicsJacobian = Eigen::Matrix<double, 15, 18, Eigen::RowMajor>;
-    IntrinsicsJacobian J;
-    for (int row = 0; row < 3; ++row) {
-      J.middleCols<3>(3 * row) = by_bg.col(row) * imu_.mean_gyro().transpose();
-      J.middleCols<3>(9 + 3 * row) = by_ba.col(row) * imu_.mean_accel().transpose();
-    }
-    Eigen::Map<IntrinsicsJacobian>(jacobians[4]).noalias() = sqrt_information_ * J;
+    Eigen::Map<IntrinsicsJacobian>(jacobians[4]).noalias() = sqrt_information_ * by_bias.by_intrinsics(imu_);
   }
   return true;
 }
