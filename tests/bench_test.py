@@ -110,6 +110,33 @@ class Bench(unittest.TestCase):
         self.assertAlmostEqual(mirrors.over_its_parts(by_mode, harness.LOCAL), 0.5)
         self.assertIsNone(mirrors.over_its_parts({**by_mode, "fused": [short]}, harness.LOCAL))
 
+    def test_sweep_says_how_far_chance_may_have_made_a_ratio(self):
+        sweep = script("sweep")
+        mean, low, high = sweep.interval([0.5, 0.5, 0.5])
+        for value in (mean, low, high):
+            self.assertAlmostEqual(value, 0.5)
+        mean, low, high = sweep.interval([0.5, 1.0, 2.0])
+        self.assertAlmostEqual(mean, 1.0)
+        self.assertTrue(0.5 <= low < 0.8 and 1.25 < high <= 2.0, (low, high))
+        self.assertEqual(sweep.ratio_cell([(1.0, 2.0)]), "-")
+
+    def test_sweep_leaves_failures_out_of_ratios_and_holds_fused_against_the_better_part(self):
+        sweep = script("sweep")
+        good = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good",
+                "coverage": 0.9, "ate_rmse_m": 0.01, harness.LOCAL: 0.004}
+        results = {(variant, mode, name): {**good, harness.LOCAL: local}
+                   for variant, mode, name, local in (("yardstick", "fused", "a", 0.004), ("x", "fused", "a", 0.002),
+                                                      ("x", "frames", "a", 0.002), ("x", "events", "a", 0.009),
+                                                      ("x", "fused", "b", 0.003), ("x", "frames", "b", 0.002),
+                                                      ("yardstick", "fused", "b", 0.004))}
+        results["x", "frames", "c"] = {**good, "status": "lost"}
+        keys = [[(variant, "fused", name) for name in "ab"] for variant in ("x", "yardstick")]
+        self.assertEqual(sweep.pairs_of(results, *keys, harness.LOCAL), [[0.002, 0.004], [0.003, 0.004]])
+        results["x", "fused", "b"]["status"] = "lost"
+        self.assertEqual(sweep.pairs_of(results, *keys, harness.LOCAL), [[0.002, 0.004]])
+        results["x", "fused", "b"]["status"] = "good"
+        self.assertEqual(sweep.fused_row(results, "x", "abc")[2:], ["1.50 (b)", "1 of 2"])
+
     def test_ablation_holds_a_variant_against_the_defaults_by_the_local_error_too(self):
         ablation = script("ablation")
         usual = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good",
