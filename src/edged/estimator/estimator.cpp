@@ -77,14 +77,19 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   agreed_ = at_rest || (now && agrees(*now, found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
-  window_.track_noise = config_.track_noise;
   scale_sigma_ = found.start->scale_sigma;
   result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
   initialized_ = result.new_frame = true;
-  if (!provisional()) window_.free_calibration(config_.calibration);
+  if (!provisional()) leave_start();
   result.provisional = provisional();
   slide();
   return true;
+}
+
+/// The start holds calibrations, and takes the errors of a track for independent, as its thresholds do.
+void Estimator::leave_start() {
+  window_.free_calibration(config_.calibration);
+  window_.track_noise = config_.track_noise;
 }
 
 /// What a provisional start has seen since may have told it the scale.
@@ -92,7 +97,7 @@ void Estimator::settle_scale(const EstimatorInput& input) {
   if (!provisional() || !input.keyframe) return;
   scale_sigma_ = std::min(scale_sigma_, config_.sigma_inflation * scale_sigma(window_));
   agreed_ = agreed_ || input.t >= agreed_by_itself_;
-  if (!provisional()) window_.free_calibration(config_.calibration);
+  if (!provisional()) leave_start();
 }
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {

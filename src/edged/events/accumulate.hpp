@@ -22,7 +22,7 @@ struct EventFrameConfig {
   double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
   EventDepth depth = EventDepth::Landmarks;
   DepthGridSettings depth_grid;  ///< with EventDepth::Landmarks
-  double blur_sigma_px = 0.0;    ///< Gaussian on the sum, before the scaling; 0: none
+  double blur_sigma_px = 0.8;    ///< Gaussian on the sum, before the scaling; 0: none
 
   void visit(ConfigFields& fields);
 };

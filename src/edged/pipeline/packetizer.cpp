@@ -31,21 +31,14 @@ std::size_t count_of(double per_pixel, const CameraModel& camera) {
   return static_cast<std::size_t>(std::max(1.0, std::round(per_pixel * camera.width() * camera.height())));
 }
 
-/// Edges, and with them the events of a motion by one pixel, grow with the width of a sensor, not with its area.
-double drawn_share(const CameraModel& camera) {
-  constexpr double kUsualWidth = 240.0;
-  return std::min(1.0, kUsualWidth / camera.width());
-}
-
 }  // namespace
 
 void PacketizerConfig::visit(ConfigFields& fields) {
   fields.add("events_per_pixel", events_per_pixel,
              {"1/px", 0.001, 100, "new events per pixel that cut a packet; fewer give more packets per second"});
-  fields.add("window_per_pixel", window_per_pixel,
-             {"1/px", 0.001, 100,
-              "events per pixel that are drawn into one event frame, reaching back past the last cut, of a sensor "
-              "240 px wide; of a wider one so much less"});
+  fields.add(
+      "window_per_pixel", window_per_pixel,
+      {"1/px", 0.001, 100, "events per pixel that are drawn into one event frame, reaching back past the last cut"});
   fields.add("max_age_s", max_age_s, {"s", 0.001, 10, "events older than this are not drawn, however few there are"});
   fields.add("max_interval_s", max_interval_s,
              {"s", 0.001, 1, "longest time between two packets with events (the heartbeat at standstill)"});
@@ -65,7 +58,7 @@ Packetizer::Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config
     event_camera_ = camera.name;
     event_offset_ = camera.time_offset;
     cut_events_ = count_of(config_.events_per_pixel, camera.model);
-    window_events_ = count_of(config_.window_per_pixel * drawn_share(camera.model), camera.model);
+    window_events_ = count_of(config_.window_per_pixel, camera.model);
   }
   if (mode_ != Mode::Events) {
     const RigCamera& camera = require_camera(rig, Modality::Frames);

@@ -28,8 +28,7 @@ struct Packet {
   std::vector<ImuSample> imu;     ///< from the previous packet's t (or the first sample) to t, both ends interpolated
   double event_rate_hz = 0.0;     ///< new events over the time since the previous cut, at least 1 ms
 
-  /// The events of the event frame: the newest window_per_pixel * pixels (fewer on a wide sensor), none older than
-  /// max_age_s.
+  /// The events of the event frame: the newest window_per_pixel * pixels, none older than max_age_s.
   std::span<const Event> window() const { return std::span<const Event>(events).last(window_events); }
 };
 
@@ -38,7 +37,7 @@ enum class Mode { Events, Frames, Fused };
 /// When a packet is cut (architecture, section 4).
 struct PacketizerConfig {
   double events_per_pixel = 0.35;      ///< a packet is cut after this many new events per pixel
-  double window_per_pixel = 0.7;       ///< events a packet carries back in time, per pixel of a sensor 240 px wide
+  double window_per_pixel = 0.35;      ///< events a packet carries back in time, per pixel
   double max_age_s = 0.25;             ///< but none older than this: at standstill the old ones are noise
   double max_interval_s = 0.04;        ///< a cut at the latest after this time (the heartbeat at standstill)
   double min_interval_s = 0.015;       ///< and never sooner than this after the last, but for a frame

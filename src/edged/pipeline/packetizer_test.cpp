@@ -106,10 +106,7 @@ TEST(Packetizer, CutsAfterTheLongestTimeWhenEventsAreFew) {
 }
 
 TEST(Packetizer, KeepsTheShortestTimeWhenEventsAreMany) {
-  PacketizerConfig config;
-  config.window_per_pixel = config.events_per_pixel;
-  const Result result =
-      run(Stream().imu(-10, 200, 1).events(0, 150, 0.1), Mode::Events, make_rig(), config);  // 35 events in 3.5 ms
+  const Result result = run(Stream().imu(-10, 200, 1).events(0, 150, 0.1), Mode::Events);  // 35 events in 3.5 ms
   ASSERT_GE(result.packets.size(), 9U);
   for (std::size_t i = 1; i + 1 < result.packets.size(); ++i) {
     EXPECT_EQ(result.packets[i].t - result.packets[i - 1].t, duration_from_seconds(0.015));
@@ -144,16 +141,6 @@ TEST(Packetizer, OverlapsTheWindowOfThePacketBefore) {
     EXPECT_EQ(result.packets[i].new_events, 35U);
     EXPECT_LE(result.packets[i].events.front().t, result.packets[i - 1].t);
   }
-}
-
-TEST(Packetizer, DrawsFewerEventsPerPixelOnAWideSensor) {
-  PacketizerConfig config;
-  config.window_per_pixel = 0.1;
-  Rig wide = make_rig();
-  wide.cameras[0].model = CameraModel(480, 1, 10, 10, 5, 5);
-  const Result result = run(Stream().imu(-10, 400, 1).events(0, 350, 0.5), Mode::Events, wide, config);
-  ASSERT_GE(result.packets.size(), 8U);
-  EXPECT_EQ(result.packets[7].window_events, 24U);  // of 480 pixels, half of a tenth
 }
 
 TEST(Packetizer, CutsAtEveryFrameWithTheEventsUpToItsStamp) {
