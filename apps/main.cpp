@@ -1,25 +1,20 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The one binary: picks the sub-command, and turns exceptions into one line and an exit code.
+// The one binary: its sub-commands.
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <functional>
-#include <opencv2/core/utility.hpp>
 
 #include "calib_command.hpp"
 #include "config_command.hpp"
 #include "convert_command.hpp"
 #include "depth_command.hpp"
 #include "doctor_command.hpp"
-#include "edged/core/check.hpp"
 #include "enhance_command.hpp"
 #include "eval_command.hpp"
-#include "exit_code.hpp"
 #include "info_command.hpp"
-#include "log.hpp"
+#include "program.hpp"
 #include "run_command.hpp"
 #include "simulate_command.hpp"
 #include "version.hpp"
@@ -38,8 +33,9 @@ constexpr const char* kFooter =
     "  130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
     "`edged COMMAND --help` tells more.";
 
-/// Reads the command line and runs what it asks for.
-int run_program(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   using namespace edged;
   CLI::App app{"Edged USLAM: visual-inertial odometry from events, frames and an IMU", "edged"};
   app.require_subcommand(1);
@@ -56,26 +52,5 @@ int run_program(int argc, char** argv) {
   add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kExitOk : kExitUsage;
-  }
-  return chosen();
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  try {
-    cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
-    edged::start_logging();
-    return run_program(argc, argv);
-  } catch (const edged::InputError& e) {
-    std::fprintf(stderr, "edged: %s\n", e.what());
-    return edged::kExitInput;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "edged: a bug, please report it with this line: %s\n", e.what());
-    return edged::kExitBug;
-  }
+  return run_program(app, argc, argv, [&] { return chosen(); });
 }

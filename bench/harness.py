@@ -93,6 +93,19 @@ def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(
     return folder
 
 
+def all_simulated(edged, cache, flights, jobs):
+    """The folders of (preset, seed, duration), in their order, `jobs` made at a time."""
+    progress = Progress(len(flights))
+
+    def simulate(flight):
+        progress.step(flight, f"{flight[0]} {flight[1]} simulated")
+        folder = simulated(edged, cache, *flight)
+        progress.step(flight, "", done=1)
+        return folder
+
+    return in_parallel(simulate, flights, jobs, progress)
+
+
 def unpacked_mirrors(data, cache):
     """Folders of the mirrors that come as archives, unpacked in the cache."""
     folders = []

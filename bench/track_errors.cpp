@@ -8,14 +8,13 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
-#include <opencv2/core/utility.hpp>
 
 #include "config_source.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "exit_code.hpp"
-#include "log.hpp"
+#include "program.hpp"
 #include "run_mode.hpp"
 #include "source.hpp"
 #include "track_truth.hpp"
@@ -156,7 +155,11 @@ int run(const ErrorOptions& options) {
   return kExitOk;
 }
 
-int run_program(int argc, char** argv) {
+}  // namespace
+}  // namespace edged
+
+int main(int argc, char** argv) {
+  using namespace edged;
   CLI::App app{"How far the tracker's corners are from their true places: one line a sight", "edged_tracks"};
   ErrorOptions options;
   add_source_options(app, options.source);
@@ -166,27 +169,5 @@ int run_program(int argc, char** argv) {
   app.add_option("--mode", options.mode, "Sensors beside the IMU; auto: all there are")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}));
   app.add_option("--out", options.out, "Table to write (csv)")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kExitOk : kExitUsage;
-  }
-  return run(options);
-}
-
-}  // namespace
-}  // namespace edged
-
-int main(int argc, char** argv) {
-  try {
-    cv::setNumThreads(1);  // as the program itself
-    edged::start_logging();
-    return edged::run_program(argc, argv);
-  } catch (const edged::InputError& e) {
-    std::fprintf(stderr, "edged_tracks: %s\n", e.what());
-    return edged::kExitInput;
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "edged_tracks: a bug, please report it with this line: %s\n", e.what());
-    return edged::kExitBug;
-  }
+  return run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -18,6 +18,8 @@ namespace {
 
 constexpr BlockKey kImuKey{BlockKind::ImuIntrinsics, 0};
 
+bool is_calibration(BlockKey key) { return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics; }
+
 // What is called rest may be this far from it, whatever the time between the two states.
 constexpr double kRestSigma_m = 2e-3, kRestSigma_rad = 1e-3;
 
@@ -139,10 +141,7 @@ RigCamera Window::calibrated(std::size_t camera) const {
 }
 
 void Window::free_calibration(const CalibrationConfig& config) {
-  std::erase_if(soft_priors, [](const LinearPrior& soft) {
-    const BlockKind kind = soft.blocks.front().kind;
-    return kind == BlockKind::Calibration || kind == BlockKind::ImuIntrinsics;
-  });
+  std::erase_if(soft_priors, [](const LinearPrior& soft) { return is_calibration(soft.blocks.front()); });
   const double rotation = config.rotation_sigma_deg * std::numbers::pi / 180.0;
   const Eigen::Vector4d of_camera(rotation, rotation, rotation, config.time_offset_sigma_ms * 1e-3);
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
@@ -173,7 +172,7 @@ double* Window::block(BlockKey key) {
 }
 
 const double* Window::linearisation_point(BlockKey key) {
-  if (key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics) return block(key);
+  if (is_calibration(key)) return block(key);
   const auto in_prior = std::find(prior.blocks.begin(), prior.blocks.end(), key);
   if (in_prior == prior.blocks.end()) return block(key);
   return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
@@ -250,13 +249,14 @@ void Window::add_visual_factors(std::vector<Factor>& out, Sights sights) {
     const BlockKey calib{BlockKind::Calibration, feature.camera}, depth{BlockKind::InverseDepth, id};
     const SE3& T_B_C = cameras[feature.camera].T_B_C;
     const StateId anchor = *feature.anchor;
+    const LandmarkView from = view(anchor);
     for (const TrackStep& step : steps(feature, sights)) {
       Factor factor{nullptr, visual_loss_.get(), {pose(anchor), pose(step.seen)}};
       // The anchor's sight is exact by the choice of the landmark: the first step has no error to start from.
       if (step.before == anchor || step.correlation == 0.0) {
-        factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, view(anchor), view(step.seen), step.sigma);
+        factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, from, view(step.seen), step.sigma);
       } else {
-        factor.cost = std::make_unique<TrackStepFactor>(T_B_C, view(anchor), view(step.seen), view(step.before),
+        factor.cost = std::make_unique<TrackStepFactor>(T_B_C, from, view(step.seen), view(step.before),
                                                         step.correlation, step.sigma);
         factor.blocks.push_back(pose(step.before));
       }

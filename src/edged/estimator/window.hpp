@@ -26,7 +26,8 @@ namespace edged {
 
 using StateId = std::uint64_t;
 
-/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds that part as it is given.
+/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds
+/// that part as it is given.
 struct CalibrationConfig {
   double rotation_sigma_deg = 1.0;
   double time_offset_sigma_ms = 8.0;
@@ -95,8 +96,6 @@ class Window {
   /// held as given until free_calibration().
   Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
-  // --- contents
-  // -------------------------------------------------------------------------------------------------------
   std::map<StateId, WindowState> states;  ///< ids grow with time
   std::map<FeatureId, Feature> features;
   LinearPrior prior;
@@ -104,11 +103,11 @@ class Window {
   std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
   std::vector<CalibrationBlock> calibration;  ///< one a camera
   ImuIntrinsicsBlock imu_intrinsics{};
-  std::vector<double> noise_scale;            ///< one a camera: multiplies the sigma of its sights as they come in
-  TrackNoise track_noise{0.0, 1.0};           ///< of all cameras; independent sights until set
+  std::vector<double> noise_scale;   ///< one a camera: multiplies the sigma of its sights as they come in
+  TrackNoise track_noise{0.0, 1.0};  ///< of all cameras; independent sights until set
   DepthFactorConfig depth_config;
-  std::map<std::uint64_t, double>
-      ln_scale;  ///< the present piece of ln s (Eq. 5), and the next while one is left behind
+  /// The present piece of ln s (Eq. 5), and the next while one is left behind.
+  std::map<std::uint64_t, double> ln_scale;
 
   /// Index into `cameras`; the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
