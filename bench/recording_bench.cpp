@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whole recordings on disk: events per second read and written on one core, by format, with frames and IMU samples where
-// the format holds them.
+// Whole recordings on disk: events per second read and written on one core, by format, with frames and IMU samples
+// where the format holds them.
 #include <benchmark/benchmark.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>

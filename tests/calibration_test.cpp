@@ -51,7 +51,8 @@ TEST_P(WrongCalibration, OfRotationAndTimeIsFound) {
     const RigCamera& reachable = found.modality == Modality::Events ? of_right.rig.camera(found.name) : right;
     const double turned_deg = so3::log((right.T_B_C.inverse() * found.T_B_C).rotation()).norm() / kDeg;
     const double off_ms = 1e3 * to_seconds(found.time_offset - reachable.time_offset);
-    std::cout << "  " << found.name << ": " << turned_deg << " deg and " << off_ms << " ms are left; from the right one "
+    std::cout << "  " << found.name << ": " << turned_deg << " deg and " << off_ms
+              << " ms are left; from the right one "
               << 1e3 * to_seconds(of_right.rig.camera(found.name).time_offset - right.time_offset) << " ms\n";
     EXPECT_LT(turned_deg, 0.2);
     EXPECT_LT(std::abs(off_ms), 0.5);

@@ -23,8 +23,8 @@ namespace edged {
 namespace {
 
 /// A short flight there and back again for as long as wanted. Played backwards it is a flight too: events change their
-/// sign and angular rates theirs, accelerations stay. The flight must be at rest at both ends, or the turns would be knocks
-/// that no accelerometer has felt, and its IMU without bias, which would not change.
+/// sign and angular rates theirs, accelerations stay. The flight must be at rest at both ends, or the turns would be
+/// knocks that no accelerometer has felt, and its IMU without bias, which would not change.
 class ToAndFro : public Dataset {
  public:
   ToAndFro(std::span<const Measurement> flight, double duration_s)
@@ -40,7 +40,9 @@ class ToAndFro : public Dataset {
     const bool back = leg_ % 2 == 1;
     Measurement m = flight_[back ? flight_.size() - 1 - next_ : next_];
     ++next_;
-    const auto moved = [&](Timestamp t) { return back ? begin_ + (leg_ + 1) * length_ - (t - begin_) : t + leg_ * length_; };
+    const auto moved = [&](Timestamp t) {
+      return back ? begin_ + (leg_ + 1) * length_ - (t - begin_) : t + leg_ * length_;
+    };
     if (auto* batch = std::get_if<EventBatch>(&m)) {
       for (Event& event : batch->events) event.t = moved(event.t), event.positive ^= back;
       if (back) std::reverse(batch->events.begin(), batch->events.end());
@@ -147,8 +149,8 @@ TEST(EventStorm, OfTwentyMillionASecondIsSurvivedLiveWithinTheBoundsOfTheQueue) 
       if (++packets % 10 == 0) most_mb = std::max(most_mb, resident_mb());
     }
   }
-  std::printf("%zu packets, %zu of %zu events, %zu of %zu frames, %.0f MB more, latency 99 %% %.3f s\n", packets, events,
-              storm.events(), frames, storm.frames(), most_mb - before_mb, source.latency().quantile_s(0.99));
+  std::printf("%zu packets, %zu of %zu events, %zu of %zu frames, %.0f MB more, latency 99 %% %.3f s\n", packets,
+              events, storm.events(), frames, storm.frames(), most_mb - before_mb, source.latency().quantile_s(0.99));
   EXPECT_EQ(events + source.shed().events, storm.events());
   EXPECT_EQ(frames + source.shed().frames, storm.frames());
   EXPECT_EQ(imu, storm.imu_samples());

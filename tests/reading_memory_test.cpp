@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWantedBytes = 1e9;   // on disk
+constexpr double kWantedBytes = 1e9;  // on disk
 constexpr int kLongest_ms = 100'000;  // a hundred million events, 1.6 GB in memory: where packing leaves less on disk
 constexpr double kMostMegabytes = 100.0;  // what readers hold: a second of the recording at most, chunks, buffers
 
@@ -46,8 +46,8 @@ class GigabyteRecordings : public ::testing::TestWithParam<WritableFormat> {
     return most - before;
   }
 
-  fs::path path_ = fs::temp_directory_path() / ("edged_gigabyte_" + std::to_string(getpid()) +
-                                                std::string(GetParam().extension));
+  fs::path path_ =
+      fs::temp_directory_path() / ("edged_gigabyte_" + std::to_string(getpid()) + std::string(GetParam().extension));
   std::size_t events_ = 0;
 };
 

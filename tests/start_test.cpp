@@ -40,8 +40,8 @@ TEST_P(StartInMotion, IsRightWhenItIsGood) {
     EXPECT_EQ(run.statistics.times_lost(), 0U);
     const FlightScore result = score(flight, run);
     std::cout << how.name << " " << to_string(mode) << ": good after " << *run.statistics.first_good_s()
-              << " s, scale of the start " << result.evaluation.start_scale << ", "
-              << describe(result, run.statistics) << '\n';
+              << " s, scale of the start " << result.evaluation.start_scale << ", " << describe(result, run.statistics)
+              << '\n';
     EXPECT_LT(*run.statistics.first_good_s(), how.duration_s - 1.0);
     EXPECT_NEAR(result.evaluation.start_scale, 1.0, 0.2);
     EXPECT_LT(result.evaluation.ate_m.rmse, 0.1);

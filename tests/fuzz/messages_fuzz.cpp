@@ -26,7 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   if (size == 0) return 0;
   try {
-    kReaders[data[0] / 2 % kReaders.size()](WireReader(data[0] % 2 == 0 ? Wire::Ros1 : Wire::Cdr, {data + 1, size - 1}));
+    kReaders[data[0] / 2 % kReaders.size()](
+        WireReader(data[0] % 2 == 0 ? Wire::Ros1 : Wire::Cdr, {data + 1, size - 1}));
   } catch (const Damage&) {
     return 0;
   }

@@ -33,9 +33,9 @@ class CheckError : public std::logic_error {
 }  // namespace edged
 
 /// EDGED_CHECK(n > 0, "n is {}", n) throws CheckError when the condition does not hold, in every build type.
-#define EDGED_CHECK(condition, ...)                                                           \
-  do {                                                                                        \
-    if (!(condition)) {                                                                       \
-      ::edged::fail_check(#condition, __FILE__, __LINE__, ::fmt::format("" __VA_ARGS__));     \
-    }                                                                                         \
+#define EDGED_CHECK(condition, ...)                                                       \
+  do {                                                                                    \
+    if (!(condition)) {                                                                   \
+      ::edged::fail_check(#condition, __FILE__, __LINE__, ::fmt::format("" __VA_ARGS__)); \
+    }                                                                                     \
   } while (false)

@@ -15,8 +15,9 @@ namespace edged {
 
 /// The true motion, where the recording has it.
 struct GroundTruth {
-  Trajectory trajectory;      ///< T_W_X, in time order
-  std::string frame = "body"; ///< X: "body" or the name of the camera whose pose it is; stamps are on that sensor's clock
+  Trajectory trajectory;  ///< T_W_X, in time order
+  /// X: "body" or the name of the camera whose pose it is; stamps are on that sensor's clock.
+  std::string frame = "body";
 };
 
 /// One of the streams that lie in a recording, read or not.
@@ -29,21 +30,21 @@ struct StreamInfo {
 
 /// What is known of a recording before it is read through.
 struct DatasetInfo {
-  std::string name;                       ///< folder name or simulator preset
-  std::string format;                     ///< "ecd", "euroc", "simulator", ...
-  std::string pose_frame = "body";        ///< frame whose pose the format's users expect: "body" or a camera name
-  std::optional<Timestamp> begin;         ///< first stamp of any sensor, if known cheaply
-  std::optional<Timestamp> end;           ///< last stamp, if known cheaply (for the progress line)
+  std::string name;                 ///< folder name or simulator preset
+  std::string format;               ///< "ecd", "euroc", "simulator", ...
+  std::string pose_frame = "body";  ///< frame whose pose the format's users expect: "body" or a camera name
+  std::optional<Timestamp> begin;   ///< first stamp of any sensor, if known cheaply
+  std::optional<Timestamp> end;     ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
-  std::vector<StreamInfo> streams;        ///< of formats that name them
-  cv::Size event_sensor;                  ///< size of the event camera [px]; empty where it is not known
-  std::string event_camera = "events";    ///< what its batches of events call their camera
-  std::string frame_camera = "frames";    ///< and its frames
+  std::vector<StreamInfo> streams;      ///< of formats that name them
+  cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known
+  std::string event_camera = "events";  ///< what its batches of events call their camera
+  std::string frame_camera = "frames";  ///< and its frames
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
-/// ties broken IMU, events, frame. Streams: holds a bounded part of the recording in memory at any time; where that does
-/// not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
+/// ties broken IMU, events, frame. Streams: holds a bounded part of the recording in memory at any time; where that
+/// does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
 class Dataset {
  public:
   virtual ~Dataset() = default;

@@ -16,8 +16,8 @@ Eigen::Matrix3d left_jacobian_coupling(const Eigen::Vector3d& rho, const Eigen::
   const double theta = std::sqrt(theta2);
   const Eigen::Matrix3d P = skew(rho);
   const Eigen::Matrix3d F = skew(phi);
-  double a = 1.0 / 6.0 - theta2 / 120.0;   // (theta - sin) / theta^3
-  double b = 1.0 / 24.0 - theta2 / 720.0;  // -(1 - theta^2/2 - cos) / theta^4
+  double a = 1.0 / 6.0 - theta2 / 120.0;     // (theta - sin) / theta^3
+  double b = 1.0 / 24.0 - theta2 / 720.0;    // -(1 - theta^2/2 - cos) / theta^4
   double c = 1.0 / 120.0 - theta2 / 2520.0;  // half of b minus three times the next series term
   if (theta > 1e-2) {
     const double s = std::sin(theta), co = std::cos(theta);

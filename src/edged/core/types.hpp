@@ -38,10 +38,10 @@ struct Frame {
 
 /// One inertial measurement in the body frame B.
 struct ImuSample {
-  Timestamp t;                                         ///< IMU clock
+  Timestamp t;                                        ///< IMU clock
   Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();   ///< angular velocity [rad/s]
   Eigen::Vector3d accel_B = Eigen::Vector3d::Zero();  ///< specific force [m/s^2], about +9.81 upwards at rest
-  bool made_up = false;                                ///< interpolated where the recording has a gap
+  bool made_up = false;                               ///< interpolated where the recording has a gap
 };
 
 using Measurement = std::variant<EventBatch, Frame, ImuSample>;
@@ -69,7 +69,7 @@ using FeatureId = std::uint64_t;
 struct FeatureObservation {
   FeatureId id = 0;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< undistorted, on the unit plane z = 1 of its camera
-  double sigma = 0.0;                               ///< standard deviation of each coordinate of point (px / focal length)
+  double sigma = 0.0;  ///< standard deviation of each coordinate of point (px / focal length)
 };
 
 /// What one camera of the rig saw at one instant.

@@ -18,8 +18,8 @@ namespace edged {
 enum class RegionValue { Median, Mean };
 
 struct NetworkDepthConfig {
-  std::string model = "small";         ///< of config/depth, or the path of an ONNX file
-  int margin_px = 16;                  ///< the network sees that much more than the region on each side
+  std::string model = "small";  ///< of config/depth, or the path of an ONNX file
+  int margin_px = 16;           ///< the network sees that much more than the region on each side
   RegionValue region_value = RegionValue::Median;
   double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
   double time_constant_s = 0.5;        ///< of the smoothing, in place of the filter's: best on held-out scenes

@@ -14,8 +14,8 @@ namespace edged {
 std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks);
 
 /// Of a state: position [m] in the window's world, rotation [rad] (right perturbation, body axes), velocity
-/// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start, where
-/// the gauge is held.
+/// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start,
+/// where the gauge is held.
 std::optional<Matrix15d> covariance(Window& window, StateId state);
 
 }  // namespace edged

@@ -7,20 +7,22 @@ namespace edged {
 void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("recent_states", recent_states, {"", 1, 20, "newest states in the window, keyframes or not"});
   fields.add("keyframes", keyframes, {"", 2, 30, "older keyframes in the window; more are slower and more accurate"});
-  fields.add("max_interval_s", max_interval_s, {"s", 0.2, 10, "after this time a state becomes a keyframe in any case"});
+  fields.add("max_interval_s", max_interval_s,
+             {"s", 0.2, 10, "after this time a state becomes a keyframe in any case"});
   fields.add("iterations", iterations, {"", 1, 50, "solver iterations a packet"});
   fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "visual residuals beyond this are weighted down"});
-  fields.add("gyro_bias_sigma", gyro_bias_sigma, {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the guess of a start in motion"});
+  fields.add("gyro_bias_sigma", gyro_bias_sigma,
+             {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the guess of a start in motion"});
   fields.add("rest_gyro_bias_sigma", rest_gyro_bias_sigma,
              {"rad/s", 1e-5, 1, "how far the gyro bias may lie from the mean rate measured at rest"});
-  fields.add("accel_bias_sigma", accel_bias_sigma, {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
+  fields.add("accel_bias_sigma", accel_bias_sigma,
+             {"m/s^2", 1e-4, 5, "how far the accelerometer bias may lie from zero"});
   fields.add("zero_velocity_sigma", zero_velocity_sigma, {"m/s", 1e-4, 1, "how still a standstill is"});
   fields.add("init_spacing_s", init_spacing_s, {"s", 0.01, 1, "time between the newest views of a start in motion"});
   fields.add("init_turn_deg", init_turn_deg, {"deg", 0.5, 90, "turning by this makes the next of these views sooner"});
   fields.add("init_min_views", init_min_views, {"", 5, 30, "views a start in motion needs at least"});
   fields.add("init_max_views", init_max_views, {"", 5, 60, "views a start in motion looks back on at most"});
-  fields.add("init_max_span_s", init_max_span_s,
-             {"s", 0.5, 60, "time a start in motion looks back on at most"});
+  fields.add("init_max_span_s", init_max_span_s, {"s", 0.5, 60, "time a start in motion looks back on at most"});
   fields.add("init_scale_sigma", init_scale_sigma,
              {"", 0.01, 1,
               "how well a start in motion must know the scale to be Good, as a share of it (standard deviation)"});

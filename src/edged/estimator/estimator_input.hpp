@@ -17,7 +17,7 @@ struct EstimatorInput {
   std::vector<ImuSample> imu;  ///< from the previous input's t to t, both ends included
   std::vector<CameraObservations> observations;
   bool keyframe = false;
-  bool events_quiet = false;   ///< the event camera sees nothing move
+  bool events_quiet = false;                        ///< the event camera sees nothing move
   std::optional<RegionDepth> depth = std::nullopt;  ///< for Eq. 5, used at keyframes when depth_factor is enabled
 };
 

@@ -42,7 +42,8 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
 enum class Newness { Newest, Any };
 
 /// Spread of what one camera's sights, in the newest state or in any, are off by beyond what the sight before tells
-/// (Window::steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of them.
+/// (Window::steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of
+/// them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
 /// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and

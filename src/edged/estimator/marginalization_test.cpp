@@ -64,7 +64,8 @@ TEST(Marginalize, KeepsTheInformationOfTheNormalEquations) {
     for (std::size_t i = 0; i < J.size(); ++i) {
       Eigen::Index offset = 0;
       for (const BlockKey& key : prior.blocks) {
-        if (key == factor.blocks[i]) row.middleCols(offset, tangent_size(key.kind)) = J[i].leftCols(tangent_size(key.kind));
+        if (key == factor.blocks[i])
+          row.middleCols(offset, tangent_size(key.kind)) = J[i].leftCols(tangent_size(key.kind));
         offset += tangent_size(key.kind);
       }
     }

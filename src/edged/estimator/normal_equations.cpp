@@ -62,9 +62,7 @@ NormalEquations order_blocks(const std::vector<Factor>& factors, const std::set<
     eq.size += tangent_size(key.kind);
   };
   const std::set<BlockKey> coupled = coupled_depths(factors);
-  const auto alone = [&](const BlockKey& key) {
-    return key.kind == BlockKind::InverseDepth && !coupled.contains(key);
-  };
+  const auto alone = [&](const BlockKey& key) { return key.kind == BlockKind::InverseDepth && !coupled.contains(key); };
   for (const BlockKey& key : used) {
     if (leaving.contains(key) && alone(key)) place(key);
   }
@@ -110,7 +108,8 @@ Eigen::VectorXd unit_diagonal_scale(const MatrixXd& H) {
   return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
 }
 
-NormalEquations normal_equations(Window& window, const std::vector<Factor>& factors, const std::set<BlockKey>& leaving) {
+NormalEquations normal_equations(Window& window, const std::vector<Factor>& factors,
+                                 const std::set<BlockKey>& leaving) {
   NormalEquations eq = order_blocks(factors, leaving);
   for (const Factor& factor : factors) accumulate(eq, factor, linearise(window, factor));
   eliminate_depths(eq);

@@ -12,8 +12,8 @@
 
 namespace edged {
 
-/// H d = -g of all factors, over the tangent steps d from the blocks' linearisation points. Ordered: leaving inverse depths that
-/// couple with no other, the other leaving blocks, the staying blocks.
+/// H d = -g of all factors, over the tangent steps d from the blocks' linearisation points. Ordered: leaving inverse
+/// depths that couple with no other, the other leaving blocks, the staying blocks.
 struct NormalEquations {
   std::map<BlockKey, Eigen::Index> offset;
   std::vector<BlockKey> staying;
@@ -26,7 +26,8 @@ struct NormalEquations {
 
 /// Linearises the factors: residuals at the present values, Jacobians at the first estimates
 /// (Window::linearisation_point), so that directions the measurements cannot see stay unseen. Robust losses act with
-/// their present weight. The inverse depths in front are eliminated already: only what is behind them in H and g counts.
+/// their present weight. The inverse depths in front are eliminated already: only what is behind them in H and g
+/// counts.
 NormalEquations normal_equations(Window& window, const std::vector<Factor>& factors, const std::set<BlockKey>& leaving);
 
 /// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in

@@ -9,8 +9,8 @@
 namespace edged {
 
 /// A state that is no keyframe leaves by joining its IMU interval to the next one's, which is exact; where that would
-/// be longer than max_interval_s, it becomes a keyframe. At rest it may be ten times as long: keyframes there would push
-/// those with a baseline out of the window, and the body is held between them.
+/// be longer than max_interval_s, it becomes a keyframe. At rest it may be ten times as long: keyframes there would
+/// push those with a baseline out of the window, and the body is held between them.
 void drop_or_promote(Window& window, StateId id, double max_interval_s);
 
 /// Marginalises the oldest state. Landmarks anchored there that are still in view go on in the youngest keyframe with

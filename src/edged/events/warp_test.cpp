@@ -19,7 +19,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 const CameraModel kPinhole(240, 180, 200.0, 198.0, 121.0, 88.5);
 const CameraModel kDavis(240, 180, 199.4, 199.7, 133.8, 114.0, DistortionModel::RadTan,
-                             {-0.3829, 0.18934, -0.001, -0.00056, 0.0});
+                         {-0.3829, 0.18934, -0.001, -0.00056, 0.0});
 
 Timestamp at_ms(double ms) { return timestamp_from_seconds(1e-3 * ms); }
 

@@ -9,14 +9,14 @@ namespace edged {
 
 /// Continuous-time densities, as in a Kalibr imu.yaml.
 struct ImuNoise {
-  double gyro_noise = 1e-3;             ///< [rad/s/sqrt(Hz)]
-  double accel_noise = 1e-2;            ///< [m/s^2/sqrt(Hz)]
-  double gyro_walk = 1e-5;              ///< [rad/s^2/sqrt(Hz)]
-  double accel_walk = 3e-4;             ///< [m/s^3/sqrt(Hz)]
-  double gyro_saturation = 34.9;        ///< a rate at or above this [rad/s] on any axis is not believed
-  double accel_saturation = 156.9;      ///< [m/s^2]
-  /// Noise is multiplied by this where saturated or missing: a clipped rate is off by as much as it is over the range, for
-  /// as long as it lasts, so that the IMU knows next to nothing there.
+  double gyro_noise = 1e-3;         ///< [rad/s/sqrt(Hz)]
+  double accel_noise = 1e-2;        ///< [m/s^2/sqrt(Hz)]
+  double gyro_walk = 1e-5;          ///< [rad/s^2/sqrt(Hz)]
+  double accel_walk = 3e-4;         ///< [m/s^3/sqrt(Hz)]
+  double gyro_saturation = 34.9;    ///< a rate at or above this [rad/s] on any axis is not believed
+  double accel_saturation = 156.9;  ///< [m/s^2]
+  /// Noise is multiplied by this where saturated or missing: a clipped rate is off by as much as it is over the range,
+  /// for as long as it lasts, so that the IMU knows next to nothing there.
   double saturation_inflation = 1e4;
 };
 

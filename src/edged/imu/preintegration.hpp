@@ -23,8 +23,8 @@ inline constexpr Duration kMaxSampleInterval = std::chrono::milliseconds(30);
 /// Whether the step between two samples lies in a gap of the recording, wholly or in part: it counts as saturated.
 bool in_gap(const ImuSample& a, const ImuSample& b);
 
-/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as made up where
-/// that is across a gap. `samples` are in time order and must cover [t_0, t_1] (CheckError otherwise).
+/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as made up
+/// where that is across a gap. `samples` are in time order and must cover [t_0, t_1] (CheckError otherwise).
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);
 
 /// The motion between the first and the last sample, free of the state it starts from:

@@ -33,8 +33,8 @@ std::optional<Sees> parse_sees(std::string_view text);
 
 struct CalibrationOptions {
   std::filesystem::path imu_file = {};  ///< Kalibr imu yaml, instead of what the calibration says of the IMU
-  std::map<std::string, Sees> sees =
-      {};                              ///< by the camera's name in the file: where the file does not tell, or is wrong
+  /// By the camera's name in the file: where the file does not tell, or is wrong.
+  std::map<std::string, Sees> sees = {};
   std::optional<Sees> otherwise = {};  ///< where nothing tells; not given: an error that asks
 };
 

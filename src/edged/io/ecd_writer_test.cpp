@@ -64,7 +64,8 @@ TEST(EcdWriter, GroundTruthBecomesThatOfTheCameraOnItsClock) {
 TEST(EcdWriter, RefusesWhatTheFormatCannotHold) {
   TempFolder folder;
   ListedDataset source = random_dataset();
-  EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "a"); }), HasSubstr("a calibration with extrinsics"));
+  EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "a"); }),
+              HasSubstr("a calibration with extrinsics"));
   source.truth.reset();
   source.measurements.push_back(EventBatch{"right", {Event{}}});
   EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "b"); }), HasSubstr("not both left and right"));

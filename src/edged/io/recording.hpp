@@ -47,8 +47,8 @@ std::optional<cv::Size> parse_geometry(std::string_view text);
 /// - AEDAT4: cameras "events" and "frames".
 /// - HDF5 (DSEC, VECtor, TUM-VIE, M3ED, MVSEC, EDS, Metavision; folder or file): cameras "events" and "frames", ground
 ///   truth of "body", "events" or "frames", as the set has it.
-/// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body", or of
-///   the camera that its messages name so.
+/// - ROS 1 bag, ROS 2 bag (SQLite or MCAP, file or folder): cameras "events" and "frames", ground truth of "body", or
+///   of the camera that its messages name so.
 /// `rig` is the rig the user chose, if any: its event camera bounds the pixels, and a clear warning is logged when it
 /// contradicts the recording. Throws InputError that lists what was looked for.
 Recording open_recording(const std::filesystem::path& path, const Rig* rig = nullptr,

@@ -29,8 +29,8 @@ class RecordingWriter {
 
 /// What a writer may want to know beforehand.
 struct WriterSetup {
-  std::filesystem::path path;  ///< folder or file to make
-  DatasetInfo info;            ///< of what is written
+  std::filesystem::path path;              ///< folder or file to make
+  DatasetInfo info;                        ///< of what is written
   std::optional<Calibration> calibration;  ///< where the recording has one, or the user
 
   /// Size of the event sensor [px]; throws InputError where nothing tells it.
@@ -38,8 +38,8 @@ struct WriterSetup {
 };
 
 struct WritableFormat {
-  std::string_view name;       ///< "ecd"
-  std::string_view extension;  ///< of files, with its dot; "" for a folder
+  std::string_view name;                                   ///< "ecd"
+  std::string_view extension;                              ///< of files, with its dot; "" for a folder
   bool frames = false, imu = false, ground_truth = false;  ///< held besides events
   Duration tick = Duration(1);                             ///< stamps of events are multiples of it
   std::unique_ptr<RecordingWriter> (*open)(const WriterSetup& setup) = nullptr;
@@ -52,7 +52,7 @@ std::span<const WritableFormat> writable_formats();
 const WritableFormat& writable_format(std::string_view name, const std::filesystem::path& path);
 
 struct WriteOptions {
-  bool round = false;                       ///< stamps finer than the format's tick are cut to it, not refused
+  bool round = false;                            ///< stamps finer than the format's tick are cut to it, not refused
   std::function<void(Timestamp)> progress = {};  ///< called now and then with the stamp reached
 };
 
@@ -62,8 +62,9 @@ struct WriteCounts {
   std::size_t frames_left_out = 0, imu_left_out = 0, poses_left_out = 0;
 };
 
-/// Reads `dataset` to its end and writes it. Read back, every event is the same to the last bit. Throws InputError where
-/// something is at `path` already or cannot be written, and for stamps of events that the format is too coarse for.
+/// Reads `dataset` to its end and writes it. Read back, every event is the same to the last bit. Throws InputError
+/// where something is at `path` already or cannot be written, and for stamps of events that the format is too coarse
+/// for.
 WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
                             const std::optional<Calibration>& calibration, const WriteOptions& options = {});
 

@@ -46,9 +46,9 @@ TEST_P(WritableFormats, KeepEventsApartByLongSilences) {
   write(source);
   std::vector<Timestamp> stamps;
   for (const Event& event : read_back().events) stamps.push_back(event.t);
-  EXPECT_THAT(stamps, ::testing::ElementsAre(timestamp_from_seconds(1), timestamp_from_seconds(2),
-                                             timestamp_from_seconds(20), timestamp_from_seconds(60),
-                                             timestamp_from_seconds(300)));
+  EXPECT_THAT(stamps,
+              ::testing::ElementsAre(timestamp_from_seconds(1), timestamp_from_seconds(2), timestamp_from_seconds(20),
+                                     timestamp_from_seconds(60), timestamp_from_seconds(300)));
 }
 
 TEST_P(WritableFormats, RefuseStampsTheyAreTooCoarseForUnlessToldToCutThem) {
@@ -89,14 +89,16 @@ TEST_P(WritableFormats, SayWhereNothingCanBeWritten) {
               HasSubstr(path));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WritableFormats, ::testing::ValuesIn(writable_formats().begin(), writable_formats().end()),
+INSTANTIATE_TEST_SUITE_P(All, WritableFormats,
+                         ::testing::ValuesIn(writable_formats().begin(), writable_formats().end()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(WritableFormat, IsFoundByNameOrExtensionElseTheRefusalListsThem) {
   EXPECT_EQ(writable_format("", "a/b.raw").name, "raw");
   EXPECT_EQ(writable_format("", "a/folder").name, "ecd");
   EXPECT_EQ(writable_format("dat", "a/b.bin").name, "dat");
-  EXPECT_THAT(input_error([] { writable_format("", "a.xyz"); }), HasSubstr("`.xyz`; give --format, one of: ecd (a folder), raw"));
+  EXPECT_THAT(input_error([] { writable_format("", "a.xyz"); }),
+              HasSubstr("`.xyz`; give --format, one of: ecd (a folder), raw"));
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ Bytes SourcePath::read(std::size_t max_bytes) const {
   const std::unique_ptr<ByteSource> source = open();
   Bytes bytes(kFirstStep);
   std::size_t filled = 0;
-  while (const std::size_t got = source->read({reinterpret_cast<char*>(bytes.data()) + filled, bytes.size() - filled})) {
+  while (const std::size_t got =
+             source->read({reinterpret_cast<char*>(bytes.data()) + filled, bytes.size() - filled})) {
     filled += got;
     if (filled > max_bytes) throw Damage("is larger than any such file should be");
     if (filled == bytes.size()) bytes.resize(2 * filled);

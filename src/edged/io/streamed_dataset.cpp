@@ -43,9 +43,7 @@ void StreamedDataset::begin(const Merger::Streams& expected) {
   info_.begin = first_stamp(*first_);
 }
 
-std::optional<Measurement> StreamedDataset::next() {
-  return first_ ? std::exchange(first_, std::nullopt) : merged();
-}
+std::optional<Measurement> StreamedDataset::next() { return first_ ? std::exchange(first_, std::nullopt) : merged(); }
 
 std::optional<Measurement> StreamedDataset::merged() {
   while (true) {

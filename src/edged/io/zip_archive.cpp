@@ -55,8 +55,9 @@ ZipArchive::ZipArchive(const fs::path& file) : file_(file) {
     zip_error_init_with_code(&text, error);
     const std::string reason = zip_error_strerror(&text);
     zip_error_fini(&text);
-    throw InputError::format("{}: cannot be read as a zip archive ({}): is it complete? Unpack it, or mend it (zip -FF)",
-                             file.string(), reason);
+    throw InputError::format(
+        "{}: cannot be read as a zip archive ({}): is it complete? Unpack it, or mend it (zip -FF)", file.string(),
+        reason);
   }
   zip_.reset(archive, zip_discard);
   const zip_int64_t count = zip_get_num_entries(archive, 0);

@@ -92,7 +92,8 @@ TEST(LiveSource, EndsWhenTheUserInterruptsOrNobodyWantsMore) {
   LiveSource source(hour, {}, [&interrupted] { return interrupted.load(); });
   EXPECT_TRUE(source.next());
   interrupted = true;
-  while (source.next()) {}
+  while (source.next()) {
+  }
   LiveSource unwanted(other_hour, {}, kNotInterrupted);
   EXPECT_TRUE(unwanted.next());
   unwanted.stop();

@@ -28,8 +28,9 @@ Measurement take_first(Line& line) {
 }  // namespace
 
 void QueueConfig::visit(ConfigFields& fields) {
-  fields.add("max_age_s", max_age_s,
-             {"s", 0.001, 3600, "--live: events that have waited longer are left out, oldest first; frames at twice that"});
+  fields.add(
+      "max_age_s", max_age_s,
+      {"s", 0.001, 3600, "--live: events that have waited longer are left out, oldest first; frames at twice that"});
   fields.add("max_megabytes", max_megabytes,
              {"MB", 1, 65536, "--live: events and frames that may wait; beyond, the oldest events are left out"});
   fields.add("max_imu_samples", max_imu_samples,
@@ -41,9 +42,8 @@ bool MeasurementQueue::push(Measurement measurement) {
   const std::optional<Timestamp> stamp = last_stamp(measurement);
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] {
-      return closed_ || !is_imu || imu_.size() < static_cast<std::size_t>(config_.max_imu_samples);
-    });
+    changed_.wait(
+        lock, [&] { return closed_ || !is_imu || imu_.size() < static_cast<std::size_t>(config_.max_imu_samples); });
     if (closed_) return false;
     if (!stamp) return true;  // an empty batch
     newest_ = std::max(newest_, *stamp);

@@ -37,10 +37,10 @@ struct QueuePeaks {
   double age_s = 0.0;  ///< of the oldest event or frame
 };
 
-/// First in, first out; when too much waits it sheds, never the IMU. The oldest events go first: they come in excess, and a
-/// late result is worth less than one from fewer events. A frame stands for more than the events of its time and costs
-/// less, so frames go after all events or at twice their age, the oldest first. IMU samples are small and cannot be
-/// replaced: with too many of them push waits.
+/// First in, first out; when too much waits it sheds, never the IMU. The oldest events go first: they come in excess,
+/// and a late result is worth less than one from fewer events. A frame stands for more than the events of its time and
+/// costs less, so frames go after all events or at twice their age, the oldest first. IMU samples are small and cannot
+/// be replaced: with too many of them push waits.
 ///
 /// One thread may push while another pops.
 class MeasurementQueue {

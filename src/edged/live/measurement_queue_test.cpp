@@ -37,9 +37,9 @@ std::vector<std::string> drain(MeasurementQueue& queue) {
   while (const auto m = queue.pop()) {
     const std::string ms = std::to_string((*last_stamp(*m) - Timestamp()) / std::chrono::milliseconds(1));
     const auto* batch = std::get_if<EventBatch>(&*m);
-    const std::string kind = batch != nullptr                      ? std::to_string(batch->events.size()) + " events "
+    const std::string kind = batch != nullptr                    ? std::to_string(batch->events.size()) + " events "
                              : std::holds_alternative<Frame>(*m) ? "frame "
-                                                                   : "imu ";
+                                                                 : "imu ";
     popped.push_back(kind + ms);
   }
   return popped;
@@ -65,8 +65,8 @@ TEST(MeasurementQueue, LeavesOutEventsThatHaveWaitedTooLongAndFramesAtTwiceThatB
     queue.push(frame_at(ms + 2));
   }
   EXPECT_EQ(queue.shed(), (ShedCounters{30, 1}));
-  EXPECT_THAT(drain(queue), ElementsAre("imu 0", "imu 60", "frame 62", "imu 120", "frame 122", "imu 180", "10 events 181",
-                                        "frame 182", "imu 240", "10 events 241", "frame 242"));
+  EXPECT_THAT(drain(queue), ElementsAre("imu 0", "imu 60", "frame 62", "imu 120", "frame 122", "imu 180",
+                                        "10 events 181", "frame 182", "imu 240", "10 events 241", "frame 242"));
 }
 
 TEST(MeasurementQueue, LeavesOutTheOldestEventsOneByOneWhenThereAreTooMany) {
@@ -99,7 +99,8 @@ TEST(MeasurementQueue, NotesTheMostThatHasWaited) {
   queue.push(frame_at(20));
   queue.push(imu_at(30));
   queue.push(imu_at(40));
-  while (queue.peaks().imu < 2 || queue.pop()->index() != 2) {}
+  while (queue.peaks().imu < 2 || queue.pop()->index() != 2) {
+  }
   queue.push(events_until(45, 2));
   const QueuePeaks peaks = queue.peaks();
   EXPECT_EQ(peaks.events, 7U);

@@ -11,8 +11,8 @@
 
 namespace edged {
 
-/// One line when shedding begins and one when nothing has been shed for a second, of one bout in ten seconds; what comes
-/// sooner is counted in the next.
+/// One line when shedding begins and one when nothing has been shed for a second, of one bout in ten seconds; what
+/// comes sooner is counted in the next.
 class ShedReport {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,7 +24,7 @@ class ShedReport {
   std::optional<Clock::time_point> said_;  // of the last line that told of a beginning
   bool telling_ = false;                   // a beginning has been told, its end has not
   Clock::time_point last_shed_;
-  ShedCounters seen_, told_;               // by now; up to the last end told
+  ShedCounters seen_, told_;  // by now; up to the last end told
 };
 
 }  // namespace edged

@@ -18,8 +18,8 @@
 
 namespace edged {
 
-/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position and
-/// yaw are exact.
+/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position
+/// and yaw are exact.
 struct PoseCovariance {
   Eigen::Matrix3d position;  ///< [m^2], in W
   Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
@@ -28,17 +28,17 @@ struct PoseCovariance {
 /// What one packet brought.
 struct OdometryOutput {
   TrackingStatus status = TrackingStatus::Initializing;
-  NavState state;                          ///< at the packet's time; meaningful unless status is Initializing
+  NavState state;                            ///< at the packet's time; meaningful unless status is Initializing
   std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
-  bool keyframe = false;                   ///< this packet became a keyframe
-  int event_tracks = 0;                    ///< live corners on the event frame
-  int frame_tracks = 0;                    ///< live corners on the standard frame
-  int landmarks = 0;                       ///< in the window
-  double event_rate_hz = 0;                ///< of this packet
-  double scene_depth = 0;                  ///< z-depth [m] used by the warp
-  std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
-  std::string waiting_for;                 ///< while there is no estimate: what a start lacks, with numbers
-  std::string lost_because;                ///< while Lost: what ended the last estimate, with numbers
+  bool keyframe = false;                     ///< this packet became a keyframe
+  int event_tracks = 0;                      ///< live corners on the event frame
+  int frame_tracks = 0;                      ///< live corners on the standard frame
+  int landmarks = 0;                         ///< in the window
+  double event_rate_hz = 0;                  ///< of this packet
+  double scene_depth = 0;                    ///< z-depth [m] used by the warp
+  std::optional<LogScale> ln_depth_scale;    ///< s of Eq. 5; with the depth factor only
+  std::string waiting_for;                   ///< while there is no estimate: what a start lacks, with numbers
+  std::string lost_because;                  ///< while Lost: what ended the last estimate, with numbers
 };
 
 /// Synchronous and deterministic: the same packets give the same bits; but for a depth network that has a thread of its
@@ -65,8 +65,8 @@ class Odometry {
   const cv::Mat& event_frame() const;
 
   /// The corners that are alive after the last packet, by id; none for a camera that the mode does not use. Pixels are
-  /// those of the undistorted event frame (ideal_pinhole) or of the frame as given. Where the packet brought no image of
-  /// the camera they are those of its last one.
+  /// those of the undistorted event frame (ideal_pinhole) or of the frame as given. Where the packet brought no image
+  /// of the camera they are those of its last one.
   std::span<const Track> tracks(Modality modality) const;
 
  private:

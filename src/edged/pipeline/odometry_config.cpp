@@ -14,11 +14,14 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);
-  fields.add("enhance.detect", enhance_detect, {.effect = "find new corners on the enhanced event frame, not the plain one"});
-  fields.add("enhance.track", enhance_track, {.effect = "follow corners on the enhanced event frame, not the plain one"});
+  fields.add("enhance.detect", enhance_detect,
+             {.effect = "find new corners on the enhanced event frame, not the plain one"});
+  fields.add("enhance.track", enhance_track,
+             {.effect = "follow corners on the enhanced event frame, not the plain one"});
   fields.add("alignment_gain", alignment.gain,
-             {"", 0, 1, "weight of the last event frame's median (measured - predicted) displacement in the running mean "
-                        "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
+             {"", 0, 1,
+              "weight of the last event frame's median (measured - predicted) displacement in the running mean "
+              "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
   fields.add("alignment_max_px", alignment.max_px, {"px", 0, 50, "bound of that correction"});
   fields.group("health", health);
   fields.group("dim_frames", dim_frames);
@@ -32,9 +35,11 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("live", live);
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
              {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
-  fields.add("max_travel_px", max_travel_px,
-             {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
-  fields.add("min_events_per_pixel", min_events_per_pixel, {"", 0, 10, "a packet with fewer events draws no event frame"});
+  fields.add(
+      "max_travel_px", max_travel_px,
+      {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
+  fields.add("min_events_per_pixel", min_events_per_pixel,
+             {"", 0, 10, "a packet with fewer events draws no event frame"});
 }
 
 void OdometryConfig::validate() const {

@@ -26,18 +26,18 @@ struct OdometryConfig {
   EnhanceConfig enhance;
   bool enhance_detect = true;  ///< find corners on the enhanced event frame
   bool enhance_track = false;  ///< follow them on it too
-  AlignmentConfig alignment;      ///< of the event frames
-  HealthConfig health;            ///< of each camera
-  DimImageConfig dim_frames;      ///< standard frames in the dark
+  AlignmentConfig alignment;   ///< of the event frames
+  HealthConfig health;         ///< of each camera
+  DimImageConfig dim_frames;   ///< standard frames in the dark
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
   DepthConfig depth;
   EstimatorConfig estimator;
-  QueueConfig live;                  ///< what may wait in a live run
-  double quiet_rate_per_pixel = 1.2; ///< event rate [1/s/px] below which nothing moves in view
-  double max_travel_px = 5.0;        ///< image motion by translation over the events of one event frame
-  double min_events_per_pixel = 0.1; ///< a packet with fewer events draws no event frame
+  QueueConfig live;                   ///< what may wait in a live run
+  double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which nothing moves in view
+  double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
+  double min_events_per_pixel = 0.1;  ///< a packet with fewer events draws no event frame
   StatusConfig status;
 
   void visit(ConfigFields& fields);

@@ -30,12 +30,15 @@ std::string to_string(TrackingStatus status) {
 bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
 
 void StatusConfig::visit(ConfigFields& fields) {
-  fields.add("degraded_after_s", degraded_after_s, {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
+  fields.add("degraded_after_s", degraded_after_s,
+             {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
   fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
   fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
-  fields.add("degraded_strain", degraded_strain,
-             {"sigma", 0.01, 1000, "Degraded when the window's IMU residuals are larger: the cameras contradict the IMU"});
-  fields.add("lost_strain", lost_strain, {"sigma", 0.01, 1000, "and Lost when they are larger than this; half as much again after each such loss"});
+  fields.add(
+      "degraded_strain", degraded_strain,
+      {"sigma", 0.01, 1000, "Degraded when the window's IMU residuals are larger: the cameras contradict the IMU"});
+  fields.add("lost_strain", lost_strain,
+             {"sigma", 0.01, 1000, "and Lost when they are larger than this; half as much again after each such loss"});
 }
 
 TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, Timestamp t) {
@@ -50,8 +53,10 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
   if (!result.plausible) {
     reason_ = "the solution has broken down";
   } else if (const double most = patience_ * config_.lost_strain; result.imu_strain > most) {
-    reason_ = fmt::format("the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
-                          "the IMU's noise set too low)", result.imu_strain, most);
+    reason_ = fmt::format(
+        "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
+        "the IMU's noise set too low)",
+        result.imu_strain, most);
     patience_ *= kMorePatience;
   } else if (alone_s > config_.lost_after_s) {
     reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);

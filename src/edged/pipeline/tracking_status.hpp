@@ -26,8 +26,8 @@ struct StatusConfig {
   void visit(ConfigFields& fields);
 };
 
-/// Judges what the estimator says, packet by packet. Each loss by strain makes it bear half as much again: what comes back
-/// after a new start is not the world's doing, but an IMU noisier than its calibration says.
+/// Judges what the estimator says, packet by packet. Each loss by strain makes it bear half as much again: what comes
+/// back after a new start is not the world's doing, but an IMU noisier than its calibration says.
 class StatusJudge {
  public:
   explicit StatusJudge(const StatusConfig& config) : config_(config) {}
@@ -41,7 +41,7 @@ class StatusJudge {
  private:
   StatusConfig config_;
   bool ever_started_ = false;
-  double patience_ = 1.0;  ///< multiplies the limits of strain
+  double patience_ = 1.0;                    ///< multiplies the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or rest, since the start
   std::string reason_;
 };

@@ -20,8 +20,8 @@ struct Kinematics {
 
 /// How a spline is put through samples.
 struct SplineFit {
-  double knot_s =
-      0.05;  ///< spacing of the control points [s]: motion faster than about 0.5 / knot_s [Hz] is smoothed away
+  /// Spacing of the control points [s]: motion faster than about 0.5 / knot_s [Hz] is smoothed away.
+  double knot_s = 0.05;
   int reweightings = 5;  ///< rounds of Cauchy weights; 0 is plain least squares
 };
 

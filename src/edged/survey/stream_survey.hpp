@@ -19,13 +19,15 @@ struct Gap {
 struct StreamSurvey {
   std::size_t count = 0;
   std::optional<Timestamp> begin, end;
-  Duration typical_step{0};   ///< median of the first steps
-  std::size_t gaps = 0;       ///< steps that are too long
-  Duration missing{0};        ///< their sum
-  std::vector<Gap> longest;   ///< the longest of them, longest first
+  Duration typical_step{0};  ///< median of the first steps
+  std::size_t gaps = 0;      ///< steps that are too long
+  Duration missing{0};       ///< their sum
+  std::vector<Gap> longest;  ///< the longest of them, longest first
 
   Duration length() const { return begin && end ? *end - *begin : Duration(0); }
-  double rate_hz() const { return length() > Duration(0) ? static_cast<double>(count - 1) / to_seconds(length()) : 0.0; }
+  double rate_hz() const {
+    return length() > Duration(0) ? static_cast<double>(count - 1) / to_seconds(length()) : 0.0;
+  }
 };
 
 /// Takes the stamps of one sensor in order. Memory is bounded.

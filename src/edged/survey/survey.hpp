@@ -17,7 +17,7 @@ namespace edged {
 
 struct TruthSurvey {
   StreamSurvey stream;
-  std::string frame;      ///< whose pose it is
+  std::string frame;    ///< whose pose it is
   double path_m = 0.0;  ///< length of the path
 };
 
@@ -26,7 +26,7 @@ struct Survey {
   StreamSurvey events, frames, imu;
   EventSurvey event_details;
   ImuSurvey imu_details;
-  cv::Size image_size;          ///< of the first image
+  cv::Size image_size;           ///< of the first image
   double mean_brightness = 0.0;  ///< of all images, 0 to 255
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;

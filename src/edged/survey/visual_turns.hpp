@@ -21,8 +21,8 @@ namespace edged {
 struct Turn {
   Timestamp begin, end;
   Eigen::Vector3d phi_C = Eigen::Vector3d::Zero();  ///< R_W_C(end) = R_W_C(begin) * Exp(phi_C) [rad]
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays =
-      {};  ///< to each corner at begin and at end, of length one
+  /// To each corner at begin and at end, of length one.
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays = {};
 };
 
 /// Rotation between two views of the same points, whatever the camera's translation: p_begin ~ R * (p_end - t). Points

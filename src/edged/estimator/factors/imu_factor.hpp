@@ -9,9 +9,10 @@
 
 namespace edged {
 
-/// Blocks: pose 0, motion 0, pose 1, motion 1, intrinsics of the IMU. What scale and axes are off by counts as a bias that goes
-/// with the mean rate and acceleration of the interval: right to first order in both. Residual (15), whitened: rotation, velocity, position (Forster et al.
-/// 2017, Eq. 45), then the change of gyro and accelerometer bias against their random walks.
+/// Blocks: pose 0, motion 0, pose 1, motion 1, intrinsics of the IMU. What scale and axes are off by counts as a bias
+/// that goes with the mean rate and acceleration of the interval: right to first order in both. Residual (15),
+/// whitened: rotation, velocity, position (Forster et al. 2017, Eq. 45), then the change of gyro and accelerometer bias
+/// against their random walks.
 class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 18> {
  public:
   /// The preintegration must outlive the factor.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A Gaussian prior over any blocks, held in square-root form at a fixed linearisation point: what marginalisation leaves
-// behind, and every hand-set prior (gauge, biases, zero velocity).
+// A Gaussian prior over any blocks, held in square-root form at a fixed linearisation point: what marginalisation
+// leaves behind, and every hand-set prior (gauge, biases, zero velocity).
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -30,8 +30,8 @@ LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigm
 /// The sigma of what a prior leaves open.
 inline constexpr double kFree = std::numeric_limits<double>::infinity();
 
-/// A motion block near `mean`; sigmas for velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]. An infinite sigma
-/// leaves that part free.
+/// A motion block near `mean`; sigmas for velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]. An infinite
+/// sigma leaves that part free.
 LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas);
 
 /// What an accelerometer at rest has read: bias plus gravity's reaction in B, linearised at the given state, which

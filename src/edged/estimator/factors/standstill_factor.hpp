@@ -7,8 +7,8 @@
 
 namespace edged {
 
-/// Blocks: pose a, pose b. Residual (6): (p_b - p_a) / position_sigma, Log(R_a^T R_b) / rotation_sigma. Velocity updates
-/// alone let the position walk away: they say how slow, not that it comes to nothing.
+/// Blocks: pose a, pose b. Residual (6): (p_b - p_a) / position_sigma, Log(R_a^T R_b) / rotation_sigma. Velocity
+/// updates alone let the position walk away: they say how slow, not that it comes to nothing.
 class StandstillFactor final : public ceres::SizedCostFunction<6, 7, 7> {
  public:
   /// Sigmas in [m] and [rad].

@@ -49,8 +49,9 @@ TEST(Ecf, StepsOfFifteenAndMoreComeInNibblesLowestFirst) {
 TEST(Ecf, ColumnsSideBySideTakeTwelveBits) {
   // 4 events, t 7 for all; y 1 for all; x 0x401 .. 0x404, p 1 0 1 0: 0x803, 0x804, 0x807, 0x808.
   const Bytes packed{17, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0, 0x04, 0x24, 0x00, 0x34, 0x80, 0x07, 0x80, 0x08, 0x88};
-  EXPECT_TRUE(decode_ecf(packed, kMost) ==
-              (std::vector<EcfEvent>{{0x401, 1, 1, 0, 7}, {0x402, 1, 0, 0, 7}, {0x403, 1, 1, 0, 7}, {0x404, 1, 0, 0, 7}}));
+  EXPECT_TRUE(
+      decode_ecf(packed, kMost) ==
+      (std::vector<EcfEvent>{{0x401, 1, 1, 0, 7}, {0x402, 1, 0, 0, 7}, {0x403, 1, 1, 0, 7}, {0x404, 1, 0, 0, 7}}));
 }
 
 TEST(Ecf, GivesBackWhatWasPackedInEveryWay) {

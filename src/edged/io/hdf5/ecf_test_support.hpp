@@ -99,7 +99,8 @@ class EcfPacker {
     constexpr unsigned kQuarter = sizeof(Word) * 2;
     for (std::size_t i = 0; i < events_.size(); i += 4) {
       std::array<std::uint32_t, 4> v{};
-      for (std::size_t k = 0; k < 4 && i + k < events_.size(); ++k) v[k] = static_cast<std::uint32_t>(bits(events_[i + k]));
+      for (std::size_t k = 0; k < 4 && i + k < events_.size(); ++k)
+        v[k] = static_cast<std::uint32_t>(bits(events_[i + k]));
       const auto low = [&](std::size_t k, unsigned quarters) { return v[k] & ((1U << quarters * kQuarter) - 1U); };
       put(static_cast<Word>(v[0] << kQuarter | low(1, 1)));
       put(static_cast<Word>(v[1] >> kQuarter << 2 * kQuarter | low(2, 2)));

@@ -88,7 +88,8 @@ H5Array::H5Array(H5Handle data, std::string path) : data_(std::move(data)), path
   filtered_ = filters > 0;
   for (int i = 0; i < filters; ++i) {
     std::size_t none = 0;
-    const auto filter = H5Pget_filter2(creation.get(), static_cast<unsigned>(i), nullptr, &none, nullptr, 0, nullptr, nullptr);
+    const auto filter =
+        H5Pget_filter2(creation.get(), static_cast<unsigned>(i), nullptr, &none, nullptr, 0, nullptr, nullptr);
     deflated_ = deflated_ || filter == H5Z_FILTER_DEFLATE;
   }
 }
@@ -175,9 +176,10 @@ H5File::H5File(const std::filesystem::path& file) : path_(file) {
   prepare_h5();
   file_ = open_for_reading(file, cut_);
   if (!file_)
-    throw InputError::format("{}: the HDF5 file cannot be opened: it is damaged or was not closed; copy it again, or try "
-                             "`h5clear -s -i` of hdf5-tools on a copy",
-                             file.string());
+    throw InputError::format(
+        "{}: the HDF5 file cannot be opened: it is damaged or was not closed; copy it again, or try "
+        "`h5clear -s -i` of hdf5-tools on a copy",
+        file.string());
 }
 
 H5Handle H5File::open_data(const std::string& path, std::size_t cache_bytes) const {
@@ -206,8 +208,8 @@ bool H5File::has(const std::string& path) const {
 }
 
 std::optional<std::string> H5File::text_attribute(const std::string& object, const std::string& name) const {
-  const H5Handle attribute(
-      H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
   const H5Handle type(attribute ? H5Aget_type(attribute.get()) : H5I_INVALID_HID, H5Tclose);
   if (!type || H5Tget_class(type.get()) != H5T_STRING) return std::nullopt;
   if (H5Tis_variable_str(type.get()) > 0) {
@@ -226,8 +228,8 @@ std::optional<std::string> H5File::text_attribute(const std::string& object, con
 }
 
 std::optional<std::int64_t> H5File::number_attribute(const std::string& object, const std::string& name) const {
-  const H5Handle attribute(
-      H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
   const H5Handle space(attribute ? H5Aget_space(attribute.get()) : H5I_INVALID_HID, H5Sclose);
   std::int64_t number = 0;
   if (!space || H5Sget_simple_extent_npoints(space.get()) != 1) return std::nullopt;

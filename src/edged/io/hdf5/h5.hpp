@@ -25,8 +25,7 @@ class H5Handle {
 
   H5Handle() = default;
   H5Handle(hid_t id, Close close) : id_(id), close_(close) {}
-  H5Handle(H5Handle&& other) noexcept
-      : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  H5Handle(H5Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
   H5Handle& operator=(H5Handle&& other) noexcept {
     std::swap(id_, other.id_);
     std::swap(close_, other.close_);

@@ -65,9 +65,9 @@ std::size_t hand_over(const Bytes& bytes, std::size_t* buffer_size, void** buffe
 Bytes apply_blosc(ByteSpan plain, std::size_t parameter_count, const unsigned* parameters) {
   if (parameter_count < 7) return {};
   Bytes packed(plain.size() + BLOSC_MAX_OVERHEAD);
-  const int bytes = blosc_compress_ctx(static_cast<int>(parameters[4]), static_cast<int>(parameters[5]), parameters[2],
-                                       plain.size(), plain.data(), packed.data(), packed.size(),
-                                       BLOSC_ZSTD_COMPNAME, 0, 1);
+  const int bytes =
+      blosc_compress_ctx(static_cast<int>(parameters[4]), static_cast<int>(parameters[5]), parameters[2], plain.size(),
+                         plain.data(), packed.data(), packed.size(), BLOSC_ZSTD_COMPNAME, 0, 1);
   packed.resize(bytes > 0 ? static_cast<std::size_t>(bytes) : 0);
   return packed;
 }
@@ -86,8 +86,8 @@ std::size_t filter_callback(unsigned flags, std::size_t parameter_count, const u
 
 template <H5Filter filter>
 void register_filter(const char* name) {
-  const H5Z_class2_t description{H5Z_CLASS_T_VERS, static_cast<H5Z_filter_t>(filter), 1, 1, name, nullptr, nullptr,
-                                 &filter_callback<filter>};
+  const H5Z_class2_t description{H5Z_CLASS_T_VERS, static_cast<H5Z_filter_t>(filter), 1, 1, name, nullptr,
+                                 nullptr,          &filter_callback<filter>};
   EDGED_CHECK(H5Zregister(&description) >= 0, "filter {} of HDF5 cannot be registered", name);
 }
 
@@ -121,8 +121,13 @@ H5ChunkScope::~H5ChunkScope() { chunk_bytes_read = 0; }
 
 std::array<unsigned, 7> blosc_parameters(std::size_t value_bytes, std::size_t chunk_bytes) {
   constexpr unsigned kFilterRevision = 2, kLevel = 5;
-  return {kFilterRevision, BLOSC_VERSION_FORMAT, static_cast<unsigned>(value_bytes), static_cast<unsigned>(chunk_bytes),
-          kLevel, BLOSC_SHUFFLE, BLOSC_ZSTD};
+  return {kFilterRevision,
+          BLOSC_VERSION_FORMAT,
+          static_cast<unsigned>(value_bytes),
+          static_cast<unsigned>(chunk_bytes),
+          kLevel,
+          BLOSC_SHUFFLE,
+          BLOSC_ZSTD};
 }
 
 }  // namespace edged

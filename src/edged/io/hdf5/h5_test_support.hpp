@@ -28,10 +28,9 @@ inline Bytes pack_h5_chunk(H5Pack pack, ByteSpan plain) {
     return encode_ecf(events, EcfPacking::Runs);
   }
   Bytes packed(plain.size() + plain.size() / 8 + 64);
-  packed.resize(pack == H5Pack::Zstd
-                    ? ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), 3)
-                    : lzf_compress(plain.data(), static_cast<unsigned>(plain.size()), packed.data(),
-                                   static_cast<unsigned>(packed.size())));
+  packed.resize(pack == H5Pack::Zstd ? ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), 3)
+                                     : lzf_compress(plain.data(), static_cast<unsigned>(plain.size()), packed.data(),
+                                                    static_cast<unsigned>(packed.size())));
   return packed;
 }
 
@@ -79,22 +78,21 @@ class H5Maker {
              std::vector<hsize_t> shape, H5Pack pack, hsize_t chunk_rows) {
     const H5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
-    const H5Handle space(shape.empty() ? H5Screate(H5S_SCALAR)
-                                       : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-                         H5Sclose);
+    const H5Handle space(
+        shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+        H5Sclose);
     std::vector<hsize_t> chunk = shape;
     if (chunk_rows > 0) chunk.front() = chunk_rows;
-    const std::size_t row = std::accumulate(shape.begin() + (shape.empty() ? 0 : 1), shape.end(), value_bytes,
-                                            std::multiplies<>());
+    const std::size_t row =
+        std::accumulate(shape.begin() + (shape.empty() ? 0 : 1), shape.end(), value_bytes, std::multiplies<>());
     if (chunk_rows > 0) H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
     if (pack == H5Pack::Deflate) H5Pset_deflate(creation.get(), 4);
     const auto parameters = blosc_parameters(value_bytes, chunk_rows * row);
     if (pack == H5Pack::Blosc)
-      H5Pset_filter(creation.get(), static_cast<H5Z_filter_t>(H5Filter::Blosc), 0, parameters.size(), parameters.data());
+      H5Pset_filter(creation.get(), static_cast<H5Z_filter_t>(H5Filter::Blosc), 0, parameters.size(),
+                    parameters.data());
     const bool packed_here = pack == H5Pack::Zstd || pack == H5Pack::Lzf || pack == H5Pack::Ecf;
-    const H5Filter filter = pack == H5Pack::Zstd  ? H5Filter::Zstd
-                            : pack == H5Pack::Lzf ? H5Filter::Lzf
-                                                  : H5Filter::Ecf;
+    const H5Filter filter = pack == H5Pack::Zstd ? H5Filter::Zstd : pack == H5Pack::Lzf ? H5Filter::Lzf : H5Filter::Ecf;
     if (packed_here) H5Pset_filter(creation.get(), static_cast<H5Z_filter_t>(filter), 0, 0, nullptr);
     const H5Handle data(
         H5Dcreate2(file_.get(), path.c_str(), type, space.get(), links.get(), creation.get(), H5P_DEFAULT), H5Dclose);

@@ -96,7 +96,8 @@ class Hdf5Dataset final : public StreamedDataset {
     if (!side_.ground_truth) side_.ground_truth = find_h5_truth(file, layout);
     set_sensor(sensor);
     if (events.ragged())
-      repairs_.add("events: arrays of different lengths", name_ + ": x, y, t and p differ in length; the shortest counts");
+      repairs_.add("events: arrays of different lengths",
+                   name_ + ": x, y, t and p differ in length; the shortest counts");
     if (file.cut()) repairs_.add("file: cut", name_ + ": the file ends too early; what it has is read");
     Merger::Streams streams{.events = true};
     add_events(std::move(events));
@@ -189,7 +190,8 @@ class Hdf5Dataset final : public StreamedDataset {
       const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
       read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
         const std::vector<Event> read = shared->read(first, n);
-        std::ranges::copy_if(read, std::back_inserter(items), [this](const Event& e) { return is_stamp(e.t, "events"); });
+        std::ranges::copy_if(read, std::back_inserter(items),
+                             [this](const Event& e) { return is_stamp(e.t, "events"); });
       });
       at += count;
       return true;
@@ -289,7 +291,8 @@ class Hdf5Dataset final : public StreamedDataset {
   }
 
   void add_imu_lines(const StampedLines<ImuSample>::Spec& spec) {
-    const auto refill = [lines = std::make_shared<StampedLines<ImuSample>>(spec, repairs_)](std::vector<ImuSample>& items) {
+    const auto refill = [lines =
+                             std::make_shared<StampedLines<ImuSample>>(spec, repairs_)](std::vector<ImuSample>& items) {
       while (lines->peek() && items.size() < kSamplesAtOnce) items.push_back(lines->pop());
       return !items.empty();
     };
@@ -304,8 +307,8 @@ class Hdf5Dataset final : public StreamedDataset {
   constexpr std::size_t kMostListed = 20;
   std::string known;
   for (const Hdf5Layout& layout : hdf5_layouts())
-    known += fmt::format("{}{}{} ({})", known.empty() ? "" : ", ", layout.events, layout.events.empty() ? "/x, y, t, p" : "",
-                         layout.name);
+    known += fmt::format("{}{}{} ({})", known.empty() ? "" : ", ", layout.events,
+                         layout.events.empty() ? "/x, y, t, p" : "", layout.name);
   const auto arrays = file.list(kMostListed + 1);
   std::string held;
   for (std::size_t i = 0; i < std::min(arrays.size(), kMostListed); ++i) held += (i > 0 ? ", " : "") + arrays[i];
@@ -336,7 +339,9 @@ std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
   if (all.empty()) return std::nullopt;
   std::ranges::sort(all);
   std::ranges::copy_if(all, std::back_inserter(with_events), holds_events);
-  const auto not_left = [&](const fs::path& p) { return fs::relative(p, folder).string().find("left") == std::string::npos; };
+  const auto not_left = [&](const fs::path& p) {
+    return fs::relative(p, folder).string().find("left") == std::string::npos;
+  };
   if (with_events.size() > 1) {
     std::vector<fs::path> left = with_events;
     std::erase_if(left, not_left);

@@ -80,8 +80,7 @@ TEST(Hdf5, DsecFoldersHaveTheirImagesAndTheLeftEvents) {
     std::filesystem::create_directories(folder.path() / "events" / side);
     H5Maker file(folder.path() / "events" / side / "events.h5");
     put_event_columns(file, "/events", side[0] == 'l' ? events : vga_events(5000), 0, H5Pack::Blosc, 4096);
-    H5Maker(folder.path() / "events" / side / "rectify_map.h5")
-        .array("/rectify_map", std::vector<float>(8), {2, 2, 2});
+    H5Maker(folder.path() / "events" / side / "rectify_map.h5").array("/rectify_map", std::vector<float>(8), {2, 2, 2});
   }
   std::string stamps;
   for (int i = 0; i < 4; ++i) {
@@ -107,8 +106,9 @@ TEST(Hdf5, VectorSequencesHaveImuImagesInTheMiddleOfTheirExposureAndTruth) {
   const std::string name = "desk_fast1.synced.";
   put_event_columns(*std::make_unique<H5Maker>(folder.path() / (name + "left_event.hdf5")), "/events", events, 0,
                     H5Pack::Zstd, 4096);
-  folder.write(name + "imu.txt", "# IMU of desk_fast1\n# more\n# timestamp gx gy gz ax ay az qx qy qz qw\n"
-                                 "0.01 1 2 3 4 5 6 0 0 0 1\n0.02 1 2 3 4 5 7 0 0 0 1\n");
+  folder.write(name + "imu.txt",
+               "# IMU of desk_fast1\n# more\n# timestamp gx gy gz ax ay az qx qy qz qw\n"
+               "0.01 1 2 3 4 5 6 0 0 0 1\n0.02 1 2 3 4 5 7 0 0 0 1\n");
   folder.write(name + "left_camera/timestamp.txt", "# Left\n# start and end\n0.010 0.012\n0.020 0.024\n");
   folder.write_image(name + "left_camera/0.010000.png", 12, 10, 1);
   folder.write_image(name + "left_camera/0.020000.png", 12, 10, 2);
@@ -200,7 +200,8 @@ TEST(Hdf5, MvsecFilesCountInSecondsAndHaveTheAccelerometerWhereGravityIs) {
     {
       H5Maker file(folder.path() / "indoor_data.hdf5");
       std::vector<double> rows, imu;
-      for (int i = 0; i < 1000; ++i) rows.insert(rows.end(), {i % 346 * 1.0, i % 260 * 1.0, t0 + 1e-5 * i, i % 2 ? 1. : -1.});
+      for (int i = 0; i < 1000; ++i)
+        rows.insert(rows.end(), {i % 346 * 1.0, i % 260 * 1.0, t0 + 1e-5 * i, i % 2 ? 1. : -1.});
       for (const int part : {0, 1})
         for (const double v : accel_first == (part == 0) ? std::array{0.1, -9.8, 0.2} : std::array{0.01, 0.02, 0.03})
           imu.push_back(v);

@@ -36,9 +36,9 @@ class GrowingArray {
     H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
     H5Pset_filter(creation.get(), static_cast<H5Z_filter_t>(H5Filter::Blosc), H5Z_FLAG_MANDATORY, parameters.size(),
                   parameters.data());
-    data_ = H5Handle(H5Dcreate2(file, path.c_str(), h5_native_type<T>(), space.get(), links.get(), creation.get(),
-                                H5P_DEFAULT),
-                     H5Dclose);
+    data_ = H5Handle(
+        H5Dcreate2(file, path.c_str(), h5_native_type<T>(), space.get(), links.get(), creation.get(), H5P_DEFAULT),
+        H5Dclose);
     check_written(bool(data_), file_name_);
   }
 
@@ -100,7 +100,8 @@ void put_attribute(hid_t object, const char* name, const std::string& text) {
 H5Handle create_file(const std::filesystem::path& path) {
   prepare_h5();
   H5Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  if (!file) throw InputError::format("{}: cannot be written: is there such a folder, and may you write there?", path.string());
+  if (!file)
+    throw InputError::format("{}: cannot be written: is there such a folder, and may you write there?", path.string());
   return file;
 }
 
@@ -211,7 +212,8 @@ class Hdf5Writer final : public RecordingWriter {
     const std::int64_t offset = offset_us_.value_or(0);
     const H5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const H5Handle data(
-        H5Dcreate2(file_.get(), "/t_offset", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+        H5Dcreate2(file_.get(), "/t_offset", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose);
     check_written(H5Dwrite(data.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &offset) >= 0, name_);
   }
 

@@ -9,8 +9,8 @@
 
 namespace edged {
 
-/// /events/{x,y,p,t}, /t_offset and /ms_to_idx as in DSEC, packed with Blosc, for the tools that read these; the size of
-/// the sensor as attributes of /events. Frames, IMU samples and ground truth in groups of our own that
+/// /events/{x,y,p,t}, /t_offset and /ms_to_idx as in DSEC, packed with Blosc, for the tools that read these; the size
+/// of the sensor as attributes of /events. Frames, IMU samples and ground truth in groups of our own that
 /// open_recording reads: /frames/{images,t_ns}, /imu/{gyro,accel,t_ns}, /truth/{poses,t_ns}.
 std::unique_ptr<RecordingWriter> write_hdf5(const WriterSetup& setup);
 

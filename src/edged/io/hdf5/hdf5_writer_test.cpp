@@ -57,7 +57,8 @@ TEST(Hdf5Writer, FramesImuTruthAndSensorComeBackToTheLastBit) {
     imu.push_back({t, {value, 2, 3}, {4, -value, 6}});
     writer->write(imu.back());
     writer->write(EventBatch{"events", {Event{timestamp_from_ns(2'000'000 + 1'000'000 * i), 1, 2, true}}});
-    if (i % 100 == 0) writer->write(Frame{t, "frames", cv::Mat(5, 7, CV_8UC1, cv::Scalar(static_cast<double>(i / 100)))});
+    if (i % 100 == 0)
+      writer->write(Frame{t, "frames", cv::Mat(5, 7, CV_8UC1, cv::Scalar(static_cast<double>(i / 100)))});
   }
   writer->finish();
   const Recording recording = open_recording(folder.path() / "a.h5");

@@ -57,7 +57,8 @@ Timestamp stamp_of(std::int64_t value, std::int64_t unit_ns) {
 
 Timestamp stamp_of(double value, std::int64_t unit_ns) {
   const double ns = std::round(value * static_cast<double>(unit_ns));
-  return !(std::abs(ns) <= static_cast<double>(kMaxStampNs)) ? kNoStamp : timestamp_from_ns(static_cast<std::int64_t>(ns));
+  return !(std::abs(ns) <= static_cast<double>(kMaxStampNs)) ? kNoStamp
+                                                             : timestamp_from_ns(static_cast<std::int64_t>(ns));
 }
 
 Timestamp shifted(Timestamp t, Duration offset) {

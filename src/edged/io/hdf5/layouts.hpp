@@ -18,10 +18,11 @@ namespace edged {
 /// fractions, or nanoseconds where the name ends with _ns.
 struct Hdf5Layout {
   std::string_view name;
-  std::string_view events;  ///< a group with x, y, t, p, or one data set: rows of (x, y, t, p) or with fields of these names
-  std::string_view offset = "";  ///< one stamp, added to those of the events
+  /// A group with x, y, t, p, or one data set: rows of (x, y, t, p) or with fields of these names.
+  std::string_view events;
+  std::string_view offset = "";                     ///< one stamp, added to those of the events
   std::string_view images = "", image_stamps = "";  ///< (n, height, width[, channels])
-  std::string_view gyro = "", accel = "";  ///< (n, 3) each [rad/s, m/s^2]; no accel: both in one of (n, 6)
+  std::string_view gyro = "", accel = "";           ///< (n, 3) each [rad/s, m/s^2]; no accel: both in one of (n, 6)
   std::string_view imu_stamps = "";
   std::string_view poses = "", pose_stamps = "";  ///< (n, 7): x y z [m] qx qy qz qw
   std::string_view sensor = "";                   ///< width and height of the event sensor

@@ -56,7 +56,9 @@ StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::strin
   return {stamps, "frames", std::move(layout), LastLine::MayLackEnd, parse_entry};
 }
 
-std::optional<Timestamp> single_microseconds(std::string_view line) { return parse_microseconds(FieldReader(line).next()); }
+std::optional<Timestamp> single_microseconds(std::string_view line) {
+  return parse_microseconds(FieldReader(line).next());
+}
 
 /// Start and end of the exposure in seconds.
 std::optional<Timestamp> middle_of_exposure(std::string_view line) {
@@ -125,8 +127,8 @@ SideFiles vector_files(const fs::path& events, const std::string& prefix) {
   return files;
 }
 
-/// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images are
-/// those of the start of the exposure, whose length [us] is in a list of its own.
+/// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images
+/// are those of the start of the exposure, whose length [us] is in a list of its own.
 SideFiles tum_vie_files(const fs::path& events, const std::string& prefix) {
   SideFiles files{.set = "tum-vie", .sensor = cv::Size(1280, 720)};
   const fs::path folder = fs::absolute(events).parent_path();

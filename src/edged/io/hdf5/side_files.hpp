@@ -16,7 +16,7 @@
 namespace edged {
 
 struct SideFiles {
-  std::string set = {};  ///< "dsec", "vector", "tum-vie", "eds"; "" where no set is recognised
+  std::string set = {};                 ///< "dsec", "vector", "tum-vie", "eds"; "" where no set is recognised
   std::optional<cv::Size> sensor = {};  ///< of the event camera [px], as all recordings of the set have it
   std::optional<StampedLines<FrameEntry>::Spec> frames = {};
   std::optional<StampedLines<ImuSample>::Spec> imu = {};

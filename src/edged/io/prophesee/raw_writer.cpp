@@ -16,11 +16,15 @@ namespace {
 class EvtFileWriter final : public RecordingWriter {
  public:
   EvtFileWriter(const WriterSetup& setup, EvtFormat format)
-      : name_(setup.path.string()), sensor_(setup.event_sensor()), format_(format), encoder_(format), file_(setup.path) {
+      : name_(setup.path.string()),
+        sensor_(setup.event_sensor()),
+        format_(format),
+        encoder_(format),
+        file_(setup.path) {
     const int most = format == EvtFormat::Dat ? 1 << 14 : 1 << 11;
     if (sensor_.width > most || sensor_.height > most)
-      throw InputError::format("{}: the format holds sensors of up to {} x {} px, this one has {} x {}", name_, most, most,
-                               sensor_.width, sensor_.height);
+      throw InputError::format("{}: the format holds sensors of up to {} x {} px, this one has {} x {}", name_, most,
+                               most, sensor_.width, sensor_.height);
   }
 
   void write(const EventBatch& batch) override {
@@ -57,8 +61,9 @@ class EvtFileWriter final : public RecordingWriter {
     constexpr Duration kLongest = std::chrono::microseconds(std::int64_t{7} << 28);
     for (const Event& event : events) {
       if (last_ && event.t - *last_ > kLongest)
-        throw InputError::format("{}: no events from {} to {} s: DAT cannot hold a silence of more than {:.0f} minutes; take raw",
-                                 name_, format_seconds(*last_), format_seconds(event.t), to_seconds(kLongest) / 60);
+        throw InputError::format(
+            "{}: no events from {} to {} s: DAT cannot hold a silence of more than {:.0f} minutes; take raw", name_,
+            format_seconds(*last_), format_seconds(event.t), to_seconds(kLongest) / 60);
       last_ = event.t;
     }
   }

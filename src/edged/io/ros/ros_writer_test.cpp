@@ -64,10 +64,9 @@ TEST(RosWriter, StampsThatRosCannotHoldAreRefused) {
       TempFolder folder;
       ListedDataset source = with_truth("body", timestamp_from_seconds(static_cast<double>(s)));
       const fs::path file = folder.path() / "out";
-      EXPECT_THAT(input_error([&] {
-                    write_recording(source, writable_format(format, file), file, load_rig("davis240c_ecd"));
-                  }),
-                  HasSubstr("shift the recording's clock"));
+      EXPECT_THAT(
+          input_error([&] { write_recording(source, writable_format(format, file), file, load_rig("davis240c_ecd")); }),
+          HasSubstr("shift the recording's clock"));
     }
 }
 
