@@ -19,6 +19,8 @@ constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so
 // itself.
 constexpr double kContradicted = 0.65;
 constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
+// Of its sigmas: a start takes the errors of a track for independent, which they are not.
+constexpr double kStartSigmaInflation = 2.5;
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
 constexpr double kMaxStandstillSpeed = 0.15;
 
@@ -95,7 +97,7 @@ void Estimator::leave_start() {
 /// What a provisional start has seen since may have told it the scale.
 void Estimator::settle_scale(const EstimatorInput& input) {
   if (!provisional() || !input.keyframe) return;
-  scale_sigma_ = std::min(scale_sigma_, config_.sigma_inflation * scale_sigma(window_));
+  scale_sigma_ = std::min(scale_sigma_, kStartSigmaInflation * scale_sigma(window_));
   agreed_ = agreed_ || input.t >= agreed_by_itself_;
   if (!provisional()) leave_start();
 }

@@ -182,7 +182,7 @@ TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   config.track_noise.correlation = 0.0;
   const VelocityErrors without = velocity_errors(drifting, config);
   EXPECT_LT(with.rms, 0.85 * without.rms);
-  EXPECT_GT(with.nees, 0.3);  // noise_inflation is 1.5: 0.44 where it counts for all
+  EXPECT_GT(with.nees, 0.3);  // noise_inflation squared is 4, where it counts for all
   EXPECT_LT(with.nees, 1.0);
 }
 
