@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks what no formatter checks: licence lines, header guards, and the sizes of files and functions.
+"""Checks licence lines, header guards, the sizes of files and functions, and our own format (.clang-format).
 
 Usage: check_style.py [ROOT]; prints warnings and errors, exits 1 if there is an error. Sizes above the first number are a
 warning: a place to look. Above the second they are an error.
 """
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -67,12 +68,27 @@ def check(path, name, errors, warnings):
                 (errors if size > hard else warnings).append(f"{name}:{line}: {what} of {size} lines (aim: {soft})")
 
 
+def check_format(root, paths, errors):
+    """As clang-format of Debian 12 has it; another version sets some lines otherwise, and is not asked."""
+    program = shutil.which("clang-format-14") or shutil.which("clang-format")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout if program else ""
+    if " 14." not in version:
+        errors.append(f"clang-format 14 is missing ({version.strip() or 'none found'}): scripts/setup.sh installs it")
+        return
+    done = subprocess.run([program, "--dry-run", *paths], cwd=root, capture_output=True, text=True, check=False)
+    wrong = dict.fromkeys(line.split(": warning:")[0] for line in done.stderr.splitlines() if ": warning:" in line)
+    errors.extend(f"{pathlib.Path(place).relative_to(root)}: not our format: clang-format -i mends it"
+                  for place in dict.fromkeys(place.split(":")[0] for place in wrong))
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
     errors, warnings = [], []
-    for path in files(root):
+    paths = files(root)
+    for path in paths:
         if path.suffix in CODE | SCRIPTS or path.name == "CMakeLists.txt":
             check(path, path.relative_to(root), errors, warnings)
+    check_format(root, [path for path in paths if path.suffix in CODE], errors)
     for text in warnings:
         print(f"warning: {text}")
     for text in errors:
