@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "edged/pipeline/odometry_config.hpp"
+#include "config_source.hpp"
 #include "exit_code.hpp"
 
 namespace edged {
@@ -28,7 +28,7 @@ void print_text(const ConfigField& field) {
 }
 
 int run_config(const ConfigOptions& options) {
-  OdometryConfig config;
+  RunConfig config;
   const ConfigFields fields = ConfigFields::of(config);
   if (options.yaml) {
     fmt::print("{}", fields.to_yaml());

@@ -4,13 +4,18 @@
 
 namespace edged {
 
+void RunConfig::visit(ConfigFields& fields) {
+  odometry.visit(fields);
+  fields.group("live", live);
+}
+
 void add_config_options(CLI::App& command, ConfigSource& source) {
   command.add_option("--config", source.file, "Options file (yaml); `edged config --yaml` prints one");
   command.add_option("--set", source.assignments, "One option as key=value; may be repeated")->allow_extra_args(false);
 }
 
-OdometryConfig load_config(const ConfigSource& source) {
-  OdometryConfig config;
+RunConfig load_config(const ConfigSource& source) {
+  RunConfig config;
   ConfigFields fields = ConfigFields::of(config);
   if (!source.file.empty()) fields.load(source.file);
   for (const std::string& assignment : source.assignments) fields.set(assignment);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Options of the odometry as the command line gives them: a file, then single values on top of it.
+// Options of a run as the command line gives them: a file, then single values on top of it.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,9 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "edged/live/measurement_queue.hpp"
 #include "edged/pipeline/odometry_config.hpp"
 
 namespace edged {
+
+/// Every option of a run.
+struct RunConfig {
+  OdometryConfig odometry;
+  QueueConfig live;  ///< what may wait in a live run
+  void visit(ConfigFields& fields);
+};
 
 struct ConfigSource {
   std::filesystem::path file;
@@ -21,6 +29,6 @@ struct ConfigSource {
 void add_config_options(CLI::App& command, ConfigSource& source);
 
 /// Throws InputError that names the file and line, or the key.
-OdometryConfig load_config(const ConfigSource& source);
+RunConfig load_config(const ConfigSource& source);
 
 }  // namespace edged

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/depth/depth_config.hpp"
 #include "edged/events/voxel_grid.hpp"
@@ -78,7 +79,8 @@ int run_depth(const DepthOptions& options) {
 
 /// Nothing is fetched: the published weights come under their authors' terms, so that the user gets them.
 int explain_fetch() {
-  const std::filesystem::path target = depth_model_folder() / "e2depth.onnx";
+  const std::vector<std::filesystem::path> folders = resource_folders("depth");
+  const std::filesystem::path target = (folders.empty() ? "." : folders.front()) / "e2depth.onnx";
   fmt::print(
       "The published e2depth network cannot ship with this program: its weights come under their authors' terms.\n"
       "  1. Get E2DEPTH_si_grad_loss_mixed.pth.tar from the page of github.com/uzh-rpg/rpg_e2depth.\n"
@@ -98,7 +100,7 @@ int explain_fetch() {
 void add_depth_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<DepthOptions>();
   CLI::App* depth = app.add_subcommand("depth", "Show a depth network and its cost here");
-  depth->add_option("MODEL", options->model, "Name in config/depth, or the path of an .onnx file")
+  depth->add_option("MODEL", options->model, "Name of one that is installed, or the path of an .onnx file")
       ->capture_default_str();
   depth->add_flag("--json", options->json, "Print json instead of text");
   depth->footer(

@@ -204,7 +204,7 @@ std::vector<std::string> title(const EnhanceOptions& options, const Moment& mome
 int run_enhance(const EnhanceOptions& options) {
   if (options.at_s < 0.0)
     throw InputError::format("--at {}: give seconds from the recording's start, not below 0", options.at_s);
-  const OdometryConfig config = load_config(options.config);
+  const OdometryConfig config = load_config(options.config).odometry;
   Source source = open_source(options.source);
   const DatasetInfo& info = source.dataset->info();
   if (!info.has_events) throw InputError::format("{}: has no events to enhance; take another recording", info.name);

@@ -45,7 +45,7 @@ struct RunOptions {
 /// One run from the first measurement to the files' end.
 class Run {
  public:
-  Run(const RunOptions& options, Source source, Mode mode, const OdometryConfig& config);
+  Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config);
   RunSummary go();
 
  private:
@@ -90,25 +90,25 @@ std::string frame_name(const std::string& wanted, const Source& source) {
   return wanted != "auto" ? wanted : has_usual ? usual : "body";
 }
 
-std::string config_text(OdometryConfig config, const DatasetInfo& info, Mode mode) {
+std::string config_text(RunConfig config, const DatasetInfo& info, Mode mode) {
   return fmt::format(
              "# every option of this run; give it to --config to repeat it\n# recording {}, mode {}, edged {}\n",
              info.name, mode_name(mode), kVersion) +
          ConfigFields::of(config).to_yaml();
 }
 
-Run::Run(const RunOptions& options, Source source, Mode mode, const OdometryConfig& config)
+Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
     : options_(options),
       source_(std::move(source)),
       mode_(mode),
       frame_(source_.calibration.rig, frame_name(options.frame, source_)),
       check_(source_.dataset->info(), source_.calibration, mode_),
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
-      packetizer_(source_.calibration.rig, mode_, config.packets),
-      odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config,
+      packetizer_(source_.calibration.rig, mode_, config.odometry.packets),
+      odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config.odometry,
                 options.live ? Inference::OwnThread : Inference::Synchronous),
       queue_config_(config.live),
-      calibration_config_(config.estimator.calibration),
+      calibration_config_(config.odometry.estimator.calibration),
       status_line_(options.quiet) {
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
@@ -313,7 +313,7 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
 
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
-  const OdometryConfig config = load_config(options.config);
+  const RunConfig config = load_config(options.config);
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);

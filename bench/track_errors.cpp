@@ -126,7 +126,7 @@ void write(const std::filesystem::path& file, const TrackTruth& truth, const std
 }
 
 int run(const ErrorOptions& options) {
-  const OdometryConfig config = load_config(options.config);
+  const OdometryConfig config = load_config(options.config).odometry;
   std::unique_ptr<TrackTruth> truth;
   Source source;
   if (auto simulated = simulator_config(options.source)) {

@@ -1,31 +1,12 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-# Every library comes from Debian 12; scripts/setup.sh installs them.
+# What edged::edged needs, here and where it is installed. Every library comes from Debian 12; scripts/setup.sh installs
+# them.
 find_package(Eigen3 3.4 REQUIRED)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs video features2d calib3d dnn)
 find_package(Ceres 2.1 REQUIRED)
 find_package(opengv REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
-find_package(CLI11 2.1 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Threads REQUIRED)
-find_package(BZip2 REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
-pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
-pkg_check_modules(tinyxml2 REQUIRED IMPORTED_TARGET tinyxml2)
-pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
-pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
-pkg_check_modules(blosc REQUIRED IMPORTED_TARGET blosc)
-pkg_check_modules(lzf REQUIRED IMPORTED_TARGET liblzf)
-if(EDGED_TESTS)
-  enable_testing()
-  find_package(GTest 1.12 REQUIRED)
-  include(GoogleTest)
-endif()
-if(EDGED_BENCH)
-  find_package(benchmark 1.7 REQUIRED)
-endif()

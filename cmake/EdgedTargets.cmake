@@ -4,13 +4,17 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+include(GNUInstallDirs)
+# A program in bin/ finds rigs and networks as it does once installed.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/config ${PROJECT_BINARY_DIR}/share/edged SYMBOLIC)
 
-# Options of every target of ours. No -march and no fused multiply-add: the same bits on every machine.
+# Options of every target of ours, and of ours alone. No -march and no fused multiply-add: the same bits on every
+# machine.
 add_library(edged_options INTERFACE)
-target_compile_features(edged_options INTERFACE cxx_std_20)
-target_include_directories(edged_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
-target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
+target_compile_options(edged_options INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
 if(EDGED_SANITIZE)
   target_compile_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
@@ -19,20 +23,42 @@ if(EDGED_SANITIZE)
   target_compile_definitions(edged_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
-# edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ...)
-# makes the library edged_NAME (alias edged::NAME) and the test program edged_NAME_test.
+# edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ... TEST_DEPENDS libs ...)
+# makes the library edged_NAME (alias edged::NAME), a part of EDGED_COMPONENT, and the test program edged_NAME_test.
 function(edged_module NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;TEST_DEPENDS" ${ARGN})
-  if(ARG_SOURCES)
-    add_library(edged_${NAME} STATIC ${ARG_SOURCES})
-    target_link_libraries(edged_${NAME} PUBLIC edged_options ${ARG_DEPENDS})
-  else()
-    add_library(edged_${NAME} INTERFACE)
-    target_link_libraries(edged_${NAME} INTERFACE edged_options ${ARG_DEPENDS})
-  endif()
+  add_library(edged_${NAME} STATIC ${ARG_SOURCES})
   add_library(edged::${NAME} ALIAS edged_${NAME})
+  target_compile_features(edged_${NAME} PUBLIC cxx_std_20)
+  target_include_directories(edged_${NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                                                  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(edged_${NAME} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:edged_options>)
+  edged_export(edged_${NAME} ${NAME})
+  if(EDGED_INSTALL)
+    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edged/${NAME}
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*" EXCLUDE PATTERN testdata EXCLUDE)
+  endif()
   if(EDGED_TESTS AND ARG_TESTS)
     edged_test(edged_${NAME}_test SOURCES ${ARG_TESTS} DEPENDS edged::${NAME} ${ARG_TEST_DEPENDS})
+  endif()
+endfunction()
+
+# edged_component(modules ...): all that EDGED_COMPONENT is, in the one library edged::EDGED_COMPONENT.
+function(edged_component)
+  set(target edged_component_${EDGED_COMPONENT})
+  add_library(${target} INTERFACE)
+  add_library(edged::${EDGED_COMPONENT} ALIAS ${target})
+  list(TRANSFORM ARGN PREPEND edged::)
+  target_link_libraries(${target} INTERFACE ${ARGN})
+  edged_export(${target} ${EDGED_COMPONENT})
+endfunction()
+
+# The target is installed, and found by find_package as edged::NAME.
+function(edged_export TARGET NAME)
+  set_target_properties(${TARGET} PROPERTIES EXPORT_NAME ${NAME})
+  if(EDGED_INSTALL)
+    install(TARGETS ${TARGET} EXPORT edged_${EDGED_COMPONENT} ARCHIVE COMPONENT development
+            DESTINATION ${CMAKE_INSTALL_LIBDIR})
   endif()
 endfunction()
 
@@ -43,7 +69,7 @@ function(edged_test NAME)
     set(ARG_TIMEOUT 600)
   endif()
   add_executable(${NAME} ${ARG_SOURCES})
-  target_link_libraries(${NAME} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_link_libraries(${NAME} PRIVATE edged_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_definitions(
     ${NAME} PRIVATE EDGED_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EDGED_BINARY_DIR="${CMAKE_BINARY_DIR}")
   gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")

@@ -12,6 +12,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/core/resources.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {
@@ -77,26 +78,16 @@ struct DepthNetwork::Runtime {
   cv::dnn::Net net;
 };
 
-fs::path depth_model_folder() { return EDGED_DEPTH_FOLDER; }
-
-std::vector<fs::path> shipped_depth_models() {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(depth_model_folder(), error))
-    if (entry.path().extension() == ".onnx") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 fs::path find_depth_model(const std::string& name_or_path) {
   if (fs::path(name_or_path).has_extension()) return name_or_path;
+  if (const auto file = find_resource("depth", name_or_path, ".onnx")) return *file;
   std::vector<std::string> names;
-  for (const fs::path& file : shipped_depth_models()) {
-    if (file.stem() == name_or_path) return file;
-    names.push_back(file.stem().string());
-  }
-  throw InputError::format("there is no depth model '{}' in {}; choose one of {} or give the path of an .onnx file",
-                           name_or_path, depth_model_folder().string(), fmt::join(names, ", "));
+  for (const fs::path& file : resources("depth", ".onnx")) names.push_back(file.stem().string());
+  throw InputError::format(
+      "there is no depth model '{}'; {}", name_or_path,
+      names.empty() ? "none is installed: set EDGED_DEPTH to a folder of them, or give the path of "
+                      "an .onnx file"
+                    : fmt::format("choose one of {} or give the path of an .onnx file", fmt::join(names, ", ")));
 }
 
 DepthModel read_depth_model(const fs::path& onnx) {

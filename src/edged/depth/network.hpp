@@ -30,13 +30,8 @@ struct DepthModel {
   std::vector<State> states;  ///< empty: not recurrent
 };
 
-/// config/depth: models there are known by name.
-std::filesystem::path depth_model_folder();
-
-/// The ONNX files there, by name.
-std::vector<std::filesystem::path> shipped_depth_models();
-
-/// NAME (config/depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models there are.
+/// NAME (core/resources.hpp: depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models
+/// there are.
 std::filesystem::path find_depth_model(const std::string& name_or_path);
 
 /// Reads MODEL.json for MODEL.onnx. Throws InputError naming the file and key.

@@ -5,12 +5,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <numbers>
 
 #include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/resources.hpp"
 #include "edged/io/calib/formats.hpp"
 #include "edged/io/calib/plausibility.hpp"
 
@@ -26,16 +25,6 @@ std::optional<SourcePath> imu_file_beside(const SourcePath& file) {
   for (const std::string& name : folder.names())
     if (name.starts_with("imu") && name.ends_with(".yaml")) return folder / name;
   return std::nullopt;
-}
-
-std::vector<fs::path> rig_folders() {
-  std::vector<fs::path> folders;
-  if (const char* own = std::getenv("EDGED_RIGS")) folders.emplace_back(own);
-  folders.emplace_back(EDGED_RIG_FOLDER);
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path() / "share" / "edged" / "rigs");
-  return folders;
 }
 
 std::string format_transform(const std::string& name, const SE3& T) {
@@ -70,19 +59,12 @@ Calibration load_calibration(const SourcePath& path, const CalibrationOptions& o
 
 std::vector<std::string> known_rigs() {
   std::vector<std::string> names;
-  for (const fs::path& folder : rig_folders()) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
+  for (const fs::path& file : resources("rigs", ".yaml")) names.push_back(file.stem().string());
   return names;
 }
 
 Calibration load_rig(const std::string& name_or_path) {
-  for (const fs::path& folder : rig_folders())
-    if (const fs::path file = folder / (name_or_path + ".yaml"); fs::exists(file)) return load_calibration(file);
+  if (const auto file = find_resource("rigs", name_or_path, ".yaml")) return load_calibration(*file);
   if (fs::exists(name_or_path)) return load_calibration(name_or_path);
   std::string known;
   for (const std::string& name : known_rigs()) known += (known.empty() ? "" : ", ") + name;

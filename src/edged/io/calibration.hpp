@@ -46,7 +46,7 @@ struct CalibrationOptions {
 /// Logs Calibration::warnings.
 Calibration load_calibration(const SourcePath& path, const CalibrationOptions& options = {});
 
-/// A rig by name (config/rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.
+/// A rig by name (core/resources.hpp: rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.
 Calibration load_rig(const std::string& name_or_path);
 
 /// Names of the rigs that load_rig finds, sorted.

@@ -32,7 +32,6 @@ void OdometryConfig::visit(ConfigFields& fields) {
   fields.group("depth_factor", estimator.depth_factor);
   fields.group("estimator", estimator);
   fields.group("status", status);
-  fields.group("live", live);
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
              {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
   fields.add(

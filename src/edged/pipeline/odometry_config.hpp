@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Every option of a run, grouped by the part that owns it.
+// Every option of the odometry, grouped by the part that owns it.
 #pragma once
 
 #include "edged/core/config.hpp"
@@ -11,7 +11,6 @@
 #include "edged/frontend/dim_image.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/tracker.hpp"
-#include "edged/live/measurement_queue.hpp"
 #include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/packetizer.hpp"
 #include "edged/pipeline/tracking_status.hpp"
@@ -34,7 +33,6 @@ struct OdometryConfig {
   KeyframeConfig keyframes;
   DepthConfig depth;
   EstimatorConfig estimator;
-  QueueConfig live;                   ///< what may wait in a live run
   double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which nothing moves in view
   double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
   double min_events_per_pixel = 0.1;  ///< a packet with fewer events draws no event frame

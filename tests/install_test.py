@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""What is installed serves others: tests/consumer is built against it after it has been moved.
+
+Environment: EDGED_BUILD, the build folder that is installed; CMAKE, CXX.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+CONSUMER = SOURCE / "tests" / "consumer"
+
+
+def call(*command, **options):
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_install_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        first = cls.folder / "first"
+        call(os.environ["CMAKE"], "--install", os.environ["EDGED_BUILD"], "--prefix", first)
+        cls.prefix = cls.folder / "moved"
+        first.rename(cls.prefix)
+        # Only what is installed counts: not what this test was started with.
+        cls.environment = {key: value for key, value in os.environ.items() if not key.startswith("EDGED_")}
+
+    def test_the_program_runs_where_it_has_been_moved(self):
+        edged = self.prefix / "bin" / "edged"
+        self.assertIn("edged ", call(edged, "--version", env=self.environment))
+        self.assertIn("small.onnx", call(edged, "depth", "--json", env=self.environment))
+        flight = self.folder / "flight"
+        call(edged, "simulate", "--duration", "1", "--out", flight, "--quiet", env=self.environment)
+        self.assertIn("events", call(edged, "info", flight, "--rig", "davis240c_ecd", env=self.environment))
+
+    def test_nothing_points_back_to_the_sources(self):
+        for file in sorted(path for path in self.prefix.rglob("*") if path.is_file()):
+            for place in (SOURCE, pathlib.Path(os.environ["EDGED_BUILD"]).resolve()):
+                self.assertNotIn(str(place).encode() + b"/", file.read_bytes(), file)
+
+    def test_a_project_finds_links_and_runs_it(self):
+        build = self.folder / "build"
+        call(os.environ["CMAKE"], "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-G", "Ninja",
+             f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", env=self.environment)
+        call(os.environ["CMAKE"], "--build", build, env=self.environment)
+        self.assertIn("waiting for: ", call(build / "sensors", env=self.environment))
+        # A program elsewhere is told where rigs are.
+        rigs = {**self.environment, "EDGED_RIGS": str(self.prefix / "share" / "edged" / "rigs")}
+        told = call(build / "fly", env=rigs)
+        self.assertIn("Good, ", told)
+        self.assertNotIn(" 0 rigs", told)
+
+    def test_a_component_that_is_not_there_is_named(self):
+        project = self.folder / "wants_more"
+        project.mkdir()
+        (project / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(p LANGUAGES CXX)\n"
+                                                "find_package(edged REQUIRED COMPONENTS telepathy)\n")
+        with self.assertRaisesRegex(AssertionError, "telepathy"):
+            call(os.environ["CMAKE"], "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                 f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", env=self.environment)
+
+
+if __name__ == "__main__":
+    unittest.main()
