@@ -5,9 +5,8 @@
 
 #include <optional>
 #include <span>
-#include <utility>
-#include <vector>
 
+#include "edged/survey/gyro_integral.hpp"
 #include "edged/survey/visual_turns.hpp"
 
 namespace edged {
@@ -24,27 +23,6 @@ struct GyroAgreement {
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
   bool mirrored = false;    ///< fits only after its turns are negated: axes of the gyro have the wrong sign
   double gyro_scale = 1.0;  ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
-};
-
-/// Integrated gyro.
-class GyroIntegral {
- public:
-  void add(const ImuSample& sample);
-  /// The rotation vector of the body between two stamps, for turns small enough to be added: whatever the unit of the
-  /// gyro. Nothing where samples are missing.
-  std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
-  /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
-  std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
-
- private:
-  /// The first sample after each of two stamps.
-  std::optional<std::pair<std::size_t, std::size_t>> samples_after(Timestamp begin, Timestamp end) const;
-  /// From the sample `after` - 1 to t, which lies before the next one.
-  Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
-
-  std::vector<Timestamp> stamps_;
-  std::vector<Eigen::Vector3d> gyro_, sum_;
-  std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
 };
 
 /// Time offsets within kMostShift of `expected` are tried. Nothing where there are too few turns to compare.

@@ -6,7 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "edged/survey/gyro_agreement.hpp"
+#include "edged/survey/gyro_integral.hpp"
+#include "edged/survey/visual_turns.hpp"
 
 namespace edged {
 

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The turning of the body between any two stamps, as its gyro says.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "edged/core/lie.hpp"
+#include "edged/core/types.hpp"
+
+namespace edged {
+
+/// Integrated gyro.
+class GyroIntegral {
+ public:
+  void add(const ImuSample& sample);
+  /// The rotation vector of the body between two stamps, for turns small enough to be added: whatever the unit of the
+  /// gyro. Nothing where samples are missing.
+  std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
+  /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
+  std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
+
+ private:
+  /// The first sample after each of two stamps.
+  std::optional<std::pair<std::size_t, std::size_t>> samples_after(Timestamp begin, Timestamp end) const;
+  /// From the sample `after` - 1 to t, which lies before the next one.
+  Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
+
+  std::vector<Timestamp> stamps_;
+  std::vector<Eigen::Vector3d> gyro_, sum_;
+  std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
+};
+
+}  // namespace edged
