@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/marginalization.hpp"
 #include "edged/estimator/solver.hpp"
 #include "edged/estimator/test_world.hpp"
@@ -96,7 +97,7 @@ void BM_Marginalize(benchmark::State& state) {
   for (const auto& [id, feature] : window.features) {
     if (feature.anchor == oldest) leaving.insert({BlockKind::InverseDepth, id});
   }
-  std::vector<Factor> factors = window.factors();
+  std::vector<Factor> factors = factors_of(window);
   std::erase_if(factors, [&](const Factor& factor) {
     return std::none_of(factor.blocks.begin(), factor.blocks.end(),
                         [&](const BlockKey& key) { return leaving.contains(key); });

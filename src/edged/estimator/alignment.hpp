@@ -19,25 +19,14 @@
 
 #include <optional>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "edged/camera/rig.hpp"
 #include "edged/core/types.hpp"
-#include "edged/estimator/region_depth.hpp"
+#include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
-
-inline constexpr double kGravity = 9.81;  ///< [m/s^2]
-
-/// One view of the start-up buffer.
-struct InitFrame {
-  Timestamp t;
-  std::vector<ImuSample> imu;  ///< from the frame before to t; of the first frame unused
-  std::vector<CameraObservations> observations;
-  std::optional<RegionDepth> depth = std::nullopt;  ///< not used by the alignment, but by the window made from it
-};
 
 struct Alignment {
   std::vector<NavState> states;  ///< one a frame; W z-up, origin and yaw at the first body pose

@@ -4,12 +4,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
 
 std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks) {
-  const std::vector<Factor> factors = window.factors();
+  const std::vector<Factor> factors = factors_of(window);
   std::set<BlockKey> others;
   for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
   for (const BlockKey& block : blocks) {
@@ -30,6 +31,12 @@ std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKe
 std::optional<Matrix15d> covariance(Window& window, StateId state) {
   const auto P = covariance(window, {{BlockKind::Pose, state}, {BlockKind::Motion, state}});
   return P ? std::optional<Matrix15d>(*P) : std::nullopt;
+}
+
+LogScale estimate_scale(Window& window) {
+  const auto& [id, ln_s] = *window.ln_scale.rbegin();
+  const auto P = covariance(window, {{BlockKind::LogScale, id}});
+  return {ln_s, P ? std::sqrt((*P)(0, 0)) : window.depth_config.scale_sigma};
 }
 
 }  // namespace edged

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 
 #include "edged/estimator/window.hpp"
 
@@ -17,5 +18,8 @@ std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKe
 /// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start,
 /// where the gauge is held.
 std::optional<Matrix15d> covariance(Window& window, StateId state);
+
+/// ln s given everything in the window and before it.
+LogScale estimate_scale(Window& window);
 
 }  // namespace edged

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/marginalization.hpp"
 #include "edged/estimator/test_world.hpp"
 
@@ -17,7 +18,7 @@ TEST(Covariance, IsTheInverseOfWhatMarginalisationLeavesOfAState) {
   const std::optional<Matrix15d> P = covariance(window, newest);
   ASSERT_TRUE(P);
 
-  const std::vector<Factor> factors = window.factors();
+  const std::vector<Factor> factors = factors_of(window);
   std::set<BlockKey> others;
   for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
   others.erase({BlockKind::Pose, newest});

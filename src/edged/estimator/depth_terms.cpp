@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edged/estimator/covariance.hpp"
-
 namespace edged {
 namespace {
 
@@ -130,21 +128,6 @@ double worst_depth_error(Window& window, const LogScale& scale) {
     if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, scale).value_or(0.0));
   }
   return worst;
-}
-
-LogScale estimate_scale(Window& window) {
-  const auto& [id, ln_s] = *window.ln_scale.rbegin();
-  const auto P = covariance(window, {{BlockKind::LogScale, id}});
-  return {ln_s, P ? std::sqrt((*P)(0, 0)) : window.depth_config.scale_sigma};
-}
-
-LinearPrior scale_prior(BlockKey scale, double sigma) {
-  LinearPrior prior;
-  prior.blocks = {scale};
-  prior.x0 = {{0.0}};
-  prior.J = Eigen::MatrixXd::Constant(1, 1, 1.0 / sigma);
-  prior.r = Eigen::VectorXd::Zero(1);
-  return prior;
 }
 
 LinearPrior begin_scale(Window& window, double dt_s) {

@@ -6,8 +6,10 @@
 // held as ln s, one value for the whole window; its random walk acts at the window's old end, where a keyframe leaves.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "edged/estimator/factors/factor.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
@@ -24,12 +26,6 @@ std::optional<double> depth_error_sigmas(Window& window, StateId state, const Lo
 
 /// The largest of these over all states; 0 without any.
 double worst_depth_error(Window& window, const LogScale& scale);
-
-/// ln s given everything in the window and before it.
-LogScale estimate_scale(Window& window);
-
-/// ln s near zero, before any measurement.
-LinearPrior scale_prior(BlockKey scale, double sigma);
 
 /// Begins a new piece of ln s after the present one, and returns the walk between the two.
 LinearPrior begin_scale(Window& window, double dt_s);

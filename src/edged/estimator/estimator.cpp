@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/covariance.hpp"
 #include "edged/estimator/sliding.hpp"
 #include "edged/estimator/solver.hpp"
@@ -163,7 +164,7 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   result.plausible = usable && plausible(newest());
   const std::vector<FeatureId> outliers = remove_outliers(window_, config_.landmarks);
   result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());
-  result.imu_strain = window_.imu_strain();
+  result.imu_strain = imu_strain(window_);
   const StateId newest_id = window_.states.rbegin()->first;
   result.landmarks = result.landmarks_seen = 0;
   for (const auto& [id, feature] : window_.features) {

@@ -21,7 +21,7 @@ struct EstimatorResult {
   std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
   int landmarks = 0;                ///< in the cost
   int landmarks_seen = 0;           ///< of them, seen by the newest state
-  double imu_strain = 0.0;          ///< of the window: see Window::imu_strain [sigma]
+  double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
   bool standstill = false;
   bool new_frame = false;    ///< the estimator has started (again) with this input, in a frame of its own
   bool provisional = false;  ///< the start does not know the scale well enough yet

@@ -31,7 +31,7 @@ struct EstimatorConfig {
   double noise_inflation = 2.0;          ///< sigma over the spread of what each sight adds to the one before
   double min_noise_scale = 0.05;         ///< bounds of the adapted noise over the configured one
   double max_noise_scale = 4.0;
-  double max_imu_strain = 0.5;  ///< beyond it (Window::imu_strain) the cameras are believed less
+  double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
   double sigma_inflation =
       2.0;  ///< of what covariance() gives: what corners of one image have in common is not modelled
   TrackNoise track_noise;

@@ -7,6 +7,7 @@
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/statistics.hpp"
+#include "edged/estimator/cost.hpp"
 
 namespace edged {
 namespace {
@@ -183,7 +184,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   for (const auto& [id, feature] : window.features) {
     if (feature.camera != camera || !feature.anchor) continue;
     Eigen::Vector2d before = Eigen::Vector2d::Zero();
-    for (const TrackStep& step : window.steps(feature)) {
+    for (const TrackStep& step : track_steps(window, feature)) {
       if (step.before == *feature.anchor) before.setZero();
       const std::optional<Eigen::Vector2d> error = sight_error(window, feature, step.seen);
       if (!error) break;

@@ -42,7 +42,7 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
 enum class Newness { Newest, Any };
 
 /// Spread of what one camera's sights, in the newest state or in any, are off by beyond what the sight before tells
-/// (Window::steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of
+/// (track_steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of
 /// them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "edged/estimator/factors/factor.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {

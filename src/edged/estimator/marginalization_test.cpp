@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/solver.hpp"
 #include "edged/estimator/test_world.hpp"
 
@@ -21,7 +22,7 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
 
   const StateId first = window.states.begin()->first;
   const std::set<BlockKey> leaving = {{BlockKind::Pose, first}, {BlockKind::Motion, first}};
-  std::vector<Factor> touching = window.factors();
+  std::vector<Factor> touching = factors_of(window);
   std::erase_if(touching, [&](const Factor& f) {
     return std::none_of(f.blocks.begin(), f.blocks.end(), [&](const BlockKey& k) { return leaving.contains(k); });
   });
@@ -45,7 +46,7 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
 TEST(Marginalize, KeepsTheInformationOfTheNormalEquations) {
   TestWorld world({});
   Window window = inertial_window(world);
-  const std::vector<Factor> factors = window.factors();
+  const std::vector<Factor> factors = factors_of(window);
   const LinearPrior prior = marginalize(window, factors, {});  // nothing leaves: J^T J is H, J^T r is g
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(prior.J.cols(), prior.J.cols());
   Eigen::VectorXd g = Eigen::VectorXd::Zero(prior.J.cols());

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/normal_equations.hpp"
 
+#include "edged/estimator/cost.hpp"
+
 namespace edged {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "edged/estimator/cost.hpp"
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/marginalization.hpp"
 
@@ -14,7 +15,7 @@ constexpr double kRestStretch = 10.0;
 
 /// The prior (always) and every other factor with a block that leaves.
 std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
-  std::vector<Factor> factors = window.factors(Sights::OfKeyframes);
+  std::vector<Factor> factors = factors_of(window, Sights::OfKeyframes);
   const bool has_prior = !window.prior.empty();
   std::size_t index = 0;
   std::erase_if(factors, [&](const Factor& factor) {

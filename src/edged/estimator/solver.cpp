@@ -5,6 +5,8 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include "edged/estimator/cost.hpp"
+
 namespace edged {
 namespace {
 
@@ -34,7 +36,7 @@ struct Arena {
 }  // namespace
 
 SolveSummary solve(Window& window, int max_iterations) {
-  std::vector<Factor> factors = window.factors();
+  std::vector<Factor> factors = factors_of(window);
   PoseManifold pose_manifold;
 
   ceres::Problem::Options options;

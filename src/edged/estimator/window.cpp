@@ -4,24 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <span>
 
 #include "edged/core/check.hpp"
-#include "edged/estimator/depth_terms.hpp"
-#include "edged/estimator/factors/imu_factor.hpp"
-#include "edged/estimator/factors/standstill_factor.hpp"
 
 namespace edged {
 namespace {
 
-constexpr BlockKey kImuKey{BlockKind::ImuIntrinsics, 0};
-
 bool is_calibration(BlockKey key) { return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics; }
-
-// What is called rest may be this far from it, whatever the time between the two states.
-constexpr double kRestSigma_m = 2e-3, kRestSigma_rad = 1e-3;
 
 /// A block near what it is now, by one sigma for each of its numbers. One that is held gets a sigma too small to move
 /// by.
@@ -99,7 +90,8 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
   free_calibration({0.0, 0.0, 0.0});
   if (!depth.enabled) return;
   ln_scale[0] = 0.0;
-  soft_priors.push_back(scale_prior({BlockKind::LogScale, 0}, depth.scale_sigma));
+  soft_priors.push_back(
+      near_present({BlockKind::LogScale, 0}, {&ln_scale[0], 1}, Eigen::VectorXd::Constant(1, depth.scale_sigma)));
 }
 
 std::size_t Window::camera_index(const std::string& name) const {
@@ -147,7 +139,8 @@ void Window::free_calibration(const CalibrationConfig& config) {
   for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
     soft_priors.push_back(near_present({BlockKind::Calibration, camera}, calibration[camera], of_camera));
   }
-  soft_priors.push_back(near_present(kImuKey, imu_intrinsics, Eigen::VectorXd::Constant(18, config.imu_sigma)));
+  soft_priors.push_back(
+      near_present(kImuIntrinsicsKey, imu_intrinsics, Eigen::VectorXd::Constant(18, config.imu_sigma)));
 }
 
 Eigen::Vector3d Window::position(const Feature& feature) const {
@@ -182,98 +175,6 @@ void Window::drop_orphaned_priors() {
   std::erase_if(soft_priors, [&](const LinearPrior& soft) {
     return std::any_of(soft.blocks.begin(), soft.blocks.end(), [&](BlockKey key) { return block(key) == nullptr; });
   });
-}
-
-std::vector<Factor> Window::factors(Sights sights) {
-  std::vector<Factor> out;
-  if (!prior.empty()) out.push_back({std::make_unique<LinearPriorFactor>(prior), nullptr, prior.blocks});
-  for (const LinearPrior& soft : soft_priors) {
-    out.push_back({std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
-  }
-  add_motion_factors(out);
-  add_visual_factors(out, sights);
-  add_depth_factors(*this, out);
-  return out;
-}
-
-void Window::add_motion_factors(std::vector<Factor>& out) {
-  if (states.empty()) return;
-  for (auto b = std::next(states.begin()); b != states.end(); ++b) {
-    const BlockKey pose_a{BlockKind::Pose, std::prev(b)->first}, pose_b{BlockKind::Pose, b->first};
-    const BlockKey motion_a{BlockKind::Motion, pose_a.id}, motion_b{BlockKind::Motion, pose_b.id};
-    out.push_back({std::make_unique<ImuFactor>(b->second.imu), nullptr, {pose_a, motion_a, pose_b, motion_b, kImuKey}});
-    if (!b->second.rested) continue;
-    out.push_back({std::make_unique<StandstillFactor>(kRestSigma_m, kRestSigma_rad), nullptr, {pose_a, pose_b}});
-  }
-}
-
-double Window::imu_strain() {
-  if (states.size() < 2) return 0.0;
-  double sum = 0.0;
-  for (auto a = states.begin(), b = std::next(a); b != states.end(); ++a, ++b) {
-    const double* blocks[] = {a->second.pose.data(), a->second.motion.data(), b->second.pose.data(),
-                              b->second.motion.data(), imu_intrinsics.data()};
-    Eigen::Matrix<double, 15, 1> r;
-    ImuFactor(b->second.imu).Evaluate(blocks, r.data(), nullptr);
-    sum += r.squaredNorm();
-  }
-  return std::sqrt(sum / (15.0 * static_cast<double>(states.size() - 1)));
-}
-
-std::vector<TrackStep> Window::steps(const Feature& feature, Sights sights) const {
-  std::vector<TrackStep> steps;
-  const auto anchor = feature.seen.find(*feature.anchor);
-  const auto follow = [&](auto first, auto last) {
-    StateId before = anchor->first;
-    for (auto sight = first; sight != last; ++sight) {
-      if (sights == Sights::OfKeyframes && !states.at(sight->first).keyframe) continue;
-      const double dt = std::abs(to_seconds(states.at(sight->first).t - states.at(before).t));
-      const double correlation = track_noise.correlation * std::exp(-dt / track_noise.time_s);
-      const double own = std::sqrt(1.0 - correlation * correlation);
-      steps.push_back({before, sight->first, correlation, sight->second.sigma * own});
-      before = sight->first;
-    }
-  };
-  follow(std::next(anchor), feature.seen.end());
-  follow(std::make_reverse_iterator(anchor), feature.seen.rend());
-  return steps;
-}
-
-void Window::add_visual_factors(std::vector<Factor>& out, Sights sights) {
-  for (const auto& [id, feature] : features) {
-    if (!feature.anchor) continue;
-    const auto view = [&](StateId state) {
-      return LandmarkView{feature.seen.at(state).point, states.at(state).rate()};
-    };
-    const auto pose = [](StateId state) { return BlockKey{BlockKind::Pose, state}; };
-    const BlockKey calib{BlockKind::Calibration, feature.camera}, depth{BlockKind::InverseDepth, id};
-    const SE3& T_B_C = cameras[feature.camera].T_B_C;
-    const StateId anchor = *feature.anchor;
-    const LandmarkView from = view(anchor);
-    for (const TrackStep& step : steps(feature, sights)) {
-      Factor factor{nullptr, visual_loss_.get(), {pose(anchor), pose(step.seen)}};
-      // The anchor's sight is exact by the choice of the landmark: the first step has no error to start from.
-      if (step.before == anchor || step.correlation == 0.0) {
-        factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, from, view(step.seen), step.sigma);
-      } else {
-        factor.cost = std::make_unique<TrackStepFactor>(T_B_C, from, view(step.seen), view(step.before),
-                                                        step.correlation, step.sigma);
-        factor.blocks.push_back(pose(step.before));
-      }
-      factor.blocks.insert(factor.blocks.end(), {calib, depth});
-      out.push_back(std::move(factor));
-    }
-  }
-}
-
-std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors) {
-  std::set<BlockKey> coupled;
-  for (const Factor& factor : factors) {
-    const auto is_depth = [](const BlockKey& key) { return key.kind == BlockKind::InverseDepth; };
-    if (std::count_if(factor.blocks.begin(), factor.blocks.end(), is_depth) < 2) continue;
-    std::copy_if(factor.blocks.begin(), factor.blocks.end(), std::inserter(coupled, coupled.end()), is_depth);
-  }
-  return coupled;
 }
 
 }  // namespace edged

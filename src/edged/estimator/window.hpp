@@ -1,16 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The sliding window: states, features and the prior that stands for what has left; its factors, as one list that is
-// solved and marginalised alike.
+// The sliding window: states, features and the prior that stands for what has left.
 #pragma once
 
-#include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -44,10 +41,6 @@ struct TrackNoise {
   void visit(ConfigFields& fields);
 };
 
-/// Which sights count. What stays of a landmark when its anchor leaves may only hang on states that will be
-/// marginalised, not dropped.
-enum class Sights { All, OfKeyframes };
-
 /// One instant of the window: a keyframe, or one of the newest states.
 struct WindowState {
   Timestamp t;
@@ -74,20 +67,6 @@ struct Feature {
   StateId last_seen = 0;                       ///< the newest sight, even if its state has been dropped since
   std::optional<StateId> anchor;               ///< set when it is a landmark
   double inverse_depth = 0.0;                  ///< [1/m] along z of the anchor camera
-};
-
-/// A sight of a landmark and its neighbour towards the anchor.
-struct TrackStep {
-  StateId before, seen;
-  double correlation;  ///< of the errors of the two
-  double sigma;        ///< of what the sight before does not tell, on the unit plane
-};
-
-/// One term of the cost.
-struct Factor {
-  std::unique_ptr<ceres::CostFunction> cost;
-  ceres::LossFunction* loss = nullptr;  ///< owned by the window
-  std::vector<BlockKey> blocks;
 };
 
 class Window {
@@ -129,11 +108,6 @@ class Window {
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
-  /// Root mean square of what the IMU's factors are off by [sigma]. Small as long as nothing pulls against the IMU,
-  /// because it is the stiffest of all: to make up motion that it has not felt takes more than any right landmark asks
-  /// for.
-  double imu_strain();
-
   /// Storage of a block, null when it is no longer in the window.
   double* block(BlockKey key);
   /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are
@@ -143,24 +117,13 @@ class Window {
   /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
   void drop_orphaned_priors();
 
-  /// The terms of the present window, each once, the prior first. They borrow from the window: use them before it
-  /// changes.
-  std::vector<Factor> factors(Sights sights = Sights::All);
-
-  /// The sights of a landmark one after the other, from its anchor's on, then those before the anchor's, back in time.
-  std::vector<TrackStep> steps(const Feature& feature, Sights sights = Sights::All) const;
+  ceres::LossFunction* visual_loss() { return visual_loss_.get(); }
   ceres::LossFunction* depth_loss() { return depth_loss_.get(); }
 
  private:
-  void add_visual_factors(std::vector<Factor>& out, Sights sights);
-  void add_motion_factors(std::vector<Factor>& out);
-
   StateId next_state_ = 0;
   std::vector<StateId> last_image_;  ///< newest state with an image, one a camera
   std::unique_ptr<ceres::LossFunction> visual_loss_, depth_loss_;
 };
-
-/// The inverse depths that share a factor with another: they cannot be eliminated one by one.
-std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors);
 
 }  // namespace edged

@@ -21,7 +21,7 @@ struct StatusConfig {
   double degraded_after_s = 0.7;  ///< without enough landmarks or rest
   double lost_after_s = 2.5;
   int min_landmarks = 8;          ///< seen by the newest state, for a Good pose
-  double degraded_strain = 0.75;  ///< Window::imu_strain [sigma]: usual is 0.05 to 0.4
+  double degraded_strain = 0.75;  ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
   double lost_strain = 0.85;      ///< the first time; see StatusJudge
   void visit(ConfigFields& fields);
 };

@@ -39,6 +39,9 @@ struct BlockKey {
   auto operator<=>(const BlockKey&) const = default;
 };
 
+/// Of the one block of the IMU's scale and axes.
+inline constexpr BlockKey kImuIntrinsicsKey{BlockKind::ImuIntrinsics, 0};
+
 constexpr int block_size(BlockKind kind) {
   switch (kind) {
     case BlockKind::Pose:

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What a start is made of: views with the IMU between them, and how long gravity is.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/estimator/region_depth.hpp"
+
+namespace edged {
+
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
+/// One view of the start-up buffer.
+struct InitFrame {
+  Timestamp t;
+  std::vector<ImuSample> imu;  ///< from the frame before to t; of the first frame unused
+  std::vector<CameraObservations> observations;
+  std::optional<RegionDepth> depth = std::nullopt;  ///< not used by the alignment, but by the window made from it
+};
+
+}  // namespace edged
