@@ -4,25 +4,15 @@
 #pragma once
 
 #include <concepts>
-#include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "edged/io/byte_source.hpp"
 #include "edged/io/bytes.hpp"
 
 namespace edged {
-
-/// The bytes of a file from its begin on.
-class ByteSource {
- public:
-  virtual ~ByteSource() = default;
-  /// Fills `to` from its front and says how far; 0 only at the end of the file. Throws Damage where the archive is
-  /// damaged, InputError where the file system fails.
-  virtual std::size_t read(std::span<char> to) = 0;
-};
 
 class ZipArchive;
 

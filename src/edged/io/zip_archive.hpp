@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/source_path.hpp"
+#include "edged/io/byte_source.hpp"
+#include "edged/io/bytes.hpp"
 
 struct zip;
 
