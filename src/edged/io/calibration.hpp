@@ -3,40 +3,13 @@
 // The calibration of a sensor head, read from any of the formats its users have.
 #pragma once
 
-#include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/imu/noise.hpp"
+#include "edged/io/calib/sensor_head.hpp"
 #include "edged/io/source_path.hpp"
 
 namespace edged {
-
-/// Cameras around the IMU, and the noise of the IMU.
-struct Calibration {
-  Rig rig;
-  ImuNoise imu;
-  bool has_extrinsics = true;         ///< false: the file has intrinsics only, T_B_C and time_offset are placeholders
-  bool has_imu_noise = true;          ///< false: `imu` holds the defaults
-  std::vector<std::string> warnings;  ///< what looks wrong, each one line
-};
-
-/// What the pixels behind a lens give: those of a DAVIS give both.
-enum class Sees { Events, Frames, Both };
-
-/// "events", "frames" or "both".
-std::optional<Sees> parse_sees(std::string_view text);
-
-struct CalibrationOptions {
-  std::filesystem::path imu_file = {};  ///< Kalibr imu yaml, instead of what the calibration says of the IMU
-  /// By the camera's name in the file: where the file does not tell, or is wrong.
-  std::map<std::string, Sees> sees = {};
-  std::optional<Sees> otherwise = {};  ///< where nothing tells; not given: an error that asks
-};
 
 /// Reads a calibration, the format found by content: ours, Kalibr, EuRoC, Event-Camera Dataset, VINS (ESVIO, HKU),
 /// USLAM, basalt, VECtor, ROS camera_info. docs/calibration.md has the table: how each is recognised, which way its
@@ -55,8 +28,5 @@ std::vector<std::string> known_rigs();
 /// Each camera with its field of view, both directions of its transform and its time offset; the noise of the IMU.
 /// Several lines.
 std::string describe(const Calibration& calibration);
-
-/// Our own yaml; load_calibration gives back the same numbers to the last bit (rotations to rounding).
-std::string to_yaml(const Calibration& calibration);
 
 }  // namespace edged

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/calibration.hpp"
+#include "edged/io/calib/sensor_head.hpp"
+#include "edged/io/source_path.hpp"
 
 namespace edged {
 
