@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/write_recording.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"

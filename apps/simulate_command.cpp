@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/write_recording.hpp"
 #include "edged/sim/simulator.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"

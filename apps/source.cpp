@@ -8,6 +8,9 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/geometry.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/sim/dimmed_frames.hpp"
 #include "interrupt.hpp"
 

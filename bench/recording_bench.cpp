@@ -8,8 +8,8 @@
 
 #include <filesystem>
 
-#include "edged/io/recording.hpp"
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/open_recording.hpp"
+#include "edged/io/write_recording.hpp"
 #include "edged/live/test_storm.hpp"
 
 namespace edged {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 #include "end_to_end.hpp"
 

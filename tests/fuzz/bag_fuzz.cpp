@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_format.hpp"
 #include "edged/io/ros/mcap_format.hpp"
 

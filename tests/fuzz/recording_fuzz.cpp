@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 
 namespace {
 

@@ -5,8 +5,10 @@
 
 #include <gmock/gmock.h>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
+#include "edged/io/write_recording.hpp"
 
 namespace edged {
 namespace {

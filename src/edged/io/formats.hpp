@@ -3,7 +3,6 @@
 // The folder formats behind open_recording. Internal to io.
 #pragma once
 
-#include <filesystem>
 #include <opencv2/core/types.hpp>
 #include <optional>
 
@@ -22,12 +21,5 @@ inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data
 /// The folder itself or its mav0, whichever holds cam0 or imu0.
 std::optional<SourcePath> find_mav0(const SourcePath& folder);
 Recording open_euroc(const SourcePath& mav0);
-
-/// Warns where the focal length [px] of a recording's camera differs by more than 2 % from that of the rig.
-void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality);
-
-/// Size of the event sensor of a file: of the rig, else as said by the user or the file. Warns where they differ,
-/// throws InputError where nobody says it.
-cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig);
 
 }  // namespace edged

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The size of an event sensor and the lens before it, from whoever knows them.
+#include "edged/io/geometry.hpp"
+
 #include <spdlog/spdlog.h>
 
 #include <charconv>
 #include <cmath>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
 
 namespace edged {
 namespace {

@@ -1,145 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The table of writable formats, and the loop that fills one.
 #include "edged/io/recording_writer.hpp"
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
-
-#include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
-#include "edged/io/aedat/aedat4_writer.hpp"
-#include "edged/io/ecd_writer.hpp"
-#include "edged/io/formats.hpp"
-#include "edged/io/hdf5/hdf5_writer.hpp"
-#include "edged/io/prophesee/raw_writer.hpp"
-#include "edged/io/ros/ros_writer.hpp"
-#include "edged/io/text.hpp"
-#include "edged/io/text/event_csv.hpp"
+#include "edged/io/geometry.hpp"
 
 namespace edged {
-namespace {
-
-constexpr Duration kMicrosecond = std::chrono::microseconds(1);
-
-constexpr std::array kWritable = {
-    WritableFormat{
-        .name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
-    WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
-    WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
-    WritableFormat{.name = "aedat4",
-                   .extension = ".aedat4",
-                   .frames = true,
-                   .imu = true,
-                   .tick = kMicrosecond,
-                   .open = write_aedat4},
-    WritableFormat{.name = "csv", .extension = ".csv", .open = write_csv},
-    WritableFormat{
-        .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
-    WritableFormat{
-        .name = "mcap", .extension = ".mcap", .frames = true, .imu = true, .ground_truth = true, .open = write_mcap},
-    WritableFormat{.name = "hdf5",
-                   .extension = ".h5",
-                   .frames = true,
-                   .imu = true,
-                   .ground_truth = true,
-                   .tick = kMicrosecond,
-                   .open = write_hdf5},
-};
-
-/// Hands on what the format holds and counts.
-class Sieve {
- public:
-  Sieve(RecordingWriter& writer, const WritableFormat& format, bool round)
-      : writer_(writer), format_(format), round_(round) {}
-
-  void operator()(EventBatch& batch) {
-    if (format_.tick > Duration(1)) fit_to_tick(batch.events);
-    writer_.write(batch);
-    counts.events += batch.events.size();
-  }
-
-  void operator()(const Frame& frame) {
-    if (format_.frames) writer_.write(frame);
-    ++(format_.frames ? counts.frames : counts.frames_left_out);
-  }
-
-  void operator()(const ImuSample& sample) {
-    if (format_.imu) writer_.write(sample);
-    ++(format_.imu ? counts.imu : counts.imu_left_out);
-  }
-
-  void operator()(const GroundTruth& truth) {
-    if (format_.ground_truth) writer_.write(truth);
-    (format_.ground_truth ? counts.poses : counts.poses_left_out) = truth.trajectory.size();
-  }
-
-  WriteCounts counts;
-
- private:
-  void fit_to_tick(std::vector<Event>& events) const {
-    for (Event& event : events) {
-      const Duration rest = event.t.time_since_epoch() % format_.tick;
-      if (rest != Duration(0) && !round_)
-        throw InputError::format(
-            "an event at {} s: format {} holds whole microseconds only; take another format, or --round to cut stamps",
-            format_seconds(event.t), format_.name);
-      event.t -= rest;
-    }
-  }
-
-  RecordingWriter& writer_;
-  const WritableFormat& format_;
-  bool round_;
-};
-
-}  // namespace
 
 cv::Size WriterSetup::event_sensor() const {
   const Rig* rig = calibration ? &calibration->rig : nullptr;
   const std::optional<cv::Size> said = info.event_sensor.empty() ? std::nullopt : std::optional(info.event_sensor);
   return event_sensor_size(info.name, said, rig);
-}
-
-std::span<const WritableFormat> writable_formats() { return kWritable; }
-
-const WritableFormat& writable_format(std::string_view name, const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  const auto fits = [&](const WritableFormat& f) { return name.empty() ? f.extension == extension : f.name == name; };
-  if (const auto found = std::ranges::find_if(kWritable, fits); found != kWritable.end()) return *found;
-  std::vector<std::string> known;
-  for (const WritableFormat& f : kWritable)
-    known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
-  throw InputError::format("{}: nothing is written in format `{}`; give --format, one of: {}", path.string(),
-                           name.empty() ? extension : name, fmt::join(known, ", "));
-}
-
-WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
-                            const std::optional<Calibration>& calibration, const WriteOptions& options) {
-  constexpr std::size_t kProgressEvery = 256;  // measurements
-  std::error_code ignored;
-  const bool is_file = !format.extension.empty(), existed = std::filesystem::exists(path, ignored);
-  if (is_file && existed) throw InputError::format("{}: is there already: give another name", path.string());
-  if (!dataset.info().has_events && !format.frames && !format.imu)
-    throw InputError::format("{}: holds no events, and format {} holds nothing else", dataset.info().name, format.name);
-  try {
-    const std::unique_ptr<RecordingWriter> writer = format.open({path, dataset.info(), calibration});
-    Sieve sieve(*writer, format, options.round);
-    if (const auto truth = dataset.ground_truth()) sieve(*truth);
-    for (std::size_t i = 1; auto measurement = dataset.next(); ++i) {
-      const auto t = last_stamp(*measurement);
-      std::visit(sieve, *measurement);
-      if (options.progress && t && i % kProgressEvery == 0) options.progress(*t);
-    }
-    writer->finish();
-    return sieve.counts;
-  } catch (const InputError&) {
-    if (!existed) std::filesystem::remove_all(path, ignored);  // half a recording passes for a whole one
-    throw;
-  }
 }
 
 }  // namespace edged

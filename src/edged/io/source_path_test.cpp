@@ -8,7 +8,8 @@
 
 #include <random>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 #include "edged/io/text.hpp"
 

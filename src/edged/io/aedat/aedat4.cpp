@@ -11,7 +11,7 @@
 #include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/compression.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"

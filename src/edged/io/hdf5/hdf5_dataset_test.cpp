@@ -8,6 +8,7 @@
 #include <random>
 
 #include "edged/io/hdf5/h5_test_support.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/prophesee/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 

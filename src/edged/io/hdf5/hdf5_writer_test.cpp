@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is written is what DSEC's tools expect, and comes back. Events of all formats: recording_writer_test.
+// What is written is what DSEC's tools expect, and comes back. Events of all formats: write_recording_test.
 #include "edged/io/hdf5/hdf5_writer.hpp"
 
 #include <gtest/gtest.h>
 
 #include "edged/io/hdf5/h5.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/prophesee/evt_test_support.hpp"
-#include "edged/io/recording.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

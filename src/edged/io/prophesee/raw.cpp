@@ -11,7 +11,7 @@
 #include <map>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/streamed_dataset.hpp"
 #include "edged/io/text.hpp"

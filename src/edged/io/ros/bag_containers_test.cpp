@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
 
 namespace edged {

@@ -24,9 +24,9 @@ std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder
   return parts;
 }
 
-BagFolder::BagFolder(const std::vector<std::filesystem::path>& parts, Repairs* repairs) {
-  for (const std::filesystem::path& file : parts) {
-    Part part{open_messages(file, repairs), {}};
+BagFolder::BagFolder(std::vector<std::unique_ptr<MessageSource>> parts) {
+  for (std::unique_ptr<MessageSource>& source : parts) {
+    Part part{std::move(source), {}};
     for (const Topic& topic : part.source->topics()) {
       part.topics.push_back(topic_index(topics_, topic.name, topic.type, topic.definition));
       topics_[part.topics.back()].count += topic.count;

@@ -3,6 +3,9 @@
 // ROS 2 bags as recorders leave them: a folder with one file or several that follow each other.
 #pragma once
 
+#include <filesystem>
+#include <memory>
+
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {
@@ -14,7 +17,7 @@ std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder
 /// The messages of one file after those of the other.
 class BagFolder final : public MessageSource {
  public:
-  explicit BagFolder(const std::vector<std::filesystem::path>& parts, Repairs* repairs);
+  explicit BagFolder(std::vector<std::unique_ptr<MessageSource>> parts);
 
   Wire wire() const override { return parts_.front().source->wire(); }
   const std::vector<Topic>& topics() const override { return topics_; }

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "edged/io/calibration.hpp"
+#include "edged/io/calib/sensor_head.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/topic_choice.hpp"
 

@@ -3,8 +3,10 @@
 // ROS 2 bags in SQLite files.
 #pragma once
 
+#include <filesystem>
 #include <map>
 
+#include "edged/io/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 struct sqlite3;

@@ -3,15 +3,12 @@
 // The messages of a bag, whatever its container: ROS 1 bag, SQLite or MCAP.
 #pragma once
 
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "edged/core/time.hpp"
 #include "edged/io/bytes.hpp"
-#include "edged/io/repairs.hpp"
 
 namespace edged {
 
@@ -41,15 +38,6 @@ class MessageSource {
   virtual Duration length() const = 0;
   virtual std::optional<Message> next() = 0;
 };
-
-/// Whether a file that begins so is a bag, or compressed as ROS 2 compresses whole bags.
-bool is_bag(ByteSpan head);
-/// Whether the folder is that of a ROS 2 bag.
-bool is_bag_folder(const std::filesystem::path& folder);
-
-/// Opens a file or folder that is a bag; throws InputError where it is none. repairs may be null: then nothing is
-/// counted.
-std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs);
 
 /// Index of the topic of that name and type, which is added where it is new. "pkg/msg/Name" becomes "pkg/Name".
 std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,

@@ -3,6 +3,7 @@
 // What ROS 1 bags and MCAP files have in common.
 #pragma once
 
+#include "edged/io/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {

@@ -6,8 +6,9 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/ros/bag_intrinsics.hpp"
+#include "edged/io/ros/open_messages.hpp"
 
 namespace edged {
 

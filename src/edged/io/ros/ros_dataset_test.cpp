@@ -7,7 +7,8 @@
 
 #include <array>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
+#include "edged/io/ros/open_messages.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

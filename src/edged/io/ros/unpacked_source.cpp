@@ -48,12 +48,15 @@ std::optional<Message> UnpackedSource::next() {
   return std::nullopt;
 }
 
-std::unique_ptr<MessageSource> open_packed_messages(const std::filesystem::path& path, Repairs* repairs) {
+std::unique_ptr<MessageSource> open_packed_messages(
+    const std::filesystem::path& path,
+    const std::function<std::unique_ptr<MessageSource>(const std::filesystem::path& unpacked)>& open,
+    Repairs* repairs) {
   const ScratchFolder scratch;
   const std::filesystem::path unpacked = scratch.path() / path.stem();
   if (!decompress_zstd_file(path, unpacked) && repairs)
     repairs->add("bag: cut", path.string() + ": the compressed file is not whole");
-  return open_messages(unpacked, repairs);
+  return open(unpacked);
 }
 
 }  // namespace edged

@@ -3,6 +3,11 @@
 // ROS 2 bags whose recorder compressed messages or whole files by zstd.
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "edged/io/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {
@@ -28,8 +33,10 @@ class UnpackedSource final : public MessageSource {
   Bytes message_;
 };
 
-/// Opens a bag that is compressed as a whole. It is unpacked into a file in the folder of temporary files (TMPDIR),
-/// which has no name any more when this returns and goes away with the source.
-std::unique_ptr<MessageSource> open_packed_messages(const std::filesystem::path& path, Repairs* repairs);
+/// Opens a bag that is compressed as a whole: unpacks it into a file in the folder of temporary files (TMPDIR), which
+/// `open` opens. It has no name any more when this returns and goes away with the source.
+std::unique_ptr<MessageSource> open_packed_messages(
+    const std::filesystem::path& path,
+    const std::function<std::unique_ptr<MessageSource>(const std::filesystem::path& unpacked)>& open, Repairs* repairs);
 
 }  // namespace edged

@@ -4,7 +4,9 @@
 #include <array>
 
 #include "edged/core/check.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC folders as other data sets fill them (the real one is in recording_test.cpp).
+// EuRoC folders as other data sets fill them (the real one is in open_recording_test.cpp).
 #include <gmock/gmock.h>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

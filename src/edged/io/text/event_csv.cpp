@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/text/text_dataset.hpp"
 
 namespace edged {

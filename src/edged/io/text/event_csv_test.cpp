@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "edged/io/open_recording.hpp"
 #include "edged/io/prophesee/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 

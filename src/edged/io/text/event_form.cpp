@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/text/event_csv.hpp"
 
 namespace edged {

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Every writable format gives back what was written.
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/write_recording.hpp"
 
 #include <gmock/gmock.h>
 
-#include "edged/io/recording.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

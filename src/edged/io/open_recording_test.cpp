@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Recordings: detection, order, damage, and the real ones.
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
+#include "edged/io/calibration.hpp"
 #include "edged/io/test_support.hpp"
 #include "edged/io/text.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Which format a folder or a file is.
-#include "edged/io/recording.hpp"
+#include "edged/io/open_recording.hpp"
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
@@ -11,6 +11,7 @@
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/prophesee/raw.hpp"
+#include "edged/io/ros/open_messages.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/zip_archive.hpp"
