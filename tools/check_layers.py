@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow.
+"""Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
+no components include one another in a cycle.
 
 The table is the rule: `| module | may use | holds |`, one row a module, bottom to top. A row may name only rows above it,
-so there are no cycles. Usage: check_layers.py [ROOT]; prints every violation and exits 1 if there is one.
+so there are no cycles of modules. A component is a path without its extension: x.hpp and x.cpp are one, x_test.cpp is of
+none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
+import graphlib
+import itertools
 import pathlib
 import re
 import sys
@@ -31,8 +35,12 @@ def read_table(architecture):
     return allowed, errors
 
 
+def code_files(root):
+    return sorted(p for p in (root / "src" / "edged").rglob("*") if p.suffix in (".hpp", ".cpp"))
+
+
 def check_includes(root, allowed):
-    for file in sorted(p for p in (root / "src" / "edged").rglob("*") if p.suffix in (".hpp", ".cpp")):
+    for file in code_files(root):
         module = file.relative_to(root / "src" / "edged").parts[0]
         for number, line in enumerate(file.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
@@ -47,6 +55,26 @@ def check_includes(root, allowed):
                 target = included.split("/")[1]
                 if target != module and target not in allowed.get(module, set()):
                     yield f"{where}: {module} may not include {target}"
+
+
+def check_cycles(root):
+    """Cycles of components, no two of which share a step."""
+    uses = {}
+    for file in code_files(root):
+        if file.stem.endswith("_test"):
+            continue
+        component = str(file.relative_to(root / "src").with_suffix(""))
+        for include in filter(None, map(INCLUDE.match, file.read_text().splitlines())):
+            uses.setdefault(component, {})[str(pathlib.PurePath(include.group(1)).with_suffix(""))] = None
+        uses.get(component, {}).pop(component, None)
+    while True:
+        try:
+            return graphlib.TopologicalSorter(uses).prepare()
+        except graphlib.CycleError as error:
+            cycle = error.args[1][::-1]
+            yield "include cycle: " + " -> ".join(cycle)
+            for component, used in itertools.pairwise(cycle):
+                del uses[component][used]
 
 
 def check_links(root, allowed):
@@ -69,8 +97,9 @@ def main():
                sorted(allowed.keys() - present)]
     errors += [f"src/edged/{name}: has no row in the table of ARCHITECTURE.md" for name in sorted(present - allowed.keys())]
     errors += check_includes(root, allowed)
+    errors += check_cycles(root)
     errors += check_links(root, {m: a for m, a in allowed.items() if m in present})
-    print("\n".join(errors) if errors else f"{len(allowed)} modules keep their layers")
+    print("\n".join(errors) or f"{len(allowed)} modules keep their layers, no components include one another in a cycle")
     return 1 if errors else 0
 
 
