@@ -3,6 +3,7 @@
 // The odometry over a simulated flight: prints the last status and how far the body has come.
 #include <cstdio>
 
+#include "edged/io/calibration.hpp"
 #include "edged/pipeline/odometry.hpp"
 #include "edged/sim/simulator.hpp"
 
