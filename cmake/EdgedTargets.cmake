@@ -14,7 +14,8 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/config ${PROJECT_BINARY_DIR}/share/edged 
 # Options of every target of ours, and of ours alone. No -march and no fused multiply-add: the same bits on every
 # machine.
 add_library(edged_options INTERFACE)
-target_compile_options(edged_options INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
+target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off
+                                               -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(EDGED_SANITIZE)
   target_compile_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
@@ -36,7 +37,7 @@ function(edged_module NAME)
   edged_export(edged_${NAME} ${NAME})
   if(EDGED_INSTALL)
     install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edged/${NAME}
-            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*" EXCLUDE PATTERN testdata EXCLUDE)
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*" EXCLUDE PATTERN "*_test_support.hpp" EXCLUDE)
   endif()
   if(EDGED_TESTS AND ARG_TESTS)
     edged_test(edged_${NAME}_test SOURCES ${ARG_TESTS} DEPENDS edged::${NAME} ${ARG_TEST_DEPENDS})

@@ -41,9 +41,10 @@ std::vector<fs::path> resources(std::string_view kind, std::string_view extensio
 }
 
 std::optional<fs::path> find_resource(std::string_view kind, const std::string& name, std::string_view extension) {
-  const std::vector<fs::path> files = resources(kind, extension);
-  const auto found = std::ranges::find(files, fs::path(name), [](const fs::path& file) { return file.stem(); });
-  return found == files.end() ? std::nullopt : std::optional(*found);
+  for (const fs::path& folder : resource_folders(kind)) {
+    if (const fs::path file = folder / (name + std::string(extension)); fs::exists(file)) return file;
+  }
+  return std::nullopt;
 }
 
 }  // namespace edged

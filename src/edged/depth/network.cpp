@@ -83,11 +83,9 @@ fs::path find_depth_model(const std::string& name_or_path) {
   if (const auto file = find_resource("depth", name_or_path, ".onnx")) return *file;
   std::vector<std::string> names;
   for (const fs::path& file : resources("depth", ".onnx")) names.push_back(file.stem().string());
-  throw InputError::format(
-      "there is no depth model '{}'; {}", name_or_path,
-      names.empty() ? "none is installed: set EDGED_DEPTH to a folder of them, or give the path of "
-                      "an .onnx file"
-                    : fmt::format("choose one of {} or give the path of an .onnx file", fmt::join(names, ", ")));
+  const std::string choice =
+      names.empty() ? "set EDGED_DEPTH to a folder of them" : fmt::format("choose one of {}", fmt::join(names, ", "));
+  throw InputError::format("there is no depth model '{}'; {} or give the path of an .onnx file", name_or_path, choice);
 }
 
 DepthModel read_depth_model(const fs::path& onnx) {
