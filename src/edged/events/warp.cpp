@@ -97,11 +97,14 @@ SE3 CameraMotion::at(Timestamp t, WarpInterpolation interpolation) const {
   return MotionCurve(*this, interpolation).at(t);
 }
 
-CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C) {
+CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C,
+                           Duration time_offset) {
   const SE3 T_Cref_W = (T_W_Bref * T_B_C).inverse();
   CameraMotion motion;
   motion.knots.reserve(T_W_B.size());
-  for (const StampedPose& pose : T_W_B) motion.knots.push_back({pose.t, T_Cref_W * pose.T * T_B_C});
+  for (const StampedPose& pose : T_W_B) {
+    motion.knots.push_back({pose.t - time_offset, T_Cref_W * pose.T * T_B_C});
+  }
   return motion;
 }
 

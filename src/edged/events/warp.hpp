@@ -37,8 +37,10 @@ struct CameraMotion {
   SE3 at(Timestamp t, WarpInterpolation interpolation) const;
 };
 
-/// The motion of body poses T_W_B as seen by a camera: T_ref_t = T_C_B * T_W_B(ref)^-1 * T_W_B(t) * T_B_C.
-CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C);
+/// The motion of body poses T_W_B as seen by a camera: T_ref_t = T_C_B * T_W_B(ref)^-1 * T_W_B(t) * T_B_C, with the
+/// poses' stamps on the clock of its events: t_pose = t_event + time_offset.
+CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C,
+                           Duration time_offset = Duration(0));
 
 struct WarpSettings {
   WarpInterpolation interpolation = WarpInterpolation::Piecewise;

@@ -249,5 +249,16 @@ TEST(CameraMotionTest, SeesBodyPosesThroughTheExtrinsics) {
   EXPECT_LT(motion.knots[1].T_ref_t.log().norm(), 1e-12);
 }
 
+TEST(CameraMotionTest, ReadsPosesOnTheClockOfTheEvents) {
+  const SE3 T_W_B0(so3::exp({0.4, 0.1, 0.2}), {1, 2, 3});
+  const SE3 T_W_B1(so3::exp({0.5, 0.1, 0.1}), {1.1, 2, 3.1});
+  const std::vector<StampedPose> poses{{at_ms(10), T_W_B0}, {at_ms(20), T_W_B1}};
+  const Duration offset = std::chrono::milliseconds(4);
+  const CameraMotion motion = camera_motion(poses, T_W_B1, SE3(), offset);
+  const SE3 T_ref_t = T_W_B1.inverse() * T_W_B0;
+  EXPECT_LT((motion.at(at_ms(6), WarpInterpolation::Piecewise).inverse() * T_ref_t).log().norm(), 1e-12);
+  EXPECT_LT(motion.at(at_ms(16), WarpInterpolation::Piecewise).log().norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace edged

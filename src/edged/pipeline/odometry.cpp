@@ -199,8 +199,9 @@ void Odometry::Impl::draw_event_frame(const Packet& packet) {
   channels.front().show({}, {});
   const std::span<const Event> events = drawn_events(packet);
   if (events.empty() || body.poses().size() < 2) return;
-  const std::span<const StampedPose> poses = covering(body.poses(), events.front().t);
-  const CameraMotion motion = camera_motion(poses, body.now().T_W_B, channels.front().camera.T_B_C);
+  const RigCamera& camera = channels.front().camera;
+  const std::span<const StampedPose> poses = covering(body.poses(), events.front().t + camera.time_offset);
+  const CameraMotion motion = camera_motion(poses, T_W_B_of(channels.front()), camera.T_B_C, camera.time_offset);
   if (config.event_frame.depth == EventDepth::Landmarks && estimator.initialized()) {
     const DepthGrid depths = event_depths();
     event_frame = renderer->render(events, motion, scene_depth, &depths);
