@@ -12,7 +12,7 @@
 namespace edged {
 
 struct KltConfig {
-  int window_px = 15;
+  int window_px = 11;
   int levels = 3;
   int iterations = 20;
   double epsilon_px = 0.005;

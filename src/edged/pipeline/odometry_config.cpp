@@ -7,7 +7,8 @@
 namespace edged {
 
 OdometryConfig::OdometryConfig() {
-  event_tracker.sigma_px = 1.5;  // the look of an event frame changes with the direction of motion
+  event_tracker.sigma_px = 1.5;      // the look of an event frame changes with the direction of motion,
+  event_tracker.klt.window_px = 15;  // and in the dark, and in fast motion, it is noisy
 }
 
 void OdometryConfig::visit(ConfigFields& fields) {

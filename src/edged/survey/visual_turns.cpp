@@ -19,6 +19,7 @@ constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one i
 TrackerConfig with_corners(int corners) {
   TrackerConfig config;
   config.detector.max_features = corners;
+  config.klt.window_px = 15;  // of events, too
   return config;
 }
 
