@@ -14,6 +14,7 @@
 #include "enhance_command.hpp"
 #include "eval_command.hpp"
 #include "info_command.hpp"
+#include "manual_command.hpp"
 #include "program.hpp"
 #include "run_command.hpp"
 #include "simulate_command.hpp"
@@ -52,5 +53,6 @@ int main(int argc, char** argv) {
   add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);
+  add_manual_command(app, chosen);
   return run_program(app, argc, argv, [&] { return chosen(); });
 }

@@ -4,6 +4,7 @@
 """The program as a user meets it: exit codes, error lines, and what needs no recording. Usage: EDGED=path/to/edged cli_test.py"""
 import json
 import os
+import subprocess
 import unittest
 
 from program import WithFolder, edged
@@ -60,6 +61,42 @@ class BadInput(WithFolder):
         file.write_text("hello\n")
         self.assert_refused(edged("eval", file, file), str(file))
         self.assert_refused(edged("eval", self.folder / "none.txt", file), "none.txt")
+
+
+class Manual(WithFolder):
+    def complete(self, *words):
+        """What bash offers for the last word."""
+        script = self.folder / "edged.bash"
+        script.write_text(edged("manual", "bash").stdout)
+        call = ('program=$1; shift; source "$0"; compopt() { :; }; COMP_WORDS=("$program" "$@"); COMP_CWORD=$#; _edged; '
+                'echo "${COMPREPLY[*]}"')
+        done = subprocess.run(["bash", "-c", call, script, os.environ["EDGED"], *words], capture_output=True, text=True,
+                              check=True)
+        self.assertEqual(done.stderr, "")
+        return done.stdout.split()
+
+    def test_the_man_page_tells_what_help_tells(self):
+        page = edged("manual", "man").stdout.replace("\\-", "-")
+        for command in self.complete(""):
+            if not command.startswith("-"):
+                self.assertIn(f".SS edged {command}\n", page)
+        for option in self.complete("run", "--"):
+            self.assertIn(option, page)
+        self.assertIn("Exit codes", page)
+        self.assertNotIn("edged manual", page)
+
+    def test_bash_completes_commands_options_and_what_they_take(self):
+        self.assertEqual(self.complete("d"), ["doctor", "depth"])
+        self.assertEqual(self.complete("run", "sim:room", "--mo"), ["--mode"])
+        self.assertEqual(self.complete("run", "--mode", "f"), ["frames", "fused"])
+        self.assertEqual(self.complete("run", "--mode", "=", "f"), ["frames", "fused"])
+        self.assertEqual(self.complete("run", "--rig", "davis2"), ["davis240c_ecd"])
+        self.assertIn("packets.max_interval_s=", self.complete("run", "--set", "packets."))
+        self.assertEqual(self.complete("simulate", "--set", "disturbance.ki"), ["disturbance.kind="])
+
+    def test_bash_offers_files_where_one_may_stand(self):
+        self.assertEqual(self.complete("run", ""), [])
+        self.assertEqual(self.complete("run", "--calib", ""), [])
 
 
 class Eval(WithFolder):

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "manual_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config_source.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/sim/simulator.hpp"
+#include "exit_code.hpp"
+#include "version.hpp"
+
+namespace edged {
+namespace {
+
+/// Those that help shows.
+std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+/// Text for troff: no line of it is taken for a request, and no character for another.
+std::string roff(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n')) safe += "\\&";
+    if (c == '\\') {
+      safe += "\\e";
+    } else if (c == '-') {
+      safe += "\\-";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string roff_verbatim(const std::string& text) {
+  return text.empty() ? "" : fmt::format(".PP\n.EX\n{}\n.EE\n", roff(text));
+}
+
+std::string roff_options(const CLI::App& command) {
+  const CLI::Formatter formatter;
+  std::string text;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_positional() ? option->get_name(true) : option->get_name(false, true);
+    text += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff(name), roff(formatter.make_option_opts(option)),
+                        roff(option->get_description()));
+  }
+  return text;
+}
+
+/// What `edged COMMAND --help` tells, and the same of its own sub-commands.
+std::string roff_command(const CLI::App& command, const std::string& name) {
+  std::string text = fmt::format(".SS {}\n{}.\n", roff(name), roff(command.get_description()));
+  text += roff_verbatim(CLI::Formatter().make_usage(&command, name));
+  text += roff_options(command) + roff_verbatim(command.get_footer());
+  for (const CLI::App* inner : shown_commands(command)) text += roff_command(*inner, name + " " + inner->get_name());
+  return text;
+}
+
+std::string man_page(const CLI::App& app) {
+  const std::string name = app.get_name();
+  std::string text = fmt::format(".TH EDGED 1 \"\" \"edged {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
+                                 roff(kVersion), name, roff(app.get_description()));
+  text += fmt::format(".SH SYNOPSIS\n\\fB{}\\fR \\fICOMMAND\\fR ...\n", name);
+  text += ".SH OPTIONS\n" + roff_options(app) + ".SH COMMANDS\n";
+  for (const CLI::App* command : shown_commands(app)) text += roff_command(*command, name + " " + command->get_name());
+  return text + ".SH EXAMPLES AND EXIT STATUS\n" + roff_verbatim(app.get_footer());
+}
+
+/// What --set of a command takes, as KEY=.
+template <typename Config>
+std::string assignments() {
+  Config config;
+  const ConfigFields fields = ConfigFields::of(config);
+  std::string words;
+  for (const ConfigField& field : fields.all()) words += field.key + "= ";
+  return words;
+}
+
+/// What may stand behind an option, as bash has to be told it; "" where it is a file or anything.
+std::string choices(const CLI::App& command, const CLI::Option& option) {
+  if (option.check_name("--rig")) return "$(\"${COMP_WORDS[0]}\" manual rigs 2>/dev/null)";
+  if (option.check_name("--set"))
+    return command.get_name() == "simulate" ? assignments<SimulatorConfig>() : assignments<RunConfig>();
+  // As CLI::IsMember names itself in the help: TEXT:{a,b,c}
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{');
+  if (open == std::string::npos) return "";
+  std::string words = type.substr(open + 1, type.find('}') - open - 1);
+  std::ranges::replace(words, ',', ' ');
+  return words;
+}
+
+/// For `case "COMMAND OPTION" in`: what may follow each option, and what else.
+std::string completion_cases(const CLI::App& command) {
+  std::string cases;
+  std::string names;
+  for (const CLI::App* inner : shown_commands(command)) names += inner->get_name() + " ";
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty()) continue;
+    const std::string name = "--" + option->get_lnames().front();
+    names += name + " ";
+    if (option->get_items_expected_max() > 0)
+      cases += fmt::format("    \"{} {}\") words=\"{}\" ;;\n", command.get_name(), name, choices(command, *option));
+  }
+  return cases + fmt::format("    \"{} \"*) words=\"{}\" ;;\n", command.get_name(), names);
+}
+
+/// Where no word fits, bash offers files.
+std::string bash_completion(const CLI::App& app) {
+  std::string cases = completion_cases(app);
+  for (const CLI::App* command : shown_commands(app)) cases += completion_cases(*command);
+  return fmt::format(R"(# Completion of bash for {0}, written by `{0} manual bash`.
+_{0}() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} option=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words=
+  # bash cuts --option=word into three
+  [ "$option" = "=" ] && option=${{COMP_WORDS[COMP_CWORD - 2]}}
+  [ "$word" = "=" ] && word=
+  [ "$COMP_CWORD" = 1 ] && command={0} option=
+  case "$command $option" in
+{1}  esac
+  # files before options, until a dash asks for these
+  [[ -z $word && $words == --* ]] && words=
+  COMPREPLY=($(compgen -W "$words" -- "$word"))
+  [[ ${{COMPREPLY[*]}} == *= ]] && compopt -o nospace
+}}
+complete -o default -F _{0} {0}
+)",
+                     app.get_name(), cases);
+}
+
+int print_manual(const CLI::App& app, const std::string& kind) {
+  if (kind == "rigs") {
+    fmt::print("{}\n", fmt::join(known_rigs(), "\n"));
+  } else {
+    fmt::print("{}", kind == "man" ? man_page(app) : bash_completion(app));
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_manual_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto kind = std::make_shared<std::string>();
+  CLI::App* manual = app.add_subcommand("manual", "Print the man page, the completion of bash, or the rigs there are");
+  manual->group("");
+  manual->add_option("KIND", *kind, "What to print")->required()->check(CLI::IsMember({"man", "bash", "rigs"}));
+  manual->callback([&app, kind, &chosen] { chosen = [&app, kind] { return print_manual(app, *kind); }; });
+}
+
+}  // namespace edged
