@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is missing of the compiler and libraries, from Debian's packages alone. Quick when all is there.
+# Usage: scripts/setup.sh [FURTHER_PACKAGE ...]
 set -euo pipefail
 
 packages=(
@@ -11,6 +12,7 @@ packages=(
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
   libhdf5-dev libblosc-dev liblzf-dev
   python3-rosbag libgtest-dev libgmock-dev libbenchmark-dev
+  "$@"
 )
 
 if ! command -v dpkg-query >/dev/null; then
