@@ -1,16 +1,25 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds everything and runs every test, first what has threads under the thread sanitizer
-# and what is not too long under those of addresses and undefined behaviour; ends with ctest's summary of all tests as
-# released.
+# Installs what is missing, builds everything and runs the tests as released, but for the longest (label stress): 20
+# minutes on two cores. --full, which CI runs: these as well, and before them what has threads under the thread
+# sanitizer and what is not too long under those of addresses and undefined behaviour. Ends with ctest's summary of the
+# tests as released.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+presets=(release)
+left_out=(--label-exclude stress)
+case "${1:-}" in
+  "") ;;
+  --full) presets=(tsan sanitize release) left_out=() ;;
+  *) echo "usage: scripts/test.sh [--full]" >&2; exit 2 ;;
+esac
+
 scripts/setup.sh
-for preset in tsan sanitize release; do
+for preset in "${presets[@]}"; do
   echo "== $preset"
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
-  ctest --preset "$preset" --parallel "$(nproc)"
+  ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}"
 done
