@@ -4,6 +4,7 @@
 """The program as a user meets it: exit codes, error lines, and what needs no recording. Usage: EDGED=path/to/edged cli_test.py"""
 import json
 import os
+import pathlib
 import subprocess
 import unittest
 
@@ -23,7 +24,10 @@ class CommandLine(WithFolder):
             self.assertEqual(edged(*args).returncode, 2, args)
 
     def test_version_names_the_program(self):
-        self.assertRegex(edged("--version").stdout, r"^edged \d+\.\d+\.\d+")
+        version = edged("--version").stdout
+        self.assertRegex(version, r"^edged \d+\.\d+\.\d+")
+        citation = pathlib.Path(__file__).parent.parent / "CITATION.cff"
+        self.assertIn(f"\nversion: {version.split()[1]}\n", citation.read_text())
 
 
 class BadInput(WithFolder):
