@@ -64,7 +64,7 @@ std::string roff_command(const CLI::App& command, const std::string& name) {
 }
 
 std::string man_page(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string text = fmt::format(".TH EDGED 1 \"\" \"edged {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
                                  roff(kVersion), name, roff(app.get_description()));
   text += fmt::format(".SH SYNOPSIS\n\\fB{}\\fR \\fICOMMAND\\fR ...\n", name);
