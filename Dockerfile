@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-# The program in an image of its own: scripts/setup.sh, a build, `cmake --install`, as anywhere else. UNTESTED as a whole: no
-# Docker runs where this is developed; there scripts/test_packages.sh tries the same in a bare Debian 12.
+# The program in an image of its own: scripts/setup.sh, a build, `cmake --install`, as anywhere else. UNTESTED with Docker: none
+# runs where this is developed. Its RUN lines were tried there in a bare Debian 12 (mmdebstrap), by hand.
 #   docker build -t edged .
 #   docker run --rm -v "$PWD:/work" edged run sim:room:1
 FROM debian:bookworm
