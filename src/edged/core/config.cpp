@@ -24,6 +24,14 @@ std::string range_text(const FieldDoc& doc) {
   return "any";
 }
 
+/// Of a value that is set, or of one that the struct holds when its list is made.
+template <typename Number>
+void check_range(const std::string& key, Number value, const FieldDoc& doc) {
+  if (static_cast<double>(value) >= doc.min && static_cast<double>(value) <= doc.max) return;
+  throw InputError::format("option '{}' is {}, outside its range {}{}{}", key, value, range_text(doc),
+                           doc.unit.empty() ? "" : " ", doc.unit);
+}
+
 /// The whole text as a number, or false.
 template <typename Number>
 bool parse(const std::string& text, Number& value) {
@@ -39,10 +47,7 @@ Number parse_number(const std::string& key, const std::string& text, const char*
   if (!parse(text, value) || std::isnan(static_cast<double>(value))) {
     throw InputError::format("option '{}' is '{}', but wants {} ({})", key, text, wanted, range);
   }
-  if (static_cast<double>(value) < doc.min || static_cast<double>(value) > doc.max) {
-    throw InputError::format("option '{}' is {}, outside its range {}{}{}", key, text, range,
-                             doc.unit.empty() ? "" : " ", doc.unit);
-  }
+  check_range(key, value, doc);
   return value;
 }
 
@@ -169,7 +174,7 @@ void ConfigFields::add(std::string_view name, bool& value, const FieldDoc& doc) 
 
 void ConfigFields::add(std::string_view name, int& value, const FieldDoc& doc) {
   const std::string key = prefix_ + std::string(name);
-  EDGED_CHECK(value >= doc.min && value <= doc.max, "default {} of '{}' is outside {}", value, key, range_text(doc));
+  check_range(key, value, doc);
   add_field(
       name, "int", doc, true, [&value] { return fmt::format("{}", value); },
       [&value, key, doc, range = range_text(doc)](const std::string& text) {
@@ -179,7 +184,7 @@ void ConfigFields::add(std::string_view name, int& value, const FieldDoc& doc) {
 
 void ConfigFields::add(std::string_view name, double& value, const FieldDoc& doc) {
   const std::string key = prefix_ + std::string(name);
-  EDGED_CHECK(value >= doc.min && value <= doc.max, "default {} of '{}' is outside {}", value, key, range_text(doc));
+  check_range(key, value, doc);
   add_field(
       name, "number", doc, true,
       [&value] { return fmt::format("{}", value); },  // shortest text that reads back exactly

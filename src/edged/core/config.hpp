@@ -35,8 +35,8 @@ struct ConfigField {
   std::function<void(const std::string&)> set;  ///< throws InputError naming the key and the range
 };
 
-/// The list of all options of a config struct, made by its `void visit(ConfigFields&)`.
-/// The struct must outlive the list.
+/// The list of all options of a config struct, made by its `void visit(ConfigFields&)`; InputError where a number is
+/// out of its range. The struct must outlive the list.
 class ConfigFields {
  public:
   template <typename Config>

@@ -149,12 +149,12 @@ TEST_F(Config, DescribesEveryOption) {
   EXPECT_EQ(fields.all()[3].type, "canny | sobel");
 }
 
-TEST(ConfigDeclaration, RefusesTheSameKeyTwiceAndADefaultOutOfRange) {
+TEST(ConfigDeclaration, RefusesTheSameKeyTwiceAndAValueOutOfRange) {
   int value = 5;
   ConfigFields fields;
   fields.add("a", value, {});
   EXPECT_THROW(fields.add("a", value, {}), CheckError);
-  EXPECT_THROW(fields.add("b", value, {.max = 4}), CheckError);
+  EXPECT_THROW(fields.add("b", value, {.max = 4}), InputError);
 }
 
 }  // namespace

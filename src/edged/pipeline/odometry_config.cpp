@@ -43,6 +43,8 @@ void OdometryConfig::visit(ConfigFields& fields) {
 }
 
 void OdometryConfig::validate() const {
+  OdometryConfig copy = *this;
+  ConfigFields::of(copy);  // refuses what is out of its range
   enhance.validate("enhance");
   if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
     throw InputError(

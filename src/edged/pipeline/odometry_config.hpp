@@ -40,7 +40,7 @@ struct OdometryConfig {
 
   void visit(ConfigFields& fields);
 
-  /// Throws InputError with the reason when options contradict each other.
+  /// Throws InputError with the reason when an option is out of its range or contradicts another.
   void validate() const;
 };
 
