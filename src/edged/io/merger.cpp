@@ -12,23 +12,11 @@
 namespace edged {
 namespace {
 
-constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 constexpr Duration kPatience = std::chrono::seconds(1);       // a stream silent for so long is not waited for
 constexpr Duration kDisorder = std::chrono::milliseconds(1);  // within one stream
 constexpr std::size_t kMostInBatch = 65536;
 
 }  // namespace
-
-NextStream next_stream(Timestamp imu, Timestamp events, Timestamp frame) {
-  using enum NextStream::Stream;
-  constexpr Timestamp never = Timestamp::max();
-  if (imu == never && events == never && frame == never) return {};
-  if (imu <= events && imu <= frame) return {Imu};
-  if (events > frame) return {Frame};
-  // Events at the stamp of a frame come before it, those at the stamp of an IMU sample after it.
-  const Timestamp behind_frame = frame == never ? never : frame + Duration(1);
-  return {Events, std::min({imu, behind_frame, events + kLongestBatch})};
-}
 
 template <typename T>
 void ArrivalQueue<T>::push(T item) {
@@ -188,7 +176,7 @@ std::optional<Measurement> Merger::pop() {
     case NextStream::Stream::Frame:
       return frames_.pop();
     case NextStream::Stream::Events:
-      return take_events(std::min(next.events_end, ready));
+      return take_events(std::min({next.events_end, events_.next_stamp() + kLongestBatch, ready}));
     case NextStream::Stream::None:
       break;
   }

@@ -9,19 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/stream_order.hpp"
 #include "edged/core/types.hpp"
 #include "edged/io/repairs.hpp"
 
 namespace edged {
 
-/// Which stream is next, and where its batch has to end if it is that of the events.
-struct NextStream {
-  enum class Stream { None, Imu, Events, Frame } stream = Stream::None;
-  Timestamp events_end = Timestamp::max();  ///< the batch holds events before this stamp
-};
-
-/// The order of Dataset from the next stamp of each stream (Timestamp::max() for one that has ended).
-NextStream next_stream(Timestamp imu, Timestamp events, Timestamp frame);
+/// A batch of events spans no more.
+inline constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 
 /// The items of one stream, T with a member `Timestamp t`, sorted although they may come a little out of order. A stamp
 /// far ahead of all others counts only once another confirms it, so that one damaged stamp does not end the stream.

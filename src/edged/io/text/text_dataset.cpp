@@ -86,7 +86,8 @@ std::optional<Measurement> TextDataset::next() {
     if (turn.stream == NextStream::Stream::None) return std::nullopt;
     if (turn.stream == NextStream::Stream::Imu) return imu_->pop();
     if (turn.stream == NextStream::Stream::Events)
-      return EventBatch{layout_.events->camera, events_->take_before(turn.events_end)};
+      return EventBatch{layout_.events->camera,
+                        events_->take_before(std::min(turn.events_end, next_stamp(events_) + kLongestBatch))};
     if (auto frame = load(frames_->pop())) return std::move(*frame);
   }
 }
