@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Puts the measurements of sensors that lag behind one another into the order of their stamps.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "edged/core/types.hpp"
+#include "edged/pipeline/packetizer.hpp"
+
+namespace edged {
+
+/// By how much the measurements of a sensor may lag behind the newest of all, stamp against stamp [s]. A sensor that
+/// delivers is waited for no longer than until it has passed what waits, so that the delay costs latency only where it
+/// is silent or slow: of the frames, those packets of events that lie between two of them. The defaults hold for what
+/// drivers usually do: event cameras come in USB packets of up to 33 ms, a frame a readout after its exposure's middle.
+struct SensorDelays {
+  double events_s = 0.05, frames_s = 0.05, imu_s = 0.05;
+
+  /// Throws InputError when one is not within 0 .. 10 s.
+  void validate() const;
+};
+
+/// Measurements come in the order that Dataset promises: nothing is waited for.
+inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0};
+
+/// Each sensor's own measurements in order, those of different sensors as they come. What a sensor may still precede is
+/// held back; what comes later than its delay goes out at once, out of order, for the packetizer to use or to count.
+/// With kInOrder all goes out as it came. The order that comes out does not depend on how the sensors lag, as long as
+/// they keep to their delays.
+///
+/// When half of most_bytes waits, no sensor is waited for any longer; beyond most_bytes of events and frames, or a
+/// million IMU samples, nothing more is taken.
+class Sequencer {
+ public:
+  static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
+
+  /// Waits for the sensors that the mode uses.
+  Sequencer(Mode mode, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
+
+  /// False when there is no room for it, or after finish(). Batches without events are passed over.
+  bool add(Measurement measurement);
+  /// No more will come: all that waits goes out.
+  void finish() { finished_ = true; }
+
+  /// The next measurement, a batch of events up to the next other one; nothing as long as another may precede it.
+  std::optional<Measurement> next();
+  /// After finish(), and all has gone out.
+  bool ended() const;
+
+ private:
+  template <typename T>
+  struct Line {
+    bool expected;
+    Duration delay;
+    std::deque<T> waiting = {};
+    std::optional<Timestamp> newest = {};
+  };
+
+  template <typename T>
+  bool push(Line<T>& line, T item, Timestamp last);
+  template <typename T>
+  Timestamp earliest(const Line<T>& line) const;
+  template <typename T>
+  std::optional<Measurement> pop(Line<T>& line);
+  std::optional<Measurement> pop_events(Timestamp end);
+  Timestamp first_stamp_of(const EventBatch& batch) const { return batch.events[events_out_].t; }
+  Timestamp first_stamp_of(const Frame& frame) const { return frame.t; }
+  Timestamp first_stamp_of(const ImuSample& sample) const { return sample.t; }
+
+  std::size_t most_bytes_;
+  Line<EventBatch> events_;  // none empty
+  Line<Frame> frames_;
+  Line<ImuSample> imu_;
+  std::size_t events_out_ = 0;  // of the first batch
+  std::size_t bytes_ = 0;       // of the events and frames that wait
+  std::optional<Timestamp> newest_;
+  bool finished_ = false;
+};
+
+}  // namespace edged

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/state_prediction.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kKept = std::chrono::seconds(20);
+
+/// The last of what propagates from `start`, which is at the first sample.
+NavState propagated(const NavState& start, std::span<const ImuSample> samples) {
+  return propagate_all(start, samples).back();
+}
+
+}  // namespace
+
+void StatePrediction::add(const ImuSample& sample) {
+  const std::lock_guard lock(mutex_);
+  if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+  if (!imu_.empty() && sample.t <= imu_.back().t) return;
+  imu_.push_back(sample);
+  if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
+  if (sample.t - imu_.front().t <= 2 * kKept) return;
+  const auto keep = std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t);
+  imu_.erase(imu_.begin(), keep);
+  states_.clear();  // that of an estimate so old is worth nothing
+}
+
+void StatePrediction::correct(const std::optional<NavState>& estimate) {
+  const std::lock_guard lock(mutex_);
+  states_.clear();
+  if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
+  imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
+  states_ = propagate_all(*estimate, imu_);
+}
+
+std::optional<NavState> StatePrediction::newest() const {
+  const std::lock_guard lock(mutex_);
+  return states_.empty() ? std::nullopt : std::optional(states_.back());
+}
+
+std::optional<NavState> StatePrediction::at(Timestamp t) const {
+  const std::lock_guard lock(mutex_);
+  if (states_.empty() || t < states_.front().t || t > states_.back().t) return std::nullopt;
+  const auto before = std::prev(std::ranges::upper_bound(states_, t, {}, &NavState::t));
+  const auto first = static_cast<std::size_t>(before - states_.begin());
+  return propagated(*before, slice_imu(std::span(imu_).subspan(first), before->t, t));
+}
+
+}  // namespace edged
