@@ -4,17 +4,17 @@
 
 namespace edged {
 
-void Claims::add(Timestamp packet, const OdometryOutput& output) {
-  const bool good = output.status == TrackingStatus::Good;
+void Claims::add(const Step& step) {
+  const bool good = step.status == TrackingStatus::Good;
   // Packets after the first of a loss only skip a number.
-  if (output.status == TrackingStatus::Lost) ++start_;
-  if (!output.covariance || !is_tracking(output.status)) return;
-  const auto& [position, rotation] = *output.covariance;
+  if (step.status == TrackingStatus::Lost) ++start_;
+  if (!step.covariance || !is_tracking(step.status)) return;
+  const auto& [position, rotation] = *step.covariance;
   const auto old = [&](const ClaimedPose& last) {
     return last.start == start_ && last.good && last.position == position;
   };
   if (good && !claims_.empty() && old(claims_.back())) return;
-  claims_.push_back({packet, output.state.T_W_B, position, rotation, good, start_});
+  claims_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
 }
 
 }  // namespace edged

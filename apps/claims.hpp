@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// From the outputs of a run to what the evaluation of consistency wants.
+// From the steps of a run to what the evaluation of consistency wants.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@ namespace edged {
 /// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start.
 class Claims {
  public:
-  /// Every packet, in time order.
-  void add(Timestamp packet, const OdometryOutput& output);
+  /// Every step, in time order.
+  void add(const Step& step);
   const std::vector<ClaimedPose>& all() const { return claims_; }
 
  private:

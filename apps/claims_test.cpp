@@ -9,18 +9,22 @@ namespace {
 
 TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
   Claims gathered;
-  OdometryOutput output, lost;
-  output.status = TrackingStatus::Good, lost.status = TrackingStatus::Lost;
-  gathered.add(timestamp_from_seconds(1), output);
-  output.covariance = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
-  gathered.add(timestamp_from_seconds(2), output);
-  gathered.add(timestamp_from_seconds(3), output);
-  output.covariance->position *= 2.0;
-  gathered.add(timestamp_from_seconds(4), output);
-  gathered.add(timestamp_from_seconds(5), lost);
-  gathered.add(timestamp_from_seconds(6), output);
-  output.status = TrackingStatus::Degraded;
-  gathered.add(timestamp_from_seconds(7), output);
+  Step step, lost;
+  const auto add_at = [&](double t_s, Step& added) {
+    added.t = timestamp_from_seconds(t_s);
+    gathered.add(added);
+  };
+  step.status = TrackingStatus::Good, lost.status = TrackingStatus::Lost;
+  add_at(1, step);
+  step.covariance = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+  add_at(2, step);
+  add_at(3, step);
+  step.covariance->position *= 2.0;
+  add_at(4, step);
+  add_at(5, lost);
+  add_at(6, step);
+  step.status = TrackingStatus::Degraded;
+  add_at(7, step);
   const std::vector<ClaimedPose>& claims = gathered.all();
   ASSERT_EQ(claims.size(), 4u);
   const std::vector<double> stamps{2, 4, 6, 7};

@@ -36,10 +36,8 @@ struct EnhanceOptions {
 
 /// What the odometry had in hand at one packet.
 struct Moment {
-  Packet packet;
-  OdometryOutput output;
-  cv::Mat event_frame;    ///< motion-compensated
-  cv::Mat uncompensated;  ///< the same events where they fell, undistorted
+  Step step;
+  cv::Mat uncompensated;  ///< the events of its event frame where they fell, undistorted
   cv::Mat frame;          ///< the newest standard frame; empty where there is none
 };
 
@@ -52,25 +50,21 @@ class RunUpTo {
       : options_(options),
         config_(config),
         source_(std::move(source)),
-        mode_(enhance_mode(source_)),
-        packetizer_(source_.calibration.rig, mode_, config.packets),
-        odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config),
+        odometry_(source_.calibration.rig, source_.calibration.imu, enhance_mode(source_), config, {kInOrder}),
         status_(options.quiet) {}
 
   Moment go() {
     check_time(source_.dataset->info().end);
-    while (std::optional<Measurement> measurement = source_.dataset->next()) {
-      newest_ = last_stamp(*measurement).value_or(newest_);
-      if (!begin_) begin_ = source_.dataset->info().begin.value_or(newest_);
-      packetizer_.add(std::move(*measurement));
-      if (std::optional<Moment> moment = process()) return std::move(*moment);
+    drive(
+        odometry_, [this] { return read(); }, [this](Step step) { return go_on(std::move(step)); });
+    status_.clear();
+    if (!found_) {
+      check_time(newest_);
+      throw InputError::format(
+          "{}: no packet at {} s or later: the events or IMU samples end before; choose an earlier --at",
+          options_.source.recording, options_.at_s);
     }
-    packetizer_.finish();
-    if (std::optional<Moment> moment = process()) return std::move(*moment);
-    check_time(newest_);
-    throw InputError::format(
-        "{}: no packet at {} s or later: the events or IMU samples end before; choose an earlier --at",
-        options_.source.recording, options_.at_s);
+    return moment(std::move(*found_));
   }
 
  private:
@@ -82,42 +76,47 @@ class RunUpTo {
                              options_.source.recording, options_.at_s, to_seconds(*end - *begin));
   }
 
-  std::optional<Moment> process() {
-    while (std::optional<Packet> packet = packetizer_.next()) {
-      if (packet->frame) frame_ = packet->frame->image;
-      const OdometryOutput output = odometry_.process(*packet);
-      const double now_s = to_seconds(packet->t - *begin_);
-      if (status_.due()) status_.show(fmt::format("{:.1f} / {:.1f} s", now_s, options_.at_s));
-      if (now_s >= options_.at_s) return moment(std::move(*packet), output);
-    }
-    return std::nullopt;
+  std::optional<Measurement> read() {
+    std::optional<Measurement> measurement = source_.dataset->next();
+    if (!measurement) return measurement;
+    newest_ = last_stamp(*measurement).value_or(newest_);
+    if (!begin_) begin_ = source_.dataset->info().begin.value_or(newest_);
+    return measurement;
   }
 
-  Moment moment(Packet packet, const OdometryOutput& output) {
-    status_.clear();
-    if (odometry_.event_frame().empty()) {
+  bool go_on(Step step) {
+    if (step.frame) frame_ = step.frame->image;
+    const double now_s = to_seconds(step.t - *begin_);
+    if (status_.due()) status_.show(fmt::format("{:.1f} / {:.1f} s", now_s, options_.at_s));
+    if (now_s < options_.at_s) return true;
+    found_ = std::move(step);
+    return false;
+  }
+
+  Moment moment(Step step) const {
+    if (step.event_frame.empty()) {
       throw InputError::format(
           "{}: no events to draw at {} s: {} in the last {} s, and a frame needs min_events_per_pixel = {} per pixel; "
           "choose another --at",
-          options_.source.recording, options_.at_s, packet.window().size(), config_.packets.max_age_s,
+          options_.source.recording, options_.at_s, step.events.size(), config_.packets.max_age_s,
           config_.min_events_per_pixel);
     }
     const CameraModel& camera = source_.calibration.rig.find(Modality::Events)->model;
     const UndistortTable table(camera, ideal_pinhole(camera));
-    const cv::Mat uncompensated = draw_event_frame(packet.window(), CameraMotion(), 1.0, table, config_.event_frame);
-    return {std::move(packet), output, odometry_.event_frame(), uncompensated, frame_};
+    const cv::Mat uncompensated =
+        draw_event_frame(step.drawn_events(), CameraMotion(), 1.0, table, config_.event_frame);
+    return {std::move(step), uncompensated, frame_};
   }
 
   const EnhanceOptions& options_;
   OdometryConfig config_;
   Source source_;
-  Mode mode_;
-  Packetizer packetizer_;
   Odometry odometry_;
   StatusLine status_;
   std::optional<Timestamp> begin_;
   Timestamp newest_;
   cv::Mat frame_;
+  std::optional<Step> found_;
 };
 
 cv::Mat stage(const cv::Mat& event_frame, const EnhanceConfig& config, const std::string& name) {
@@ -146,7 +145,7 @@ const std::pair<EdgeMethod, const char*> kEdgeMethods[] = {{EdgeMethod::Canny, "
 
 /// One row a step of Algorithm 1, one column a method.
 std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& config) {
-  const cv::Mat& events = moment.event_frame;
+  const cv::Mat& events = moment.step.event_frame;
   const EnhanceConfig clahe = with_method(config, EdgeMethod::Clahe);
   std::vector<SheetRow> rows{
       {{"standard frame", moment.frame},
@@ -190,11 +189,12 @@ void write_image(const std::filesystem::path& file, const cv::Mat& image) {
 }
 
 std::vector<std::string> title(const EnhanceOptions& options, const Moment& moment, const EnhanceConfig& config) {
-  const std::span<const Event> events = moment.packet.window();
+  const Step& step = moment.step;
+  const std::span<const Event> events = step.drawn_events();
   return {
       fmt::format("{} at {:.3f} s: {} events of {:.1f} ms, {}ev/s, scene depth {:.2f} m, {}", options.source.recording,
-                  options.at_s, events.size(), 1e3 * to_seconds(moment.packet.t - events.front().t),
-                  si_number(moment.output.event_rate_hz), moment.output.scene_depth, to_string(moment.output.status)),
+                  options.at_s, events.size(), 1e3 * to_seconds(step.t - events.front().t),
+                  si_number(step.event_rate_hz), step.scene_depth, to_string(step.status)),
       fmt::format(
           "blur {} px, CLAHE clip {} on {} x {} tiles, lambda {}, gain {}, Canny {} to {}, blend {} event + {} edge",
           config.blur_sigma_px, config.clahe_clip, config.clahe_tiles, config.clahe_tiles, config.sharpen_lambda,

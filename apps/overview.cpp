@@ -126,16 +126,16 @@ void draw_image(cv::Mat& canvas, const cv::Mat& image, const std::string& captio
 
 }  // namespace
 
-void LiveliestMoment::consider(const Packet& packet, const OdometryOutput& output, const cv::Mat& event_frame) {
-  if (output.status != TrackingStatus::Good) return;
-  if (!frame_.empty() && !packet.frame) return;  // a moment with both images beats one with events alone
-  if (event_frame.empty() && !packet.frame) return;
-  const double score = event_frame.empty() ? output.frame_tracks : packet.event_rate_hz;
-  const bool first_frame = frame_.empty() && packet.frame;
+void LiveliestMoment::consider(const Step& step) {
+  if (step.status != TrackingStatus::Good) return;
+  if (!frame_.empty() && !step.frame) return;  // a moment with both images beats one with events alone
+  if (step.event_frame.empty() && !step.frame) return;
+  const double score = step.event_frame.empty() ? static_cast<double>(step.frame_tracks.size()) : step.event_rate_hz;
+  const bool first_frame = frame_.empty() && step.frame;
   if (score <= score_ && !first_frame) return;
   score_ = score;
-  if (packet.frame) frame_ = packet.frame->image.clone();
-  event_frame_ = event_frame.clone();
+  if (step.frame) frame_ = step.frame->image.clone();
+  event_frame_ = step.event_frame.clone();
 }
 
 cv::Mat draw_overview(const OverviewContent& content) {

@@ -14,7 +14,7 @@ namespace edged {
 /// The images of the moment with the highest event rate (without events: with the most tracks).
 class LiveliestMoment {
  public:
-  void consider(const Packet& packet, const OdometryOutput& output, const cv::Mat& event_frame);
+  void consider(const Step& step);
 
   const cv::Mat& frame() const { return frame_; }              ///< CV_8UC1, empty without frames
   const cv::Mat& event_frame() const { return event_frame_; }  ///< CV_8UC1, empty without events

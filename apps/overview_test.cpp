@@ -9,28 +9,25 @@
 namespace edged {
 namespace {
 
-Packet packet_with(double rate_hz, bool frame) {
-  Packet packet;
-  packet.event_rate_hz = rate_hz;
-  if (frame) packet.frame = Frame{{}, "frames", cv::Mat(18, 24, CV_8UC1, cv::Scalar(rate_hz))};
-  return packet;
-}
-
-OdometryOutput good() {
-  OdometryOutput output;
-  output.status = TrackingStatus::Good;
-  return output;
+Step good_step(double rate_hz, bool frame) {
+  Step step;
+  step.status = TrackingStatus::Good;
+  step.event_rate_hz = rate_hz;
+  step.event_frame = cv::Mat(18, 24, CV_8UC1, cv::Scalar(1));
+  if (frame) step.frame = Frame{{}, "frames", cv::Mat(18, 24, CV_8UC1, cv::Scalar(rate_hz))};
+  return step;
 }
 
 TEST(LiveliestMoment, IsThatOfTheHighestEventRateWithAFrame) {
   LiveliestMoment moment;
-  const cv::Mat events(18, 24, CV_8UC1, cv::Scalar(1));
-  moment.consider(packet_with(90, false), good(), events);
-  moment.consider(packet_with(10, true), good(), events);
-  moment.consider(packet_with(30, true), good(), events);
-  moment.consider(packet_with(80, false), good(), events);
-  moment.consider(packet_with(20, true), good(), events);
-  moment.consider(packet_with(99, true), OdometryOutput{}, events);  // still initializing
+  moment.consider(good_step(90, false));
+  moment.consider(good_step(10, true));
+  moment.consider(good_step(30, true));
+  moment.consider(good_step(80, false));
+  moment.consider(good_step(20, true));
+  Step initializing = good_step(99, true);
+  initializing.status = TrackingStatus::Initializing;
+  moment.consider(initializing);
   EXPECT_EQ(moment.frame().at<unsigned char>(0, 0), 30);
   EXPECT_FALSE(moment.event_frame().empty());
 }
@@ -46,7 +43,7 @@ TEST(Overview, IsDrawnForEveryKindOfRun) {
     content.estimate.push_back({timestamp_from_seconds(i), SE3(Eigen::Quaterniond::Identity(), p)});
   }
   content.truth = content.estimate;
-  content.moment.consider(packet_with(30, true), good(), cv::Mat(180, 240, CV_8UC1, cv::Scalar(50)));
+  content.moment.consider(good_step(30, true));
   const cv::Mat drawn = draw_overview(content);
   EXPECT_EQ(drawn.type(), CV_8UC3);
   EXPECT_GT(drawn.cols, 800);

@@ -49,12 +49,13 @@ class Run {
   RunSummary go();
 
  private:
-  void process_recording();
+  std::optional<Measurement> next_measurement();
   std::optional<Measurement> read();
-  void take(Measurement measurement);
   void check(const Measurement& measurement);
-  void process_ready_packets();
-  void show_status(Timestamp now, const OdometryOutput& output);
+  void note_visual(const Measurement& measurement);
+  void observe(const Step& step);
+  void log_changes(const Step& step) const;
+  void show_status(const Step& step);
   RunSummary summarize();
   void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
@@ -65,7 +66,6 @@ class Run {
   RunCheck check_;
   std::filesystem::path folder_;
   StageTimings program_timings_;
-  Packetizer packetizer_;
   Odometry odometry_;
   QueueConfig queue_config_;
   CalibrationConfig calibration_config_;
@@ -104,9 +104,8 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
       frame_(source_.calibration.rig, frame_name(options.frame, source_)),
       check_(source_.dataset->info(), source_.calibration, mode_),
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
-      packetizer_(source_.calibration.rig, mode_, config.odometry.packets),
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config.odometry,
-                options.live ? Inference::OwnThread : Inference::Synchronous),
+                {kInOrder, options.live ? Inference::OwnThread : Inference::Synchronous}),
       queue_config_(config.live),
       calibration_config_(config.odometry.estimator.calibration),
       status_line_(options.quiet) {
@@ -131,56 +130,55 @@ void Run::check(const Measurement& measurement) {
   for (const Finding& finding : check_.news()) spdlog::error("{}: {}", finding.text, finding.remedy);
 }
 
-void Run::take(Measurement measurement) {
-  check(measurement);
-  const auto note_visual = [this](Modality modality, Timestamp first, Timestamp last) {
+/// The stamps that a pose could cover.
+void Run::note_visual(const Measurement& measurement) {
+  const auto note = [this](Modality modality, Timestamp first, Timestamp last) {
     const RigCamera* camera = source_.calibration.rig.find(modality);
     if (camera != nullptr) statistics_.add_visual(first + camera->time_offset, last + camera->time_offset);
   };
   if (const auto* batch = std::get_if<EventBatch>(&measurement); batch != nullptr && mode_ != Mode::Frames) {
-    if (!batch->events.empty()) note_visual(Modality::Events, batch->events.front().t, batch->events.back().t);
+    if (!batch->events.empty()) note(Modality::Events, batch->events.front().t, batch->events.back().t);
   } else if (const auto* frame = std::get_if<Frame>(&measurement); frame != nullptr && mode_ != Mode::Events) {
-    note_visual(Modality::Frames, frame->t, frame->t);
-  }
-  const auto timer = program_timings_.measure("packetize");
-  packetizer_.add(std::move(measurement));
-}
-
-void Run::process_ready_packets() {
-  while (const std::optional<Packet> packet = packetizer_.next()) {
-    const TrackingStatus before = statistics_.last_status();
-    OdometryOutput output;
-    {
-      const auto timer = program_timings_.measure("process");
-      output = odometry_.process(*packet);
-    }
-    if (live_) live_->note_result(packet->t);
-    if (output.status != before) {
-      spdlog::info("{:.3f} s: {}", to_seconds(packet->t), to_string(output.status));
-    }
-    {
-      const auto timer = program_timings_.measure("write");
-      statistics_.add(packet->t, output);
-      writer_->add(packet->t, output);
-      moment_.consider(*packet, output, odometry_.event_frame());
-    }
-    if (status_line_.due()) show_status(packet->t, output);
+    note(Modality::Frames, frame->t, frame->t);
   }
 }
 
-void Run::show_status(Timestamp now, const OdometryOutput& output) {
+void Run::observe(const Step& step) {
+  if (live_) live_->note_result(step.t);
+  log_changes(step);
+  {
+    const auto timer = program_timings_.measure("write");
+    statistics_.add(step);
+    writer_->add(step);
+    moment_.consider(step);
+  }
+  if (status_line_.due()) show_status(step);
+}
+
+/// Before the statistics know the step.
+void Run::log_changes(const Step& step) const {
+  const double t_s = to_seconds(step.t);
+  if (!step.started.empty()) spdlog::info("{:.3f} s: started {}", t_s, step.started);
+  if (step.status == statistics_.last_status()) return;
+  if (step.status == TrackingStatus::Lost) {
+    spdlog::warn("lost at {:.3f} s: {}; starting again", t_s, step.lost_because);
+  }
+  spdlog::info("{:.3f} s: {}", t_s, to_string(step.status));
+}
+
+void Run::show_status(const Step& step) {
   const DatasetInfo& info = source_.dataset->info();
   const double done_s = statistics_.visual_span_s();
-  std::string text = info.begin && info.end ? fmt::format("{:.1f} / {:.1f} s", to_seconds(now - *info.begin),
+  std::string text = info.begin && info.end ? fmt::format("{:.1f} / {:.1f} s", to_seconds(step.t - *info.begin),
                                                           to_seconds(*info.end - *info.begin))
                                             : fmt::format("{:.1f} s", done_s);
   text += fmt::format("  {:.1f}x", done_s / meter_.wall_s());
   if (mode_ != Mode::Frames) {
-    text += fmt::format("  {}ev/s  event tracks {}", si_number(output.event_rate_hz), output.event_tracks);
+    text += fmt::format("  {}ev/s  event tracks {}", si_number(step.event_rate_hz), step.event_tracks.size());
   }
-  if (mode_ != Mode::Events) text += fmt::format("  frame tracks {}", output.frame_tracks);
-  text += "  " + to_string(output.status);
-  if (!output.waiting_for.empty()) text += ", waits for " + output.waiting_for;
+  if (mode_ != Mode::Events) text += fmt::format("  frame tracks {}", step.frame_tracks.size());
+  text += "  " + to_string(step.status);
+  if (!step.waiting_for.empty()) text += ", waits for " + step.waiting_for;
   status_line_.show(text);
 }
 
@@ -192,17 +190,13 @@ std::optional<Measurement> Run::read() {
   return source_.dataset->next();
 }
 
-void Run::process_recording() {
-  while (interrupt_signal() == 0) {
-    std::optional<Measurement> measurement = read();
-    if (!measurement) {
-      packetizer_.finish();
-      process_ready_packets();
-      break;
-    }
-    take(std::move(*measurement));
-    process_ready_packets();
-  }
+std::optional<Measurement> Run::next_measurement() {
+  if (interrupt_signal() != 0) return std::nullopt;
+  std::optional<Measurement> measurement = read();
+  if (!measurement) return measurement;
+  check(*measurement);
+  note_visual(*measurement);
+  return measurement;
 }
 
 RunSummary Run::go() {
@@ -210,7 +204,12 @@ RunSummary Run::go() {
   meter_ = ResourceMeter();
   if (options_.live) live_.emplace(*source_.dataset, queue_config_, [] { return interrupt_signal() != 0; });
   try {
-    process_recording();
+    drive(
+        odometry_, [this] { return next_measurement(); },
+        [this](const Step& step) {
+          observe(step);
+          return interrupt_signal() == 0;
+        });
   } catch (const std::exception& e) {
     // What came before it stays, in complete files.
     spdlog::info("broken off: {}", e.what());  // main tells the user
@@ -221,16 +220,20 @@ RunSummary Run::go() {
   return summarize();
 }
 
-/// What the packetizer could not use, in the words of a user.
-void add_dropped(std::map<std::string, std::size_t>& repairs, const PacketizerCounters& counters) {
+/// What the odometry could not use, in the words of a user.
+void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
+  const auto& [intake, packets] = counters;
   const std::pair<const char*, std::size_t> dropped[] = {
-      {"packets before the first IMU sample dropped", counters.packets_before_imu},
-      {"packets after the last IMU sample dropped", counters.packets_after_imu},
-      {"packets dropped while the IMU stayed away", counters.packets_overflow},
-      {"late events dropped", counters.events_late},
-      {"late frames dropped", counters.frames_late},
-      {"late IMU samples dropped", counters.imu_late},
-      {"IMU samples dropped that are no numbers", counters.imu_not_finite},
+      {"events outside the calibration's image dropped", intake.events_outside},
+      {"frames of another size than the calibration's dropped", intake.frames_unfit},
+      {"measurements with absurd stamps dropped", intake.absurd_stamps},
+      {"packets before the first IMU sample dropped", packets.packets_before_imu},
+      {"packets after the last IMU sample dropped", packets.packets_after_imu},
+      {"packets dropped while the IMU stayed away", packets.packets_overflow},
+      {"late events dropped", packets.events_late},
+      {"late frames dropped", packets.frames_late},
+      {"late IMU samples dropped", packets.imu_late},
+      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
   };
   for (const auto& [kind, count] : dropped) {
     if (count > 0) repairs[kind] += count;
@@ -274,9 +277,9 @@ RunSummary Run::summarize() {
   summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);
   if (live_)
     summary.live =
-        LiveSummary{live_->latency(), live_->shed(), packetizer_.counters().packets_overflow, live_->peaks()};
+        LiveSummary{live_->latency(), live_->shed(), odometry_.counters().packets.packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
-  add_dropped(summary.repairs, packetizer_.counters());
+  add_dropped(summary.repairs, odometry_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
   const WrittenStates written = read_states(folder_);
   if (truth && !written.body.empty()) evaluate_run(summary, written, source_.calibration.rig, *truth);

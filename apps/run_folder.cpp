@@ -43,12 +43,12 @@ void append(std::string& line, const Eigen::Matrix3d& P) {
   }
 }
 
-std::string state_line(Timestamp packet, const OdometryOutput& output) {
-  std::string line = fmt::format("{},{}", to_ns(packet), to_string(output.status));
-  if (output.status == TrackingStatus::Initializing) {
+std::string state_line(const Step& step) {
+  std::string line = fmt::format("{},{}", to_ns(step.t), to_string(step.status));
+  if (step.status == TrackingStatus::Initializing) {
     line += std::string(16, ',');
   } else {
-    const NavState& state = output.state;
+    const NavState& state = step.state;
     const Eigen::Quaterniond& q = state.T_W_B.rotation();
     append(line, state.T_W_B.translation());
     line += fmt::format(",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
@@ -56,13 +56,13 @@ std::string state_line(Timestamp packet, const OdometryOutput& output) {
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
   }
-  line += fmt::format(",{},{},{},{},{},{}", output.keyframe ? 1 : 0, output.event_tracks, output.frame_tracks,
-                      output.landmarks, output.event_rate_hz, output.scene_depth);
-  const auto& ln_s = output.ln_depth_scale;
+  line += fmt::format(",{},{},{},{},{},{}", step.keyframe ? 1 : 0, step.event_tracks.size(), step.frame_tracks.size(),
+                      step.landmarks.size(), step.event_rate_hz, step.scene_depth);
+  const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
-  if (output.covariance) {
-    append(line, output.covariance->position);
-    append(line, output.covariance->rotation);
+  if (step.covariance) {
+    append(line, step.covariance->position);
+    append(line, step.covariance->rotation);
   } else {
     line += std::string(12, ',');
   }
@@ -138,11 +138,11 @@ RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& fra
           << kStatesHeader;
 }
 
-void RunWriter::add(Timestamp packet, const OdometryOutput& output) {
-  states_ << state_line(packet, output);
-  if (is_tracking(output.status)) {
+void RunWriter::add(const Step& step) {
+  states_ << state_line(step);
+  if (is_tracking(step.status)) {
     ++poses_;
-    const StampedPose pose = frame_({packet, output.state.T_W_B});
+    const StampedPose pose = frame_({step.t, step.state.T_W_B});
     tum_.add(pose);
     euroc_.add(pose);
   }
@@ -163,14 +163,15 @@ WrittenStates read_states(const std::filesystem::path& folder) {
     const auto status = parse_status(fields.next());
     std::array<double, 7> v;
     if (!t || !status || !read_numbers(fields, v)) continue;
-    OdometryOutput output;
-    output.status = *status;
-    output.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
+    Step step;
+    step.t = *t;
+    step.status = *status;
+    step.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
     for (int i = 0; i < kFieldsBetween; ++i) fields.next();
     std::array<double, 12> P;
-    if (read_numbers(fields, P)) output.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
-    if (is_tracking(*status)) out.body.push_back({*t, output.state.T_W_B});
-    claims.add(*t, output);
+    if (read_numbers(fields, P)) step.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
+    if (is_tracking(*status)) out.body.push_back({*t, step.state.T_W_B});
+    claims.add(step);
   }
   out.claims = claims.all();
   return out;

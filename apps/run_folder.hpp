@@ -36,7 +36,7 @@ class RunWriter {
 
   /// Every packet becomes a line of states.csv, with pose and motion unless Initializing; Good and Degraded ones become
   /// poses.
-  void add(Timestamp packet, const OdometryOutput& output);
+  void add(const Step& step);
 
   std::size_t poses() const { return poses_; }
 

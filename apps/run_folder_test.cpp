@@ -65,12 +65,13 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
   make_run_folder(folder);
   {
     RunWriter writer(folder, OutputFrame({}, "body"), {"first comment"});
-    OdometryOutput output;
+    Step step;
     for (const TrackingStatus status :
          {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
-      output.status = status;
-      if (status == TrackingStatus::Degraded) output.ln_depth_scale = LogScale{0.1, 0.2};
-      writer.add(timestamp_from_seconds(1.0 + static_cast<double>(writer.poses())), output);
+      step.status = status;
+      if (status == TrackingStatus::Degraded) step.ln_depth_scale = LogScale{0.1, 0.2};
+      step.t = timestamp_from_seconds(1.0 + static_cast<double>(writer.poses()));
+      writer.add(step);
     }
     EXPECT_EQ(writer.poses(), 2u);
   }
@@ -88,13 +89,13 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
   Trajectory written;
   {
     RunWriter writer(folder, OutputFrame({}, "body"), {});
-    OdometryOutput output;
+    Step step;
     for (int i = 0; i < 20; ++i) {
-      output.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
-      output.state.T_W_B = SE3(so3::exp({0.1 * i, 0.3, -0.2 * i}), Eigen::Vector3d(i / 3.0, 1e-7 * i, -7.0));
-      writer.add(timestamp_from_seconds(1e9 + i / 7.0), output);
-      if (output.status == TrackingStatus::Good)
-        written.push_back({timestamp_from_seconds(1e9 + i / 7.0), output.state.T_W_B});
+      step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      step.state.T_W_B = SE3(so3::exp({0.1 * i, 0.3, -0.2 * i}), Eigen::Vector3d(i / 3.0, 1e-7 * i, -7.0));
+      step.t = timestamp_from_seconds(1e9 + i / 7.0);
+      writer.add(step);
+      if (step.status == TrackingStatus::Good) written.push_back({step.t, step.state.T_W_B});
     }
   }
   const Trajectory read = read_states(folder).body;
@@ -111,16 +112,17 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
   Claims claims;
   {
     RunWriter writer(folder, OutputFrame({}, "body"), {});
-    OdometryOutput output;
+    Step step;
     for (int i = 0; i < 20; ++i) {
-      output.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
-      output.covariance.reset();
+      step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      step.covariance.reset();
       Eigen::Matrix3d P;
       P << 1.0, 0.1, 0.2, 0.1, 2.0 + i, 0.3, 0.2, 0.3, 3.0 / 7.0;
-      if (i > 4 && i != 9) output.covariance = {P, 0.1 * P};
-      if (i % 3 == 0) output.ln_depth_scale = LogScale{0.1, 0.2};
-      writer.add(timestamp_from_seconds(i / 7.0), output);
-      claims.add(timestamp_from_seconds(i / 7.0), output);
+      if (i > 4 && i != 9) step.covariance = {P, 0.1 * P};
+      if (i % 3 == 0) step.ln_depth_scale = LogScale{0.1, 0.2};
+      step.t = timestamp_from_seconds(i / 7.0);
+      writer.add(step);
+      claims.add(step);
     }
   }
   const std::vector<ClaimedPose> read = read_states(folder).claims;

@@ -33,19 +33,19 @@ void RunStatistics::add_visual(Timestamp first, Timestamp last) {
   last_visual_ = std::max(last_visual_, last);
 }
 
-void RunStatistics::add(Timestamp packet, const OdometryOutput& output) {
+void RunStatistics::add(const Step& step) {
   ++packets_;
-  if (output.keyframe) ++keyframes_;
-  if (output.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
-  last_status_ = output.status;
-  ln_depth_scale_ = output.ln_depth_scale;
-  if (is_tracking(output.status)) accel_bias_ = output.state.bias_accel;
-  if (!output.waiting_for.empty()) waiting_for_ = output.waiting_for;
-  if (!output.lost_because.empty()) lost_because_ = output.lost_because;
-  const Timestamp begin = first_visual_.value_or(packet);
-  seconds_[static_cast<std::size_t>(output.status)] += std::max(0.0, to_seconds(packet - last_packet_.value_or(begin)));
-  last_packet_ = packet;
-  if (output.status == TrackingStatus::Good && !first_good_s_) first_good_s_ = to_seconds(packet - begin);
+  if (step.keyframe) ++keyframes_;
+  if (step.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
+  last_status_ = step.status;
+  ln_depth_scale_ = step.ln_depth_scale;
+  if (is_tracking(step.status)) accel_bias_ = step.state.bias_accel;
+  if (!step.waiting_for.empty()) waiting_for_ = step.waiting_for;
+  if (!step.lost_because.empty()) lost_because_ = step.lost_because;
+  const Timestamp begin = first_visual_.value_or(step.t);
+  seconds_[static_cast<std::size_t>(step.status)] += std::max(0.0, to_seconds(step.t - last_packet_.value_or(begin)));
+  last_packet_ = step.t;
+  if (step.status == TrackingStatus::Good && !first_good_s_) first_good_s_ = to_seconds(step.t - begin);
 }
 
 double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(last_visual_ - *first_visual_) : 0.0; }

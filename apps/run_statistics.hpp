@@ -19,7 +19,7 @@ class RunStatistics {
  public:
   /// A visual measurement that the mode uses: spans the time that a pose could cover.
   void add_visual(Timestamp first, Timestamp last);
-  void add(Timestamp packet, const OdometryOutput& output);
+  void add(const Step& step);
 
   std::size_t packets() const { return packets_; }
   std::size_t keyframes() const { return keyframes_; }

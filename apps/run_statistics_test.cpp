@@ -9,22 +9,23 @@ namespace {
 
 Timestamp at(double s) { return timestamp_from_seconds(s); }
 
-OdometryOutput with(TrackingStatus status, bool keyframe = false) {
-  OdometryOutput output;
-  output.status = status;
-  output.keyframe = keyframe;
-  return output;
+Step step_at(double t_s, TrackingStatus status, bool keyframe = false) {
+  Step step;
+  step.t = at(t_s);
+  step.status = status;
+  step.keyframe = keyframe;
+  return step;
 }
 
 TEST(RunStatistics, CoverageIsTheShareOfTheVisualSpanWithAGoodPose) {
   RunStatistics statistics;
   statistics.add_visual(at(10.0), at(10.0));
   statistics.add_visual(at(20.0), at(20.0));
-  statistics.add(at(12.0), with(TrackingStatus::Initializing));
-  statistics.add(at(13.0), with(TrackingStatus::Good, true));
-  statistics.add(at(17.0), with(TrackingStatus::Good));
-  statistics.add(at(18.0), with(TrackingStatus::Degraded));
-  statistics.add(at(19.0), with(TrackingStatus::Lost));
+  statistics.add(step_at(12.0, TrackingStatus::Initializing));
+  statistics.add(step_at(13.0, TrackingStatus::Good, true));
+  statistics.add(step_at(17.0, TrackingStatus::Good));
+  statistics.add(step_at(18.0, TrackingStatus::Degraded));
+  statistics.add(step_at(19.0, TrackingStatus::Lost));
   EXPECT_DOUBLE_EQ(statistics.coverage(), 0.5);
   EXPECT_DOUBLE_EQ(statistics.visual_span_s(), 10.0);
   EXPECT_DOUBLE_EQ(statistics.time_in_s(TrackingStatus::Initializing), 2.0);
@@ -44,22 +45,22 @@ TEST(RunStatistics, OfNothingAreZero) {
 
 TEST(RunStatistics, CountLossesNotLostPackets) {
   RunStatistics statistics;
-  for (int i = 0; i < 3; ++i) statistics.add(at(i), with(TrackingStatus::Lost));
-  statistics.add(at(4), with(TrackingStatus::Good));
-  statistics.add(at(5), with(TrackingStatus::Lost));
+  for (int i = 0; i < 3; ++i) statistics.add(step_at(i, TrackingStatus::Lost));
+  statistics.add(step_at(4, TrackingStatus::Good));
+  statistics.add(step_at(5, TrackingStatus::Lost));
   EXPECT_EQ(statistics.times_lost(), 2u);
 }
 
 TEST(RunStatistics, KeepWhatWasLastWaitedFor) {
   RunStatistics statistics;
-  OdometryOutput output = with(TrackingStatus::Initializing);
-  output.waiting_for = "parallax 0.3 of 1.5 deg";
-  statistics.add(at(0), output);
-  statistics.add(at(1), with(TrackingStatus::Good));
-  output = with(TrackingStatus::Lost);
-  output.lost_because = "no 8 landmarks for 2.5 s";
-  statistics.add(at(2), output);
-  statistics.add(at(3), with(TrackingStatus::Lost));
+  Step step = step_at(0, TrackingStatus::Initializing);
+  step.waiting_for = "parallax 0.3 of 1.5 deg";
+  statistics.add(step);
+  statistics.add(step_at(1, TrackingStatus::Good));
+  step = step_at(2, TrackingStatus::Lost);
+  step.lost_because = "no 8 landmarks for 2.5 s";
+  statistics.add(step);
+  statistics.add(step_at(3, TrackingStatus::Lost));
   EXPECT_EQ(statistics.waiting_for(), "parallax 0.3 of 1.5 deg");
   EXPECT_EQ(statistics.lost_because(), "no 8 landmarks for 2.5 s");
 }

@@ -60,25 +60,18 @@ std::vector<GrowingTrails> cameras_of(const Rig& rig, Mode mode) {
 }
 
 std::vector<GrowingTrails> follow_corners(Source& source, Mode mode, const OdometryConfig& config) {
-  Packetizer packetizer(source.calibration.rig, mode, config.packets);
-  Odometry odometry(source.calibration.rig, source.calibration.imu, mode, config);
+  Odometry odometry(source.calibration.rig, source.calibration.imu, mode, config, {kInOrder});
   std::vector<GrowingTrails> cameras = cameras_of(source.calibration.rig, mode);
-  const auto process_ready_packets = [&] {
-    while (const std::optional<Packet> packet = packetizer.next()) {
-      const OdometryOutput output = odometry.process(*packet);
-      for (GrowingTrails& camera : cameras) {
-        const Modality modality = camera.seen.camera.modality;
-        const bool image = modality == Modality::Events ? !odometry.event_frame().empty() : packet->frame.has_value();
-        if (image) camera.add(odometry.tracks(modality), packet->t, is_tracking(output.status));
-      }
-    }
-  };
-  while (std::optional<Measurement> measurement = source.dataset->next()) {
-    packetizer.add(std::move(*measurement));
-    process_ready_packets();
-  }
-  packetizer.finish();
-  process_ready_packets();
+  drive(
+      odometry, [&] { return source.dataset->next(); },
+      [&](const Step& step) {
+        for (GrowingTrails& camera : cameras) {
+          const bool events = camera.seen.camera.modality == Modality::Events;
+          const bool image = events ? !step.event_frame.empty() : step.frame.has_value();
+          if (image) camera.add(events ? step.event_tracks : step.frame_tracks, step.t, is_tracking(step.status));
+        }
+        return true;
+      });
   return cameras;
 }
 

@@ -19,8 +19,8 @@ const Flight& flight() {
   return recorded;
 }
 
-/// Every number of an output but its stamp.
-std::vector<double> numbers_of(const OdometryOutput& o) {
+/// Every number of a step but its stamp.
+std::vector<double> numbers_of(const Step& o) {
   const auto& p = o.state.T_W_B.translation();
   const auto& q = o.state.T_W_B.rotation();
   const auto &v = o.state.v_W, &bg = o.state.bias_gyro, &ba = o.state.bias_accel;
@@ -43,24 +43,24 @@ std::vector<double> numbers_of(const OdometryOutput& o) {
           o.event_rate_hz,
           o.scene_depth,
           static_cast<double>(o.keyframe),
-          static_cast<double>(o.event_tracks),
-          static_cast<double>(o.frame_tracks),
-          static_cast<double>(o.landmarks),
+          static_cast<double>(o.event_tracks.size()),
+          static_cast<double>(o.frame_tracks.size()),
+          static_cast<double>(o.landmarks.size()),
           static_cast<double>(o.status)};
 }
 
 /// `shift`: what the second run's stamps are ahead.
 void expect_the_same_bits(const FlightRun& a, const FlightRun& b, Duration shift = Duration(0)) {
-  ASSERT_EQ(a.outputs.size(), b.outputs.size());
-  ASSERT_GT(a.outputs.size(), 50U);
-  EXPECT_EQ(a.outputs.back().status, TrackingStatus::Good);
-  for (std::size_t i = 0; i < a.outputs.size(); ++i) {
-    ASSERT_EQ(a.outputs[i].state.t + shift, b.outputs[i].state.t) << "packet " << i;
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  ASSERT_GT(a.steps.size(), 50U);
+  EXPECT_EQ(a.steps.back().status, TrackingStatus::Good);
+  for (std::size_t i = 0; i < a.steps.size(); ++i) {
+    ASSERT_EQ(a.steps[i].state.t + shift, b.steps[i].state.t) << "packet " << i;
     ASSERT_EQ(a.event_frame_sums[i], b.event_frame_sums[i]) << "packet " << i;
-    const std::vector<double> x = numbers_of(a.outputs[i]), y = numbers_of(b.outputs[i]);
+    const std::vector<double> x = numbers_of(a.steps[i]), y = numbers_of(b.steps[i]);
     ASSERT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0)
-        << "packet " << i << " at " << to_seconds(a.outputs[i].state.t) << " s: " << testing::PrintToString(x)
-        << " and " << testing::PrintToString(y);
+        << "packet " << i << " at " << to_seconds(a.steps[i].state.t) << " s: " << testing::PrintToString(x) << " and "
+        << testing::PrintToString(y);
   }
 }
 

@@ -60,24 +60,22 @@ Flight simulate_flight(const SimulatorConfig& config) {
 
 FlightRun run_flight(const Calibration& calibration, std::span<const Measurement> measurements, Mode mode,
                      const OdometryConfig& config) {
-  Packetizer packetizer(calibration.rig, mode, config.packets);
-  Odometry odometry(calibration.rig, calibration.imu, mode, config);
+  Odometry odometry(calibration.rig, calibration.imu, mode, config, {kInOrder});
   FlightRun run;
-  const auto process_ready_packets = [&] {
-    while (const std::optional<Packet> packet = packetizer.next()) {
-      run.outputs.push_back(odometry.process(*packet));
-      run.statistics.add(packet->t, run.outputs.back());
-      const cv::Mat& picture = odometry.event_frame();
-      run.event_frame_sums.push_back(picture.empty() ? 0.0 : cv::sum(picture)[0]);
-    }
+  const auto next_measurement = [&, next = measurements.begin()]() mutable -> std::optional<Measurement> {
+    if (next == measurements.end()) return std::nullopt;
+    note_visual(run.statistics, *next, calibration.rig, mode);
+    return *next++;
   };
-  for (const Measurement& measurement : measurements) {
-    note_visual(run.statistics, measurement, calibration.rig, mode);
-    packetizer.add(measurement);
-    process_ready_packets();
-  }
-  packetizer.finish();
-  process_ready_packets();
+  drive(odometry, next_measurement, [&](Step step) {
+    run.statistics.add(step);
+    run.event_frame_sums.push_back(step.event_frame.empty() ? 0.0 : cv::sum(step.event_frame)[0]);
+    step.event_frame.release();
+    step.frame.reset();
+    step.events = {}, step.drawn = 0;
+    run.steps.push_back(std::move(step));
+    return true;
+  });
   run.rig = odometry.rig();
   return run;
 }
@@ -91,20 +89,20 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   double velocity_sum = 0.0;
   int velocities = 0;
   Claims claims;
-  for (const OdometryOutput& output : run.outputs) {
-    claims.add(output.state.t, output);
-    if (!is_tracking(output.status)) continue;
-    estimate.push_back(frame({output.state.t, output.state.T_W_B}));
+  for (const Step& step : run.steps) {
+    claims.add(step);
+    if (!is_tracking(step.status)) continue;
+    estimate.push_back(frame({step.state.t, step.state.T_W_B}));
     const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
                                         [](const StampedPose& pose, Timestamp t) { return pose.t < t; });
     if (after - truth.begin() < 2 || truth.end() - after < 2) continue;
     const StampedPose before = frame.to_body(*(after - 2)), later = frame.to_body(*(after + 1));
-    const SE3& T_W_B = output.state.T_W_B;
-    const double share = to_seconds(output.state.t - before.t) / to_seconds(later.t - before.t);
+    const SE3& T_W_B = step.state.T_W_B;
+    const double share = to_seconds(step.state.t - before.t) / to_seconds(later.t - before.t);
     const SE3 true_T_W_B = interpolate(before.T, later.T, share);
     const double cosine = T_W_B.R().row(2).dot(true_T_W_B.R().row(2));
     result.max_tilt_deg = std::max(result.max_tilt_deg, std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi);
-    velocity_sum += (T_W_B.rotation().conjugate() * output.state.v_W - body_velocity(before, later)).squaredNorm();
+    velocity_sum += (T_W_B.rotation().conjugate() * step.state.v_W - body_velocity(before, later)).squaredNorm();
     ++velocities;
   }
   result.rms_velocity_error = velocities == 0 ? 0.0 : std::sqrt(velocity_sum / velocities);

@@ -31,7 +31,7 @@ Flight simulate_flight(const std::string& preset, int seed, double duration_s);
 
 /// What one run gave.
 struct FlightRun {
-  std::vector<OdometryOutput> outputs;   ///< one a packet
+  std::vector<Step> steps;               ///< one a packet, without events and images
   std::vector<double> event_frame_sums;  ///< sum of grey values, one a packet; zero without an event frame
   RunStatistics statistics;
   Rig rig;  ///< as calibrated along the way

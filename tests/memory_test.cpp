@@ -98,27 +98,25 @@ TEST_F(Memory, StaysTheSameOverALongRun) {
   const Flight flight = small_flight(6.0, {.kind = DisturbanceKind::Standstill, .at_s = 5.5, .length_s = 0.5});
   ToAndFro recording(flight.measurements, duration_s);
   const Rig& rig = flight.calibration.rig;
-  Packetizer packetizer(rig, Mode::Fused, {});
-  Odometry odometry(rig, flight.calibration.imu, Mode::Fused, {});
+  Odometry odometry(rig, flight.calibration.imu, Mode::Fused, {}, {kInOrder});
   RunWriter writer(folder_, OutputFrame(rig, "body"), {});
   RunStatistics statistics;
   double after_a_third_mb = 0.0, next_report_s = 0.0;
   std::optional<Timestamp> begin;
-  while (auto measurement = recording.next()) {
-    packetizer.add(std::move(*measurement));
-    while (const auto packet = packetizer.next()) {
-      if (!begin) statistics.add_visual(*(begin = packet->t), packet->t);
-      const OdometryOutput output = odometry.process(*packet);
-      statistics.add_visual(packet->t, packet->t);
-      statistics.add(packet->t, output);
-      writer.add(packet->t, output);
-      const double t = to_seconds(packet->t - *begin);
-      if (t >= duration_s / 3 && after_a_third_mb == 0.0) after_a_third_mb = resident_mb();
-      if (t < next_report_s) continue;
-      std::printf("%6.0f s %7.1f MB, %d landmarks\n", t, resident_mb(), output.landmarks);
-      next_report_s += duration_s / 30;
-    }
-  }
+  const auto observe = [&](const Step& step) {
+    if (!begin) statistics.add_visual(*(begin = step.t), step.t);
+    statistics.add_visual(step.t, step.t);
+    statistics.add(step);
+    writer.add(step);
+    const double t = to_seconds(step.t - *begin);
+    if (t >= duration_s / 3 && after_a_third_mb == 0.0) after_a_third_mb = resident_mb();
+    if (t < next_report_s) return true;
+    std::printf("%6.0f s %7.1f MB, %zu landmarks\n", t, resident_mb(), step.landmarks.size());
+    next_report_s += duration_s / 30;
+    return true;
+  };
+  drive(
+      odometry, [&] { return recording.next(); }, observe);
   const double at_the_end_mb = resident_mb();
   std::printf("%.1f MB after a third, %.1f MB at the end, coverage %.3f, lost %zu times\n", after_a_third_mb,
               at_the_end_mb, statistics.coverage(), statistics.times_lost());
@@ -133,22 +131,23 @@ TEST(EventStorm, OfTwentyMillionASecondIsSurvivedLiveWithinTheBoundsOfTheQueue) 
   EventStorm storm(dvs.name, flight.calibration.rig.find(Modality::Frames)->name, size, 20e6, 1500);
   const double before_mb = resident_mb();
   double most_mb = 0.0;
-  Packetizer packetizer(flight.calibration.rig, Mode::Fused, {});
-  Odometry odometry(flight.calibration.rig, flight.calibration.imu, Mode::Fused, {}, Inference::OwnThread);
+  Odometry odometry(flight.calibration.rig, flight.calibration.imu, Mode::Fused, {}, {kInOrder, Inference::OwnThread});
   LiveSource source(storm, {.max_megabytes = 16}, [] { return false; });
   std::size_t events = 0, frames = 0, imu = 0, packets = 0;
   while (source.shed().events == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  while (auto m = source.next()) {
+  const auto next_measurement = [&] {
+    const std::optional<Measurement> m = source.next();
+    if (!m) return m;
     if (const auto* batch = std::get_if<EventBatch>(&*m)) events += batch->events.size();
     frames += std::holds_alternative<Frame>(*m) ? 1 : 0;
     imu += std::holds_alternative<ImuSample>(*m) ? 1 : 0;
-    packetizer.add(std::move(*m));
-    while (const auto packet = packetizer.next()) {
-      odometry.process(*packet);
-      source.note_result(packet->t);
-      if (++packets % 10 == 0) most_mb = std::max(most_mb, resident_mb());
-    }
-  }
+    return m;
+  };
+  drive(odometry, next_measurement, [&](const Step& step) {
+    source.note_result(step.t);
+    if (++packets % 10 == 0) most_mb = std::max(most_mb, resident_mb());
+    return true;
+  });
   std::printf("%zu packets, %zu of %zu events, %zu of %zu frames, %.0f MB more, latency 99 %% %.3f s\n", packets,
               events, storm.events(), frames, storm.frames(), most_mb - before_mb, source.latency().quantile_s(0.99));
   EXPECT_EQ(events + source.shed().events, storm.events());

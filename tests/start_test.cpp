@@ -36,7 +36,7 @@ TEST_P(StartInMotion, IsRightWhenItIsGood) {
     if (how.preset == "dark" && mode == Mode::Fused) continue;
     SCOPED_TRACE(to_string(mode));
     const FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
-    ASSERT_TRUE(run.statistics.first_good_s()) << run.outputs.back().waiting_for;
+    ASSERT_TRUE(run.statistics.first_good_s()) << run.steps.back().waiting_for;
     EXPECT_EQ(run.statistics.times_lost(), 0U);
     const FlightScore result = score(flight, run);
     std::cout << how.name << " " << to_string(mode) << ": good after " << *run.statistics.first_good_s()

@@ -35,11 +35,9 @@ Flight flight_of(const std::string& preset, double duration_s, const std::vector
 }
 
 bool ever(const FlightRun& run, TrackingStatus status) {
-  const auto first_good = std::find_if(run.outputs.begin(), run.outputs.end(), [](const OdometryOutput& output) {
-    return output.status == TrackingStatus::Good;
-  });
-  return std::any_of(first_good, run.outputs.end(),
-                     [=](const OdometryOutput& output) { return output.status == status; });
+  const auto first_good = std::find_if(run.steps.begin(), run.steps.end(),
+                                       [](const Step& step) { return step.status == TrackingStatus::Good; });
+  return std::any_of(first_good, run.steps.end(), [=](const Step& step) { return step.status == status; });
 }
 
 bool stays_good(const FlightRun& run) {
@@ -52,13 +50,13 @@ bool stays_good(const FlightRun& run) {
 FlightRun withstand(const Flight& flight, Mode mode) {
   FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
   if (!run.statistics.first_good_s()) {
-    ADD_FAILURE() << to_string(mode) << ": never good, waits for " << run.outputs.back().waiting_for;
+    ADD_FAILURE() << to_string(mode) << ": never good, waits for " << run.steps.back().waiting_for;
     return run;
   }
   const FlightScore result = score(flight, run);
   std::cout << to_string(mode) << ": " << describe(result, run.statistics) << '\n';
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
-  for (std::size_t i = 1; i < run.outputs.size(); ++i) EXPECT_LT(run.outputs[i - 1].state.t, run.outputs[i].state.t);
+  for (std::size_t i = 1; i < run.steps.size(); ++i) EXPECT_LT(run.steps[i - 1].state.t, run.steps[i].state.t);
   EXPECT_TRUE(result.evaluation.mpe_percent < 5.0 || run.statistics.times_lost() > 0);
   for (const TimeSpan& span : result.consistency.silent) {
     std::cout << "Good, but beyond its 3 sigma from " << to_seconds(span.begin) << " to " << to_seconds(span.end)
@@ -138,10 +136,10 @@ TEST(Stress, PureRotationStaysGood) {
 double drift_m(const FlightRun& run, double from_s, double to_s) {
   std::optional<Eigen::Vector3d> first;
   double furthest = 0.0;
-  for (const OdometryOutput& output : run.outputs) {
-    if (to_seconds(output.state.t) < from_s || to_seconds(output.state.t) > to_s) continue;
-    if (!first) first = output.state.T_W_B.translation();
-    furthest = std::max(furthest, (output.state.T_W_B.translation() - *first).norm());
+  for (const Step& step : run.steps) {
+    if (to_seconds(step.state.t) < from_s || to_seconds(step.state.t) > to_s) continue;
+    if (!first) first = step.state.T_W_B.translation();
+    furthest = std::max(furthest, (step.state.T_W_B.translation() - *first).norm());
   }
   return furthest;
 }
@@ -202,9 +200,9 @@ TEST(Stress, ALampThatIsSwitchedInADarkRoomIsNoMotion) {
 }
 
 bool good_between(const FlightRun& run, double from_s, double to_s) {
-  return std::all_of(run.outputs.begin(), run.outputs.end(), [=](const OdometryOutput& output) {
-    const double t_s = to_seconds(output.state.t);
-    return t_s < from_s || t_s > to_s || output.status == TrackingStatus::Good;
+  return std::all_of(run.steps.begin(), run.steps.end(), [=](const Step& step) {
+    const double t_s = to_seconds(step.state.t);
+    return t_s < from_s || t_s > to_s || step.status == TrackingStatus::Good;
   });
 }
 

@@ -12,16 +12,16 @@ int main() {
   flight.duration_s = 3.0;
   edged::Simulator simulator(flight);
   const edged::Calibration calibration = simulator.calibration();
-  const edged::OdometryConfig config;
-  edged::Packetizer packetizer(calibration.rig, edged::Mode::Fused, config.packets);
-  edged::Odometry odometry(calibration.rig, calibration.imu, edged::Mode::Fused, config);
+  edged::Odometry odometry(calibration.rig, calibration.imu, edged::Mode::Fused, {}, {edged::kInOrder});
 
-  edged::OdometryOutput last;
-  while (std::optional<edged::Measurement> measurement = simulator.next()) {
-    packetizer.add(std::move(*measurement));
-    while (const std::optional<edged::Packet> packet = packetizer.next()) last = odometry.process(*packet);
-  }
-  std::printf("%s, %.2f m from the start, %zu rigs known\n", edged::to_string(last.status).c_str(),
-              last.state.T_W_B.translation().norm(), edged::known_rigs().size());
+  edged::Step last;
+  edged::drive(
+      odometry, [&] { return simulator.next(); },
+      [&](edged::Step step) {
+        last = std::move(step);
+        return true;
+      });
+  std::printf("%s, %.2f m from the start, %zu landmarks, %zu rigs known\n", edged::to_string(last.status).c_str(),
+              last.state.T_W_B.translation().norm(), last.landmarks.size(), edged::known_rigs().size());
   return last.status == edged::TrackingStatus::Good ? 0 : 1;
 }

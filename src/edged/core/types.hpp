@@ -78,6 +78,12 @@ struct CameraObservations {
   std::vector<FeatureObservation> features;
 };
 
+/// A point of the world that the estimator has placed by the sights of a corner.
+struct Landmark {
+  FeatureId id = 0;  ///< of the corner
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+};
+
 /// Gravity in W [m/s^2].
 inline const Eigen::Vector3d kGravity_W(0.0, 0.0, -9.81);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/depth/network.hpp"
 
-#include <spdlog/spdlog.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/estimator.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 
 #include "edged/estimator/cost.hpp"
@@ -82,6 +84,9 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   window_ = std::move(found.start->window);
   scale_sigma_ = found.start->scale_sigma;
   result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
+  result.started = at_rest ? "at rest"
+                           : fmt::format("in motion: scale known to {:.1f} %, speed {:.2f} m/s", 100.0 * scale_sigma_,
+                                         newest().v_W.norm());
   initialized_ = result.new_frame = true;
   if (!provisional()) leave_start();
   result.provisional = provisional();
@@ -166,10 +171,11 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());
   result.imu_strain = imu_strain(window_);
   const StateId newest_id = window_.states.rbegin()->first;
-  result.landmarks = result.landmarks_seen = 0;
+  result.landmarks.clear();
+  result.landmarks_seen = 0;
   for (const auto& [id, feature] : window_.features) {
     if (!feature.anchor) continue;
-    ++result.landmarks;
+    result.landmarks.push_back({id, window_.position(feature)});
     if (feature.last_seen == newest_id) ++result.landmarks_seen;
   }
 }

@@ -19,7 +19,8 @@ namespace edged {
 struct EstimatorResult {
   std::string waiting_for;          ///< while not initialised: what is missing, with numbers
   std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
-  int landmarks = 0;                ///< in the cost
+  std::string started;              ///< the estimator has started with this input: how, with numbers
+  std::vector<Landmark> landmarks;  ///< in the cost
   int landmarks_seen = 0;           ///< of them, seen by the newest state
   double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
   bool standstill = false;

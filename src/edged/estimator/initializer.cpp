@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/initializer.hpp"
 
-#include <spdlog/spdlog.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -166,7 +166,6 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   window.soft_priors.push_back(
       motion_prior(motion, motion_block(state),
                    {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
-  spdlog::info("started at rest at {:.3f} s", to_seconds(input.t));
   return window;
 }
 
@@ -191,16 +190,13 @@ StartResult Initializer::start_from(const Alignment& alignment, double most_scal
   if (!(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
-  const Timestamp now = buffer_.back().t;
-  next_solve_ = now + kSolveEvery;
+  next_solve_ = buffer_.back().t + kSolveEvery;
   Window window = aligned_window(alignment);
   solve_start(window);
   std::string doubt = doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma);
   if (!doubt.empty()) return {{}, std::move(doubt)};
   const double sigma = scale_sigma(window);
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
-  spdlog::info("started in motion at {:.3f} s: scale known to {:.1f} %, speed {:.2f} m/s", to_seconds(now),
-               100.0 * sigma, window.newest().nav().v_W.norm());
   return {StartWindow{std::move(window), sigma, alignment.outliers}};
 }
 

@@ -1,59 +1,65 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The system: packets in, states out. `Odometry::process` is the paper's data flow, one line a step.
+// The front door: measurements in, steps out.
 #pragma once
 
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "edged/camera/rig.hpp"
 #include "edged/core/timing.hpp"
 #include "edged/imu/noise.hpp"
+#include "edged/pipeline/intake.hpp"
 #include "edged/pipeline/odometry_config.hpp"
-#include "edged/pipeline/packetizer.hpp"
-#include "edged/pipeline/tracking_status.hpp"
+#include "edged/pipeline/step.hpp"
 
 namespace edged {
 
-/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position
-/// and yaw are exact.
-struct PoseCovariance {
-  Eigen::Matrix3d position;  ///< [m^2], in W
-  Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
+/// How the odometry is fed and worked. The defaults are for sensors whose drivers have a thread each; a recording,
+/// which is in order, is `{kInOrder}`.
+struct FeedConfig {
+  SensorDelays delays;
+  Inference inference = Inference::Synchronous;  ///< OwnThread: the depth network never keeps the others waiting
 };
 
-/// What one packet brought.
-struct OdometryOutput {
-  TrackingStatus status = TrackingStatus::Initializing;
-  NavState state;                            ///< at the packet's time; meaningful unless status is Initializing
-  std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
-  bool keyframe = false;                     ///< this packet became a keyframe
-  int event_tracks = 0;                      ///< live corners on the event frame
-  int frame_tracks = 0;                      ///< live corners on the standard frame
-  int landmarks = 0;                         ///< in the window
-  double event_rate_hz = 0;                  ///< of this packet
-  double scene_depth = 0;                    ///< z-depth [m] used by the warp
-  std::optional<LogScale> ln_depth_scale;    ///< s of Eq. 5; with the depth factor only
-  std::string waiting_for;                   ///< while there is no estimate: what a start lacks, with numbers
-  std::string lost_because;                  ///< while Lost: what ended the last estimate, with numbers
+/// What became of the measurements.
+struct OdometryCounters {
+  IntakeCounters intake;
+  PacketizerCounters packets;
 };
 
-/// Synchronous and deterministic: the same packets give the same bits; but for a depth network that has a thread of its
-/// own (Inference::OwnThread, for live use).
+/// One rig, one mode, from the first measurement to the last:
+///
+///   odometry.add(measurement);
+///   while (const std::optional<Step> step = odometry.next()) show(step->state);
+///
+/// add, finish, newest_state and state_at may be called from any thread, all else from one. Deterministic: the same
+/// measurements of each sensor give the same bits, however the sensors lag behind one another within their delays; but
+/// for a depth network that has a thread of its own. Prints nothing.
 class Odometry {
  public:
-  /// Throws InputError when the rig lacks a camera the mode needs or the config contradicts itself.
-  Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
-           Inference inference = Inference::Synchronous);
+  /// Throws InputError when the rig lacks a camera that the mode needs, or an option is out of its range or contradicts
+  /// another.
+  Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config = {},
+           const FeedConfig& feed = {});
   ~Odometry();
+  Odometry(Odometry&& other) noexcept;
+  Odometry& operator=(Odometry&& other) noexcept;
 
-  /// Packets in time order. Never throws on data; lost tracking is a status.
-  OdometryOutput process(const Packet& packet);
+  /// Stamps as recorded, each sensor's own in order. Never throws on data: what cannot be used is counted, as is what
+  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long.
+  void add(Measurement measurement);
+  /// No more measurements: what is left comes out of next().
+  void finish();
+  /// What the next packet brought, once all that it needs has come; nothing: add more. Lost tracking is a status.
+  std::optional<Step> next();
 
-  const StageTimings& timings() const;
+  /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
+  /// have come since, in a few microseconds. Nothing while there is no estimate to go by.
+  std::optional<NavState> newest_state() const;
+  std::optional<NavState> state_at(Timestamp t) const;
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;
@@ -61,17 +67,17 @@ class Odometry {
   /// there is no estimate.
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
-  /// The motion-compensated event frame of the last packet (CV_8UC1, undistorted), empty when it had none.
-  const cv::Mat& event_frame() const;
-
-  /// The corners that are alive after the last packet, by id; none for a camera that the mode does not use. Pixels are
-  /// those of the undistorted event frame (ideal_pinhole) or of the frame as given. Where the packet brought no image
-  /// of the camera they are those of its last one.
-  std::span<const Track> tracks(Modality modality) const;
+  OdometryCounters counters() const;
+  /// "packetize", "process", and the stages of the latter.
+  const StageTimings& timings() const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Feeds the odometry all that `source` gives and shows each step to `observe`, which says whether to go on.
+void drive(Odometry& odometry, const std::function<std::optional<Measurement>()>& source,
+           const std::function<bool(Step)>& observe);
 
 }  // namespace edged

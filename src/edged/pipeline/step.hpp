@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What one packet of measurements brought: all that an observer of the odometry may want, as a value of its own.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "edged/core/types.hpp"
+#include "edged/estimator/region_depth.hpp"
+#include "edged/frontend/tracker.hpp"
+#include "edged/pipeline/tracking_status.hpp"
+
+namespace edged {
+
+/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position
+/// and yaw are exact.
+struct PoseCovariance {
+  Eigen::Matrix3d position;  ///< [m^2], in W
+  Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
+};
+
+/// Images share their pixels with those of the odometry: they are to be looked at, not drawn on.
+struct Step {
+  Timestamp t;  ///< the packet's instant, IMU clock
+  TrackingStatus status = TrackingStatus::Initializing;
+  NavState state;                            ///< at t; meaningful unless status is Initializing
+  std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
+  bool keyframe = false;                     ///< this packet became a keyframe
+
+  std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers
+  std::string started;       ///< the estimator has started with this packet: how, with numbers
+  std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
+
+  /// The live corners by id, undistorted pixels on the event frame, as given on the standard frame. Where the packet
+  /// brought no image of a camera they are those of its last one.
+  std::vector<Track> event_tracks, frame_tracks;
+  std::vector<Landmark> landmarks;  ///< in the window, where it was solved
+
+  cv::Mat event_frame;         ///< motion-compensated, CV_8UC1, undistorted; empty when there were too few events
+  std::optional<Frame> frame;  ///< that came at t
+  std::vector<Event> events;   ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
+  std::size_t drawn = 0;       ///< how many of them, the newest, event_frame shows
+  double event_rate_hz = 0;    ///< of this packet
+  double scene_depth = 0;      ///< z-depth [m] used by the warp
+  std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
+
+  std::span<const Event> drawn_events() const { return std::span(events).last(drawn); }
+};
+
+}  // namespace edged
