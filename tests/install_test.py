@@ -61,6 +61,15 @@ class Installed(unittest.TestCase):
         self.assertIn("Good, ", told)
         self.assertNotIn(" 0 rigs", told)
 
+    def test_a_project_takes_it_in_as_sources(self):
+        # Configured only: to build the whole method once more would take minutes.
+        build = self.folder / "subdirectory"
+        call(os.environ["CMAKE"], "-S", CONSUMER, "-B", build, f"-DEDGED_SOURCES={SOURCE}", "-G", "Ninja",
+             f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", env=self.environment)
+        targets = call(os.environ["CMAKE"], "--build", build, "--target", "help", env=self.environment)
+        self.assertRegex(targets, r"(?m)^libedged_pipeline\.a:")
+        self.assertNotRegex(targets, r"(?m)^edged_\w+_test:", "ours alone")
+
     def test_a_component_that_is_not_there_is_named(self):
         project = self.folder / "wants_more"
         project.mkdir()
