@@ -49,11 +49,13 @@ class Odometry {
   Odometry& operator=(Odometry&& other) noexcept;
 
   /// Stamps as recorded, each sensor's own in order. Never throws on data: what cannot be used is counted, as is what
-  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long.
+  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long. Images
+  /// are not copied: what is written into them afterwards is seen.
   void add(Measurement measurement);
   /// No more measurements: what is left comes out of next().
   void finish();
-  /// What the next packet brought, once all that it needs has come; nothing: add more. Lost tracking is a status.
+  /// What the next packet brought, once all that it needs has come; nothing: add more. Does not wait. Lost tracking is
+  /// a status.
   std::optional<Step> next();
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that

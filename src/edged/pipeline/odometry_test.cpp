@@ -20,7 +20,7 @@ namespace {
 constexpr int kWidth = 120, kHeight = 90;
 constexpr SensorDelays kPatient{10.0, 10.0, 10.0};
 
-Timestamp at(int ms) { return Timestamp(std::chrono::milliseconds(ms)); }
+Timestamp stamp(int ms) { return Timestamp(std::chrono::milliseconds(ms)); }
 
 ImuSample resting(Timestamp t) { return {t, {0, 0, 0}, {0, 0, 9.81}}; }
 
@@ -48,14 +48,15 @@ std::vector<Measurement> measurements(int length_ms) {
   const cv::Mat image = blocks();
   std::mt19937 random(2);
   for (int ms = 0; ms < length_ms; ++ms) {
-    if (ms % 5 == 0) all.emplace_back(resting(at(ms)));
+    if (ms % 5 == 0) all.emplace_back(resting(stamp(ms)));
     EventBatch batch{"dvs", {}};
     for (int i = 0; i < 20; ++i) {
-      batch.events.push_back({at(ms) + std::chrono::microseconds(40 * i), static_cast<std::uint16_t>(random() % kWidth),
+      batch.events.push_back({stamp(ms) + std::chrono::microseconds(40 * i),
+                              static_cast<std::uint16_t>(random() % kWidth),
                               static_cast<std::uint16_t>(random() % kHeight), true});
     }
     all.emplace_back(std::move(batch));
-    if (ms % 50 == 1) all.emplace_back(Frame{at(ms) - std::chrono::microseconds(1), "cam", image});
+    if (ms % 50 == 1) all.emplace_back(Frame{stamp(ms) - std::chrono::microseconds(1), "cam", image});
   }
   std::ranges::stable_sort(all, {}, [](const Measurement& m) { return *first_stamp(m); });
   return all;
@@ -163,20 +164,21 @@ TEST(Odometry, CountsWhatIsBadAndNeverThrows) {
   Odometry odometry(rig, {}, Mode::Events, {}, {kInOrder});
   const cv::Mat image = blocks();
   for (Measurement m : std::initializer_list<Measurement>{
-           Frame{at(1), "cam", image}, Frame{at(1), "elsewhere", image}, EventBatch{"cam", {{at(1), 1, 1, true}}},
-           EventBatch{"dvs", {{at(1), kWidth, 1, true}, {at(1), 1, kHeight, true}, {at(2), 1, 1, true}}},
+           Frame{stamp(1), "cam", image}, Frame{stamp(1), "elsewhere", image},
+           EventBatch{"cam", {{stamp(1), 1, 1, true}}},
+           EventBatch{"dvs", {{stamp(1), kWidth, 1, true}, {stamp(1), 1, kHeight, true}, {stamp(2), 1, 1, true}}},
            EventBatch{"dvs", {{Timestamp::max(), 1, 1, true}}}, EventBatch{"dvs", {}}, resting(Timestamp::min()),
-           ImuSample{at(1), {0, 0, std::nan("")}, {0, 0, 9.81}}, resting(at(5)), resting(at(4))}) {
+           ImuSample{stamp(1), {0, 0, std::nan("")}, {0, 0, 9.81}}, resting(stamp(5)), resting(stamp(4))}) {
     odometry.add(std::move(m));
   }
   Odometry with_frames(rig, {}, Mode::Frames, {}, {kInOrder});
   for (Measurement m : std::initializer_list<Measurement>{
-           Frame{at(1), "cam", cv::Mat()}, Frame{at(2), "cam", cv::Mat(kHeight, kWidth, CV_8UC3)},
-           Frame{at(3), "cam", cv::Mat(kHeight, kWidth - 1, CV_8UC1)}, Frame{at(4), "cam", image}}) {
+           Frame{stamp(1), "cam", cv::Mat()}, Frame{stamp(2), "cam", cv::Mat(kHeight, kWidth, CV_8UC3)},
+           Frame{stamp(3), "cam", cv::Mat(kHeight, kWidth - 1, CV_8UC1)}, Frame{stamp(4), "cam", image}}) {
     with_frames.add(std::move(m));
   }
   odometry.finish();
-  odometry.add(resting(at(6)));
+  odometry.add(resting(stamp(6)));
   while (odometry.next()) {
   }
   const OdometryCounters counters = odometry.counters();
@@ -253,10 +255,10 @@ TEST(Odometry, PredictsTheStateUpToTheNewestImuSample) {
     odometry.add(m);
     while (auto step = odometry.next()) last = std::move(step);
   }
-  odometry.add(resting(at(1520)));
+  odometry.add(resting(stamp(1520)));
   const auto newest = odometry.newest_state();
   ASSERT_TRUE(newest);
-  EXPECT_EQ(newest->t, at(1520));
+  EXPECT_EQ(newest->t, stamp(1520));
   EXPECT_LT((newest->T_W_B.translation() - last->state.T_W_B.translation()).norm(), 1e-3);
   EXPECT_EQ(odometry.state_at(last->t)->T_W_B.translation(), last->state.T_W_B.translation());
   EXPECT_FALSE(odometry.state_at(last->t - Duration(1)));

@@ -14,12 +14,12 @@
 namespace edged {
 namespace {
 
-Timestamp at(int ms) { return Timestamp(std::chrono::milliseconds(ms)); }
-Measurement imu(int ms) { return ImuSample{at(ms)}; }
-Measurement frame(int ms) { return Frame{at(ms), "cam", cv::Mat(2, 2, CV_8UC1)}; }
+Timestamp millisecond(int ms) { return Timestamp(std::chrono::milliseconds(ms)); }
+Measurement imu(int ms) { return ImuSample{millisecond(ms)}; }
+Measurement frame(int ms) { return Frame{millisecond(ms), "cam", cv::Mat(2, 2, CV_8UC1)}; }
 Measurement events(std::initializer_list<int> stamps_ms) {
   EventBatch batch{"dvs", {}};
-  for (const int ms : stamps_ms) batch.events.push_back({at(ms), 0, 0, true});
+  for (const int ms : stamps_ms) batch.events.push_back({millisecond(ms), 0, 0, true});
   return batch;
 }
 
