@@ -181,13 +181,18 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 }
 
 /// Each camera's noise follows its residuals. Where the window strains the IMU, the cameras agree among themselves on
-/// what is not so: something that moves, or errors they have in common.
+/// what is not so: something that moves, or errors they have in common. What each sight on an event frame adds tells
+/// less of the drift than on a frame: it goes on as it was, with the look of an edge under the motion. Beside frames,
+/// which do not drift like that, events count by so much less.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
+  const bool frames = std::ranges::count(window_.cameras, Modality::Frames, &RigCamera::modality) > 0;
   for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
     const std::optional<double> spread = median_residual(window_, camera);
     if (!spread) continue;
-    const double wanted = std::max(*spread, 1e-3) * config_.noise_inflation;
+    const bool beside_frames = frames && window_.cameras[camera].modality == Modality::Events;
+    const double inflation = config_.noise_inflation * (beside_frames ? config_.event_noise_inflation : 1.0);
+    const double wanted = std::max(*spread, 1e-3) * inflation;
     double& scale = window_.noise_scale[camera];
     scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale,
                        config_.max_noise_scale);

@@ -31,6 +31,8 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
   fields.add("noise_inflation", noise_inflation,
              {"", 0.5, 20, "assumed noise over the spread of what each sight adds to the one before"});
+  fields.add("event_noise_inflation", event_noise_inflation,
+             {"", 0.5, 20, "the same for event cameras beside frames: times noise_inflation"});
   fields.add("min_noise_scale", min_noise_scale, {"", 0.001, 1, "least adapted noise over the configured one"});
   fields.add("max_imu_strain", max_imu_strain,
              {"sigma", 0.01, 100, "IMU residuals of the window beyond which cameras are believed less"});
