@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "evaluation_text.hpp"

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "edged/camera/output_frame.hpp"
 #include "edged/core/timing.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/pipeline/odometry.hpp"
-#include "output_frame.hpp"
 
 namespace edged {
 

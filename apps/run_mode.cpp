@@ -4,40 +4,9 @@
 
 #include <spdlog/spdlog.h>
 
-#include <map>
-
-#include "edged/core/check.hpp"
 #include "edged/io/camera_names.hpp"
 
 namespace edged {
-namespace {
-
-const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
-
-}  // namespace
-
-std::string mode_name(Mode mode) {
-  for (const auto& [name, value] : kModes) {
-    if (value == mode) return name;
-  }
-  EDGED_CHECK(false, "mode {}", static_cast<int>(mode));
-}
-
-Mode choose_mode(const std::string& wanted, const DatasetInfo& info) {
-  if (!info.has_imu) throw InputError::format("{}: has no IMU samples, and every mode needs them", info.name);
-  const bool fusible = info.has_events && info.has_frames;
-  const Mode mode = wanted != "auto"  ? kModes.at(wanted)
-                    : fusible         ? Mode::Fused
-                    : info.has_events ? Mode::Events
-                                      : Mode::Frames;
-  if (mode != Mode::Frames && !info.has_events) {
-    throw InputError::format("{}: has no events; use --mode frames", info.name);
-  }
-  if (mode != Mode::Events && !info.has_frames) {
-    throw InputError::format("{}: has no frames; use --mode events", info.name);
-  }
-  return mode;
-}
 
 void match_cameras(Source& source, Mode mode) {
   for (const Modality modality : {Modality::Events, Modality::Frames}) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/eval/evaluation_json.hpp"
 #include "evaluation_text.hpp"
 #include "survey_text.hpp"
 #include "version.hpp"

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "edged/camera/output_frame.hpp"
 #include "edged/core/dataset.hpp"
 #include "edged/core/timing.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "output_frame.hpp"
 #include "run_folder.hpp"
 #include "run_statistics.hpp"
 #include "verdict.hpp"

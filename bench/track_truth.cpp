@@ -7,10 +7,10 @@
 #include <limits>
 #include <map>
 
+#include "edged/camera/output_frame.hpp"
 #include "edged/camera/two_view.hpp"
 #include "edged/core/check.hpp"
 #include "edged/sim/renderer.hpp"
-#include "output_frame.hpp"
 
 namespace edged {
 namespace {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "claims.hpp"
+#include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
-#include "output_frame.hpp"
 
 namespace edged {
 namespace {

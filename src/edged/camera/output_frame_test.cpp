@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "output_frame.hpp"
+#include "edged/camera/output_frame.hpp"
 
 #include <gtest/gtest.h>
 

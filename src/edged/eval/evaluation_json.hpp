@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is measured of a trajectory, as json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "edged/eval/consistency.hpp"
+#include "edged/eval/metrics.hpp"
+
+namespace edged {
+
+/// Numbers that are none (no window, nothing moved) become null when it is printed.
+nlohmann::ordered_json to_json(const Evaluation& evaluation);
+nlohmann::ordered_json to_json(const Consistency& consistency);
+
+}  // namespace edged
