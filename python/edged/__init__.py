@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""Edged USLAM: visual-inertial odometry from events, frames and an IMU. Measurements go in as numpy arrays, steps come out:
+
+    odometry = edged.Odometry("davis240c_ecd")
+    odometry.add_imu(edged.make_imu(t, gyro, accel))
+    odometry.add_events("events", edged.make_events(t, x, y, p))
+    for step in odometry:
+        print(step.t, step.status, step.position)
+
+Stamps are whole nanoseconds, of each sensor's own clock as recorded; lengths are metres, angles radians. W is the world,
+z up; B the body, which is the IMU: T_W_B maps points of B to W. Quaternions are x, y, z, w.
+"""
+import json as _json
+
+import numpy as _numpy
+
+from ._edged import (EVENT, IMU, POSE, Calibration, Camera, InputError, Measurement, Odometry, Recording, RecordingInfo, State,
+                     Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
+                     simulator_presets)
+from ._edged import evaluate_to_json as _evaluate_to_json
+
+__all__ = [
+    "EVENT", "IMU", "POSE", "Calibration", "Camera", "InputError", "Measurement", "Odometry", "Recording", "RecordingInfo", "State",
+    "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
+    "open_recording", "read_trajectory", "run", "simulate", "simulator_presets", "trajectory"
+]
+
+for _class in (Calibration, Camera, InputError, Measurement, Odometry, Recording, RecordingInfo, State, Status, Step):
+    _class.__module__ = __name__
+
+
+def _rows(dtype, **columns):
+    """An array of that dtype from a column a field; a field that is not given is zero."""
+    t = _numpy.atleast_1d(columns["t"])
+    if not _numpy.issubdtype(t.dtype, _numpy.integer):
+        raise TypeError(f"t: dtype is {t.dtype}; whole nanoseconds are wanted, as a float holds today's stamps to 256 ns")
+    rows = _numpy.zeros(len(t), dtype)
+    for name, column in columns.items():
+        rows[name] = column
+    return rows
+
+
+def make_events(t, x, y, p):
+    """An array of EVENT from columns: stamps [ns], columns and rows of pixels, and whether it became brighter."""
+    return _rows(EVENT, t=t, x=x, y=y, p=_numpy.asarray(p) > 0)
+
+
+def make_imu(t, gyro, accel):
+    """An array of IMU from stamps [ns], rates [rad/s] and specific forces [m/s^2], N x 3 each; or one of each."""
+    return _rows(IMU, t=t, gyro=gyro, accel=accel)
+
+
+def make_poses(t, position, quaternion):
+    """An array of POSE from stamps [ns], positions [m] N x 3 and quaternions (x, y, z, w) N x 4."""
+    return _rows(POSE, t=t, position=position, quaternion=quaternion)
+
+
+def trajectory(steps):
+    """The poses of the steps that have one to go by (status GOOD or DEGRADED), of the body on the IMU's clock."""
+    good = [(step.t, step.position, step.quaternion) for step in steps if step.is_tracking]
+    return _numpy.array(good, POSE)
+
+
+def run(recording, mode="auto", options=None):
+    """The steps of the odometry over a recording, as it goes; "auto": from all sensors that there are."""
+    odometry = recording.odometry(mode, options or {})
+    for measurement in recording:
+        odometry.add(measurement)
+        yield from odometry
+    odometry.finish()
+    yield from odometry
+
+
+def evaluate(estimate, truth, protocol="P3", max_gap_s=0.2, deltas_s=(1.0, 10.0)):
+    """How far the estimate is from the truth, both arrays of POSE of the same sensor on the same clock: the dictionary that
+    `edged eval --json` prints. P1: SE(3) on seconds 3 to 8; P2: SE(3) on the first 5 s; P3: SE(3) on all; P4: Sim(3) on all.
+    """
+    return _json.loads(_evaluate_to_json(estimate, truth, protocol, max_gap_s, list(deltas_s)))

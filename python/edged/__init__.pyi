@@ -1,0 +1,240 @@
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+import enum
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+__all__: list[str]
+
+EVENT: np.dtype[np.void]
+"""t [ns], x, y [px], p (brighter): the library's own 16 bytes."""
+IMU: np.dtype[np.void]
+"""t [ns], gyro [rad/s], accel [m/s^2], made_up (interpolated where the recording has a gap)."""
+POSE: np.dtype[np.void]
+"""t [ns], position [m], quaternion x, y, z, w."""
+
+Option = bool | int | float | str
+Mode = Literal["events", "frames", "fused"]
+Path = str | os.PathLike[str]
+
+
+class InputError(ValueError):
+    """What a user can mend, in one line: file, line or key, and the remedy."""
+
+
+class Status(enum.Enum):
+    INITIALIZING = 0
+    GOOD = 1
+    DEGRADED = 2
+    LOST = 3
+
+
+class Camera:
+    @property
+    def name(self) -> str: ...
+    @property
+    def modality(self) -> Literal["events", "frames"]: ...
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width, height [px]."""
+    @property
+    def pinhole(self) -> tuple[float, float, float, float]:
+        """fx, fy, cx, cy [px]; of the undistorted event frame, too."""
+    @property
+    def T_B_C(self) -> NDArray[np.float64]: ...
+    @property
+    def time_offset(self) -> int:
+        """t_imu = t_cam + time_offset [ns]."""
+
+
+class Calibration:
+    @property
+    def rig(self) -> dict[str, Camera]: ...
+    @property
+    def has_extrinsics(self) -> bool: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    def poses_of(self, body: NDArray[np.void], frame: str) -> NDArray[np.void]:
+        """Poses of a camera, on its clock, from those of the body."""
+    def to_yaml(self) -> str: ...
+
+
+class _BodyState:
+    """Of the body at t, on the IMU's clock."""
+    @property
+    def t(self) -> int: ...
+    @property
+    def T_W_B(self) -> NDArray[np.float64]: ...
+    @property
+    def position(self) -> NDArray[np.float64]: ...
+    @property
+    def quaternion(self) -> NDArray[np.float64]:
+        """x, y, z, w."""
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """In W [m/s]."""
+    @property
+    def bias_gyro(self) -> NDArray[np.float64]: ...
+    @property
+    def bias_accel(self) -> NDArray[np.float64]: ...
+
+
+class State(_BodyState): ...
+
+
+class Step(_BodyState):
+    """What one packet of measurements brought. The state means nothing while status is INITIALIZING. Arrays are the step's own
+    memory, read-only, and keep it alive."""
+    @property
+    def status(self) -> Status: ...
+    @property
+    def is_tracking(self) -> bool:
+        """GOOD or DEGRADED: there is a pose to go by."""
+    @property
+    def position_covariance(self) -> NDArray[np.float64] | None:
+        """In W [m^2], against the start."""
+    @property
+    def rotation_covariance(self) -> NDArray[np.float64] | None:
+        """In B [rad^2], of phi in R_true = R Exp(phi)."""
+    @property
+    def keyframe(self) -> bool: ...
+    @property
+    def waiting_for(self) -> str: ...
+    @property
+    def started(self) -> str: ...
+    @property
+    def lost_because(self) -> str: ...
+    @property
+    def event_tracks(self) -> NDArray[np.void]:
+        """id, pixel, point, previous_pixel, age, first_seen; pixels of the event frame."""
+    @property
+    def frame_tracks(self) -> NDArray[np.void]: ...
+    @property
+    def landmarks(self) -> NDArray[np.void]:
+        """id (of the corner), p_W [m]; only where the window was solved."""
+    @property
+    def event_frame(self) -> NDArray[np.uint8] | None:
+        """Motion-compensated, undistorted; None when there were too few events."""
+    @property
+    def frame(self) -> NDArray[np.uint8] | None:
+        """That came at t."""
+    @property
+    def events(self) -> NDArray[np.void]:
+        """Of the packet, oldest first, on the IMU's clock; some were in the one before."""
+    @property
+    def drawn(self) -> int:
+        """How many of them, the newest, event_frame shows."""
+    @property
+    def event_rate_hz(self) -> float: ...
+    @property
+    def scene_depth(self) -> float: ...
+
+
+class Measurement:
+    @property
+    def kind(self) -> Literal["events", "frame", "imu"]: ...
+    @property
+    def camera(self) -> str | None: ...
+    @property
+    def t(self) -> int:
+        """The first stamp."""
+    @property
+    def data(self) -> NDArray[Any]:
+        """An array of EVENT, an image, or an array of IMU of one row; read-only, without a copy."""
+
+
+class Odometry:
+    """One rig, one mode, from the first measurement to the last. Without the GIL while it works."""
+    def __init__(self, calibration: Calibration | Path, mode: Mode = "fused", options: Mapping[str, Option] = {},
+                 in_order: bool = False, delays: Mapping[str, float] = {}) -> None:
+        """calibration: also a rig's name, or a file. in_order: measurements come as a recording gives them, nothing is waited
+        for. delays: by how much "events", "frames" and "imu" may lag behind the newest of all [s]."""
+    def add_events(self, camera: str, events: NDArray[np.void]) -> None: ...
+    def add_frame(self, camera: str, t: int, image: NDArray[np.uint8]) -> None: ...
+    def add_imu(self, samples: NDArray[np.void]) -> None: ...
+    def add(self, measurement: Measurement) -> None: ...
+    def finish(self) -> None:
+        """No more measurements: what is left comes out of next()."""
+    def next(self) -> Step | None:
+        """None: add more. Does not wait."""
+    def __iter__(self) -> Iterator[Step]:
+        """The steps that there are by now; again after more was added."""
+    def __next__(self) -> Step: ...
+    def newest_state(self) -> State | None:
+        """At the newest IMU sample; any thread."""
+    def state_at(self, t: int) -> State | None: ...
+    @property
+    def rig(self) -> dict[str, Camera]:
+        """The cameras of the mode as calibrated so far."""
+    @property
+    def counters(self) -> dict[str, int]:
+        """Packets, and what was left out."""
+    @property
+    def timings(self) -> dict[str, float]:
+        """Seconds spent by stage."""
+
+
+class RecordingInfo:
+    @property
+    def name(self) -> str: ...
+    @property
+    def format(self) -> str: ...
+    @property
+    def pose_frame(self) -> str: ...
+    @property
+    def begin(self) -> int | None: ...
+    @property
+    def end(self) -> int | None: ...
+    @property
+    def has_events(self) -> bool: ...
+    @property
+    def has_frames(self) -> bool: ...
+    @property
+    def has_imu(self) -> bool: ...
+    @property
+    def event_camera(self) -> str: ...
+    @property
+    def frame_camera(self) -> str: ...
+    @property
+    def event_sensor(self) -> tuple[int, int]: ...
+
+
+class Recording:
+    """Measurements in the order of their stamps, once."""
+    @property
+    def info(self) -> RecordingInfo: ...
+    @property
+    def calibration(self) -> Calibration | None: ...
+    @property
+    def ground_truth(self) -> tuple[str, NDArray[np.void]] | None:
+        """Whose poses they are ("body" or a camera), and an array of POSE on that sensor's clock."""
+    @property
+    def repairs(self) -> dict[str, int]: ...
+    def odometry(self, mode: Mode | Literal["auto"] = "auto", options: Mapping[str, Option] = {}) -> Odometry:
+        """Made for this recording: its calibration, cameras under its names, in order."""
+    def __iter__(self) -> Iterator[Measurement]: ...
+    def __next__(self) -> Measurement: ...
+
+
+def known_rigs() -> list[str]: ...
+def load_rig(name: Path) -> Calibration: ...
+def load_calibration(path: Path) -> Calibration: ...
+def open_recording(path: Path, rig: Calibration | Path | None = None, topics: Mapping[str, str] = {},
+                   geometry: tuple[int, int] | None = None, time_unit: Literal["s", "ms", "us", "ns"] | None = None,
+                   begin_s: float | None = None, end_s: float | None = None) -> Recording: ...
+def simulate(preset: str = "room", seed: int = 1, duration_s: float | None = None, options: Mapping[str, Option] = {},
+             begin_s: float | None = None, end_s: float | None = None) -> Recording: ...
+def simulator_presets() -> list[str]: ...
+def read_trajectory(file: Path) -> NDArray[np.void]: ...
+def make_events(t: ArrayLike, x: ArrayLike, y: ArrayLike, p: ArrayLike) -> NDArray[np.void]: ...
+def make_imu(t: ArrayLike, gyro: ArrayLike, accel: ArrayLike) -> NDArray[np.void]: ...
+def make_poses(t: ArrayLike, position: ArrayLike, quaternion: ArrayLike) -> NDArray[np.void]: ...
+def trajectory(steps: Iterable[Step]) -> NDArray[np.void]: ...
+def run(recording: Recording, mode: Mode | Literal["auto"] = "auto", options: Mapping[str, Option] | None = None) -> Iterator[Step]: ...
+def evaluate(estimate: NDArray[np.void], truth: NDArray[np.void], protocol: Literal["P1", "P2", "P3", "P4"] = "P3",
+             max_gap_s: float = 0.2, deltas_s: Sequence[float] = (1.0, 10.0)) -> dict[str, Any]: ...

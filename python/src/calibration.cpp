@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+#include "edged/camera/output_frame.hpp"
+
+namespace edged::python {
+namespace {
+
+py::array poses_of(const Calibration& calibration, const py::array& body, const std::string& frame) {
+  return poses_array(OutputFrame(calibration.rig, frame)(trajectory_of(body)));
+}
+
+}  // namespace
+
+py::dict cameras(const Rig& rig) {
+  py::dict result;
+  for (const RigCamera& camera : rig.cameras) result[py::str(camera.name)] = camera;
+  return result;
+}
+
+void bind_calibration(py::module_& module) {
+  py::class_<RigCamera>(module, "Camera")
+      .def_readonly("name", &RigCamera::name)
+      .def_property_readonly("modality",
+                             [](const RigCamera& c) { return c.modality == Modality::Events ? "events" : "frames"; })
+      .def_property_readonly("size",
+                             [](const RigCamera& c) { return py::make_tuple(c.model.width(), c.model.height()); })
+      .def_property_readonly(
+          "pinhole",
+          [](const RigCamera& c) { return py::make_tuple(c.model.fx(), c.model.fy(), c.model.cx(), c.model.cy()); })
+      .def_property_readonly("T_B_C", [](const RigCamera& c) { return c.T_B_C.matrix(); })
+      .def_readonly("time_offset", &RigCamera::time_offset);
+  py::class_<Calibration>(module, "Calibration")
+      .def_property_readonly("rig", [](const Calibration& c) { return cameras(c.rig); })
+      .def_readonly("has_extrinsics", &Calibration::has_extrinsics)
+      .def_readonly("warnings", &Calibration::warnings)
+      .def("poses_of", &poses_of, py::arg("body"), py::arg("frame"))
+      .def("to_yaml", [](const Calibration& c) { return to_yaml(c); })
+      .def("__str__", &describe);
+  module.def(
+      "load_rig", [](const py::object& name) { return load_rig(py::str(name)); }, py::arg("name"));
+  module.def(
+      "load_calibration", [](const py::object& path) { return load_calibration(std::string(py::str(path))); },
+      py::arg("path"));
+  module.def("known_rigs", &known_rigs);
+}
+
+}  // namespace edged::python

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+#include "edged/core/check.hpp"
+
+PYBIND11_MODULE(_edged, module) {
+  using namespace edged::python;
+  module.attr("EVENT") = dtype_of<edged::Event>();
+  module.attr("IMU") = dtype_of<edged::ImuSample>();
+  module.attr("POSE") = pose_dtype();
+  // Both are made with the GIL in hand, before threads may ask for them at once.
+  static_cast<void>(dtype_of<edged::Track>());
+  static_cast<void>(dtype_of<edged::Landmark>());
+  py::register_exception<edged::InputError>(module, "InputError", PyExc_ValueError);
+  bind_log();
+  bind_calibration(module);
+  bind_step(module);
+  bind_odometry(module);
+  bind_recording(module);
+  bind_evaluation(module);
+  module.attr("__version__") = EDGED_VERSION;
+}

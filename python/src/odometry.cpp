@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
+#include "bindings.hpp"
+#include "edged/core/check.hpp"
+#include "edged/pipeline/mode_choice.hpp"
+
+namespace edged::python {
+namespace {
+
+OdometryConfig with_options(const OptionValues& options) {
+  OdometryConfig config;
+  set_options(config, options);
+  return config;
+}
+
+SensorDelays delays_of(const std::map<std::string, double>& given, bool in_order) {
+  SensorDelays delays = in_order ? kInOrder : SensorDelays{};
+  const std::map<std::string, double*> known = {
+      {"events", &delays.events_s}, {"frames", &delays.frames_s}, {"imu", &delays.imu_s}};
+  for (const auto& [sensor, seconds] : given) {
+    const auto found = known.find(sensor);
+    if (found == known.end()) throw InputError::format("delays: '{}' is none of events, frames and imu", sensor);
+    *found->second = seconds;
+  }
+  return delays;
+}
+
+/// A Calibration, or the name or the file of one.
+std::unique_ptr<PyOdometry> make_odometry(const py::object& calibration, const std::string& mode,
+                                          const OptionValues& options, bool in_order,
+                                          const std::map<std::string, double>& delays) {
+  const Calibration chosen = py::isinstance<Calibration>(calibration) ? calibration.cast<Calibration>()
+                                                                      : load_rig(std::string(py::str(calibration)));
+  if (!chosen.has_extrinsics)
+    throw InputError("the calibration holds intrinsics only: the pose of the camera to the IMU is missing");
+  return std::make_unique<PyOdometry>(chosen, parse_mode(mode), options, delays_of(delays, in_order));
+}
+
+void add_events(PyOdometry& self, std::string camera, const py::array& events) {
+  check_events(events);
+  const void* const data = events.data();
+  const auto size = static_cast<std::size_t>(events.size());
+  const py::gil_scoped_release free;
+  self.odometry.add(EventBatch{std::move(camera), copy_events(data, size)});
+}
+
+void add_frame(PyOdometry& self, std::string camera, Timestamp t, const py::array& image) {
+  check_image(image);
+  // The library keeps images, and the caller may write into this one again.
+  const cv::Mat mine = cv::Mat(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), CV_8UC1,
+                               const_cast<void*>(image.data()))
+                           .clone();
+  const py::gil_scoped_release free;
+  self.odometry.add(Frame{t, std::move(camera), mine});
+}
+
+void add_imu(PyOdometry& self, const py::array& samples) {
+  check_imu(samples);
+  const void* const data = samples.data();
+  const auto size = static_cast<std::size_t>(samples.size());
+  const py::gil_scoped_release free;
+  for (std::size_t i = 0; i < size; ++i) self.odometry.add(imu_sample(data, i));
+}
+
+std::optional<Step> next(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return self.odometry.next(); });
+}
+
+Step next_or_stop(PyOdometry& self) {
+  std::optional<Step> step = next(self);
+  if (!step) throw py::stop_iteration();
+  return std::move(*step);
+}
+
+std::map<std::string, std::size_t> counters(PyOdometry& self) {
+  const auto [in, out] = guarded(self.mutex, [&] { return self.odometry.counters(); });
+  return {{"unknown_camera", in.unknown_camera},
+          {"absurd_stamps", in.absurd_stamps},
+          {"events_outside", in.events_outside},
+          {"frames_unfit", in.frames_unfit},
+          {"no_room", in.no_room},
+          {"packets", out.packets},
+          {"packets_before_imu", out.packets_before_imu},
+          {"packets_after_imu", out.packets_after_imu},
+          {"packets_overflow", out.packets_overflow},
+          {"events_late", out.events_late},
+          {"events_lost", out.events_lost},
+          {"frames_late", out.frames_late},
+          {"imu_not_finite", out.imu_not_finite},
+          {"imu_late", out.imu_late}};
+}
+
+py::dict rig(PyOdometry& self) {
+  return cameras(guarded(self.mutex, [&] { return self.odometry.rig(); }));
+}
+
+std::map<std::string, double> timings(PyOdometry& self) {
+  const StageTimings timings = guarded(self.mutex, [&] { return self.odometry.timings(); });
+  std::map<std::string, double> total_s;
+  for (const auto& [stage, timing] : timings.all()) total_s[stage] = timing.total_s();
+  return total_s;
+}
+
+}  // namespace
+
+PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const OptionValues& options,
+                       const SensorDelays& delays)
+    : odometry(calibration.rig, calibration.imu, mode, with_options(options), {delays}) {}
+
+void bind_odometry(py::module_& module) {
+  using Free = py::call_guard<py::gil_scoped_release>;
+  py::class_<PyOdometry>(module, "Odometry")
+      .def(py::init(&make_odometry), py::arg("calibration"), py::arg("mode") = "fused",
+           py::arg("options") = OptionValues{}, py::arg("in_order") = false,
+           py::arg("delays") = std::map<std::string, double>{})
+      .def("add_events", &add_events, py::arg("camera"), py::arg("events"))
+      .def("add_frame", &add_frame, py::arg("camera"), py::arg("t"), py::arg("image"))
+      .def("add_imu", &add_imu, py::arg("samples"))
+      .def(
+          "add", [](PyOdometry& self, const PyMeasurement& measurement) { self.odometry.add(measurement.value); },
+          py::arg("measurement"), Free())
+      .def(
+          "finish", [](PyOdometry& self) { self.odometry.finish(); }, Free())
+      .def("next", &next)
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", &next_or_stop)
+      .def(
+          "newest_state", [](const PyOdometry& self) { return self.odometry.newest_state(); }, Free())
+      .def(
+          "state_at", [](const PyOdometry& self, Timestamp t) { return self.odometry.state_at(t); }, py::arg("t"),
+          Free())
+      .def_property_readonly("rig", &rig)
+      .def_property_readonly("counters", &counters)
+      .def_property_readonly("timings", &timings);
+}
+
+}  // namespace edged::python

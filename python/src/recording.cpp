@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+#include "bindings.hpp"
+#include "edged/core/check.hpp"
+#include "edged/core/recording_piece.hpp"
+#include "edged/io/camera_names.hpp"
+#include "edged/io/open_recording.hpp"
+#include "edged/pipeline/mode_choice.hpp"
+#include "edged/sim/simulator.hpp"
+
+namespace edged::python {
+namespace {
+
+/// Ctrl-C while a live source waits: its handler runs, what that throws stays pending.
+bool interrupted() {
+  const py::gil_scoped_acquire gil;
+  return PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0;
+}
+
+struct PyRecording {
+  explicit PyRecording(Recording opened)
+      : dataset(std::move(opened.dataset)), calibration(std::move(opened.calibration)) {}
+  std::mutex mutex;
+  std::unique_ptr<Dataset> dataset;
+  std::optional<Calibration> calibration;
+};
+
+std::unique_ptr<PyRecording> piece_of(Recording recording, const std::optional<double>& begin_s,
+                                      const std::optional<double>& end_s) {
+  if (begin_s || end_s)
+    recording.dataset =
+        std::make_unique<RecordingPiece>(std::move(recording.dataset), PieceBounds{begin_s.value_or(0.0), end_s});
+  return std::make_unique<PyRecording>(std::move(recording));
+}
+
+std::optional<Calibration> chosen_calibration(const py::object& rig) {
+  if (rig.is_none()) return std::nullopt;
+  if (py::isinstance<Calibration>(rig)) return rig.cast<Calibration>();
+  return load_rig(py::str(rig));
+}
+
+std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
+                                  const std::map<std::string, std::string>& topics,
+                                  const std::optional<std::array<int, 2>>& geometry,
+                                  const std::optional<std::string>& time_unit, const std::optional<double>& begin_s,
+                                  const std::optional<double>& end_s) {
+  const std::string file = py::str(path);
+  std::optional<Calibration> calibration = chosen_calibration(rig);
+  RecordingOptions options;
+  options.topics = topics;
+  options.interrupted = interrupted;
+  if (geometry) options.geometry = cv::Size((*geometry)[0], (*geometry)[1]);
+  if (time_unit && !(options.time_unit = parse_time_unit(*time_unit)))
+    throw InputError::format("time_unit '{}': there are s, ms, us and ns", *time_unit);
+  std::unique_ptr<PyRecording> opened;
+  {
+    const py::gil_scoped_release free;
+    Recording recording = open_recording(file, calibration ? &calibration->rig : nullptr, options);
+    if (calibration) recording.calibration = std::move(calibration);
+    opened = piece_of(std::move(recording), begin_s, end_s);
+  }
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return opened;
+}
+
+std::unique_ptr<PyRecording> simulate(const std::string& preset, int seed, const std::optional<double>& duration_s,
+                                      const OptionValues& options, const std::optional<double>& begin_s,
+                                      const std::optional<double>& end_s) {
+  SimulatorConfig config = simulator_preset(preset);
+  config.seed = seed;
+  if (duration_s) config.duration_s = *duration_s;
+  set_options(config, options);
+  const py::gil_scoped_release free;
+  auto simulator = std::make_unique<Simulator>(config);
+  Calibration calibration = simulator->calibration();
+  return piece_of({std::move(simulator), std::move(calibration)}, begin_s, end_s);
+}
+
+PyMeasurement next(PyRecording& self) {
+  std::optional<Measurement> measurement = guarded(self.mutex, [&] { return self.dataset->next(); });
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  if (!measurement) throw py::stop_iteration();
+  return {std::move(*measurement)};
+}
+
+/// The poses and whose they are.
+py::object ground_truth(PyRecording& self) {
+  const std::optional<GroundTruth> truth = guarded(self.mutex, [&] { return self.dataset->ground_truth(); });
+  if (!truth) return py::none();
+  return py::make_tuple(truth->frame, poses_array(truth->trajectory));
+}
+
+/// That of the recording, its cameras of the mode under the recording's names; what had to be assumed is warned of.
+Calibration matched_calibration(const PyRecording& self, Mode mode) {
+  const DatasetInfo& info = self.dataset->info();
+  if (!self.calibration)
+    throw InputError::format("{}: brings no calibration of cameras and IMU; open it with rig=NAME, one of known_rigs()",
+                             info.name);
+  Calibration calibration = *self.calibration;
+  if (!calibration.has_extrinsics)
+    throw InputError::format("{}: its calibration holds intrinsics only; open it with rig=NAME, one of known_rigs()",
+                             info.name);
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    if (mode == (modality == Modality::Events ? Mode::Frames : Mode::Events)) continue;
+    const std::string assumed = match_camera(calibration.rig, info, modality);
+    if (!assumed.empty() && PyErr_WarnEx(PyExc_UserWarning, assumed.c_str(), 1) != 0) throw py::error_already_set();
+  }
+  return calibration;
+}
+
+std::unique_ptr<PyOdometry> odometry(const PyRecording& self, const std::string& mode, const OptionValues& options) {
+  const Mode chosen = choose_mode(mode, self.dataset->info());
+  return std::make_unique<PyOdometry>(matched_calibration(self, chosen), chosen, options, kInOrder);
+}
+
+const char* kind(const PyMeasurement& measurement) {
+  return std::array{"events", "frame", "imu"}[measurement.value.index()];
+}
+
+std::optional<std::string> camera(const PyMeasurement& measurement) {
+  if (const auto* batch = std::get_if<EventBatch>(&measurement.value)) return batch->camera;
+  if (const auto* frame = std::get_if<Frame>(&measurement.value)) return frame->camera;
+  return std::nullopt;
+}
+
+Timestamp stamp(const PyMeasurement& measurement) {
+  if (const auto* batch = std::get_if<EventBatch>(&measurement.value))
+    return batch->events.empty() ? Timestamp() : batch->events.front().t;
+  if (const auto* frame = std::get_if<Frame>(&measurement.value)) return frame->t;
+  return std::get<ImuSample>(measurement.value).t;
+}
+
+py::array data(const py::object& self) {
+  const Measurement& measurement = self.cast<const PyMeasurement&>().value;
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) return view(batch->events, self);
+  if (const auto* frame = std::get_if<Frame>(&measurement)) return view(frame->image, self);
+  return view(dtype_of<ImuSample>(), &std::get<ImuSample>(measurement), 1, self);
+}
+
+void bind_info(py::module_& module) {
+  py::class_<DatasetInfo>(module, "RecordingInfo")
+      .def_readonly("name", &DatasetInfo::name)
+      .def_readonly("format", &DatasetInfo::format)
+      .def_readonly("pose_frame", &DatasetInfo::pose_frame)
+      .def_readonly("begin", &DatasetInfo::begin)
+      .def_readonly("end", &DatasetInfo::end)
+      .def_readonly("has_events", &DatasetInfo::has_events)
+      .def_readonly("has_frames", &DatasetInfo::has_frames)
+      .def_readonly("has_imu", &DatasetInfo::has_imu)
+      .def_readonly("event_camera", &DatasetInfo::event_camera)
+      .def_readonly("frame_camera", &DatasetInfo::frame_camera)
+      .def_property_readonly("event_sensor", [](const DatasetInfo& info) {
+        return py::make_tuple(info.event_sensor.width, info.event_sensor.height);
+      });
+}
+
+}  // namespace
+
+void bind_recording(py::module_& module) {
+  bind_info(module);
+  py::class_<PyMeasurement>(module, "Measurement")
+      .def_property_readonly("kind", &kind)
+      .def_property_readonly("camera", &camera)
+      .def_property_readonly("t", &stamp)
+      .def_property_readonly("data", &data);
+  py::class_<PyRecording>(module, "Recording")
+      .def_property_readonly("info", [](const PyRecording& self) { return self.dataset->info(); })
+      .def_readonly("calibration", &PyRecording::calibration)
+      .def_property_readonly("ground_truth", &ground_truth)
+      .def_property_readonly(
+          "repairs", [](PyRecording& self) { return guarded(self.mutex, [&] { return self.dataset->repairs(); }); })
+      .def("odometry", &odometry, py::arg("mode") = "auto", py::arg("options") = OptionValues{})
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", &next);
+  module.def("open_recording", &open, py::arg("path"), py::arg("rig") = py::none(),
+             py::arg("topics") = std::map<std::string, std::string>{}, py::arg("geometry") = py::none(),
+             py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none());
+  module.def("simulate", &simulate, py::arg("preset") = "room", py::arg("seed") = 1, py::arg("duration_s") = py::none(),
+             py::arg("options") = OptionValues{}, py::arg("begin_s") = py::none(), py::arg("end_s") = py::none());
+  module.def("simulator_presets", &simulator_presets);
+}
+
+}  // namespace edged::python
