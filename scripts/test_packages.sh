@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 # Builds the Debian packages and tries them in a Debian 12 with nothing else in it: the program after its own
-# installation, then the library for a program of a user. As root, or where a user may make namespaces (mmdebstrap picks).
+# installation, then the library for a program of a user, then the module of Python. As root, or where a user may make namespaces (mmdebstrap picks).
 # Needs the network and 4 GB under $TMPDIR, which are gone afterwards.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -41,8 +41,18 @@ inside() {
   consumer/build/sensors
   consumer/build/fly
 
-  step="both: leave nothing behind"; echo "== $step"
-  apt-get purge -qq -y edged libedged-dev >/dev/null 2>&1
+  step="python3-edged: is installed with what it depends on"; echo "== $step"
+  install_them ./python3-edged_*.deb
+  step="python3-edged: follows a flight, and finds the rigs of the program"; echo "== $step"
+  python3 -c '
+import edged
+assert "davis240c_ecd" in edged.known_rigs()
+steps = list(edged.run(edged.simulate("room", 1, end_s=5)))
+assert steps[-1].status == edged.Status.GOOD, steps[-1]
+print(steps[-1])'
+
+  step="all: leave nothing behind"; echo "== $step"
+  apt-get purge -qq -y edged libedged-dev python3-edged >/dev/null 2>&1
   left=$(find /usr /etc /var/lib -path /var/lib/dpkg -prune -o -path '*edged*' -print)
   [ -z "$left" ] || { echo "$left"; false; }
 }

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is installed serves others: tests/consumer is built against it after it has been moved.
 
-Environment: EDGED_BUILD, the build folder that is installed; CMAKE, CXX.
+Environment: EDGED_BUILD, the build folder that is installed; CMAKE, CXX, PYTHON.
 """
 import os
 import pathlib
@@ -42,6 +42,14 @@ class Installed(unittest.TestCase):
         flight = self.folder / "flight"
         call(edged, "simulate", "--duration", "1", "--out", flight, "--quiet", env=self.environment)
         self.assertIn("events", call(edged, "info", flight, "--rig", "davis240c_ecd", env=self.environment))
+
+    def test_python_imports_it_where_it_has_been_moved(self):
+        module = next(self.prefix.rglob("edged/__init__.py"), None)
+        if module is None:
+            self.skipTest("EDGED_PYTHON is off")
+        told = call(os.environ["PYTHON"], "-B", "-c", "import edged; print(sum(1 for _ in edged.simulate(duration_s=0.1)) > 10)",
+                    env={**self.environment, "PYTHONPATH": str(module.parent.parent)}, cwd=self.folder)
+        self.assertEqual(told, "True\n")
 
     def test_nothing_points_back_to_the_sources(self):
         for file in sorted(path for path in self.prefix.rglob("*") if path.is_file()):
