@@ -64,12 +64,12 @@ void add_imu(PyOdometry& self, const py::array& samples) {
   for (std::size_t i = 0; i < size; ++i) self.odometry.add(imu_sample(data, i));
 }
 
-std::optional<Step> next(PyOdometry& self) {
+std::optional<Step> next_step(PyOdometry& self) {
   return guarded(self.mutex, [&] { return self.odometry.next(); });
 }
 
-Step next_or_stop(PyOdometry& self) {
-  std::optional<Step> step = next(self);
+Step next_step_or_stop(PyOdometry& self) {
+  std::optional<Step> step = next_step(self);
   if (!step) throw py::stop_iteration();
   return std::move(*step);
 }
@@ -123,9 +123,9 @@ void bind_odometry(py::module_& module) {
           py::arg("measurement"), Free())
       .def(
           "finish", [](PyOdometry& self) { self.odometry.finish(); }, Free())
-      .def("next", &next)
+      .def("next", &next_step)
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &next_or_stop)
+      .def("__next__", &next_step_or_stop)
       .def(
           "newest_state", [](const PyOdometry& self) { return self.odometry.newest_state(); }, Free())
       .def(

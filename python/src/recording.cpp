@@ -80,7 +80,7 @@ std::unique_ptr<PyRecording> simulate(const std::string& preset, int seed, const
   return piece_of({std::move(simulator), std::move(calibration)}, begin_s, end_s);
 }
 
-PyMeasurement next(PyRecording& self) {
+PyMeasurement next_measurement(PyRecording& self) {
   std::optional<Measurement> measurement = guarded(self.mutex, [&] { return self.dataset->next(); });
   if (PyErr_Occurred() != nullptr) throw py::error_already_set();
   if (!measurement) throw py::stop_iteration();
@@ -175,7 +175,7 @@ void bind_recording(py::module_& module) {
           "repairs", [](PyRecording& self) { return guarded(self.mutex, [&] { return self.dataset->repairs(); }); })
       .def("odometry", &odometry, py::arg("mode") = "auto", py::arg("options") = OptionValues{})
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &next);
+      .def("__next__", &next_measurement);
   module.def("open_recording", &open, py::arg("path"), py::arg("rig") = py::none(),
              py::arg("topics") = std::map<std::string, std::string>{}, py::arg("geometry") = py::none(),
              py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none());

@@ -24,7 +24,7 @@ void bind_state(Class& bound, const State& state_of) {
   add("bias_accel", [](const NavState& state) { return state.bias_accel; });
 }
 
-std::string repr(const Step& step) {
+std::string step_text(const Step& step) {
   const Eigen::Vector3d& p = step.state.T_W_B.translation();
   const std::string head = fmt::format("<edged.Step {:.3f} s {}", to_seconds(step.t), to_string(step.status));
   if (step.status == TrackingStatus::Initializing) return head + ">";
@@ -90,7 +90,7 @@ void bind_step(py::module_& module) {
       .def_readonly("drawn", &Step::drawn)
       .def_readonly("event_rate_hz", &Step::event_rate_hz)
       .def_readonly("scene_depth", &Step::scene_depth)
-      .def("__repr__", &repr);
+      .def("__repr__", &step_text);
 }
 
 }  // namespace edged::python
