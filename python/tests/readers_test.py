@@ -2,16 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings as iterables."""
 import logging
-import os
-import pathlib
 
 import numpy as np
 import pytest
 from support import program, room
 
 import edged
-
-DATA = pathlib.Path(os.environ.get("EDGED_DATA", pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"))
 
 
 @pytest.fixture(name="flight", scope="module")
@@ -86,16 +82,6 @@ def test_a_recording_without_calibration_says_what_to_give(flight, tmp_path):
     with pytest.raises(edged.InputError, match="frames"):
         next(edged.run(edged.open_recording(bare, rig="davis240c_ecd"), "fused"))
     edged.open_recording(bare, rig=edged.load_rig("davis240c_ecd")).odometry()
-
-
-@pytest.mark.skipif(not (DATA / "mirror").is_dir(), reason=f"no recordings in {DATA}")
-def test_a_real_recording_opens(tmp_path):
-    """Whatever lies there first and can be read as it is."""
-    found = sorted(path for path in (DATA / "mirror").rglob("*") if path.suffix in (".bag", ".h5", ".aedat4", ".raw", ".zip"))
-    if not found:
-        pytest.skip(f"no recording in one file in {DATA / 'mirror'}")
-    recording = edged.open_recording(found[0])
-    assert next(iter(recording)).kind in ("events", "frame", "imu")
 
 
 def test_simulations_have_options_and_names():

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from support import assert_same_states, program, room, states
+from support import DATA, assert_same_states, program, room, states
 
 import edged
 
@@ -57,6 +57,16 @@ def test_a_recording_on_disk_has_the_states_of_the_program(tmp_path):
     program("simulate", "--duration", 2, "--out", flight, "--quiet")
     program("run", flight, "--quiet", "--out", tmp_path / "run")
     assert_same_states(list(edged.run(edged.open_recording(flight))), states(tmp_path / "run"))
+
+
+@pytest.mark.parametrize("path, rig, mode, end_s", [("mirror/mirror_fast.h5", "davis240c_ecd", "fused", 3),
+                                                    ("euroc_mh01", None, "frames", 7)])
+def test_a_recording_of_others_has_the_states_of_the_program(tmp_path, path, rig, mode, end_s):
+    if not (DATA / path).exists():
+        pytest.skip(f"no {DATA / path}")
+    with_rig = ["--rig", rig] if rig else []
+    program("run", DATA / path, *with_rig, "--mode", mode, "--to", end_s, "--quiet", "--out", tmp_path / "run")
+    assert_same_states(list(edged.run(edged.open_recording(DATA / path, rig, end_s=end_s), mode)), states(tmp_path / "run"))
 
 
 def test_an_evaluation_has_the_numbers_of_the_program(tmp_path):
