@@ -224,6 +224,8 @@ RunSummary Run::go() {
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
   const auto& [intake, packets] = counters;
   const std::pair<const char*, std::size_t> dropped[] = {
+      {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
+      {"measurements dropped as too much waited", intake.no_room},
       {"events outside the calibration's image dropped", intake.events_outside},
       {"frames of another size than the calibration's dropped", intake.frames_unfit},
       {"measurements with absurd stamps dropped", intake.absurd_stamps},

@@ -20,7 +20,7 @@ set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_HAVE_DOT NO)
 set(documented pipeline core camera imu/noise.hpp depth/depth_config.hpp estimator/estimator_config.hpp
-               estimator/estimator_input.hpp)
+               estimator/estimator_input.hpp estimator/region_depth.hpp frontend/tracker.hpp depth/network_depth.hpp)
 list(TRANSFORM documented PREPEND ${PROJECT_SOURCE_DIR}/src/edged/)
 doxygen_add_docs(docs ${documented})
 if(EDGED_TESTS)

@@ -32,11 +32,11 @@ for the depth of a scene, and tools that judge recordings and trajectories.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What EdgedDependencies.cmake and EdgedToolboxDependencies.cmake find; scripts/test_packages.sh would miss one.
 set(dependencies
+    edged # its rigs and networks
     libeigen3-dev libopencv-dev libceres-dev libopengv-dev libyaml-cpp-dev libspdlog-dev nlohmann-json3-dev
     pkg-config libbz2-dev zlib1g-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libhdf5-dev
     libblosc-dev liblzf-dev)
 list(JOIN dependencies ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS edged)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "visual-inertial odometry from events, frames and an IMU (development)
 Static libraries, headers and a CMake package: the odometry for programs that
@@ -48,8 +48,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 # The module is for one Python: its name holds the version.
 math(EXPR next_minor "0${Python3_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_minor}~), python3-numpy")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS edged)
+    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_minor}~), python3-numpy, edged")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/python/postinst
                                               ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION

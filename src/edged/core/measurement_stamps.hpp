@@ -3,11 +3,18 @@
 // When a measurement was made.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "edged/core/types.hpp"
 
 namespace edged {
+
+/// Within 146 years of zero: differences of such stamps fit into a Duration.
+constexpr bool is_plausible(Timestamp t) {
+  constexpr Duration kLongest(std::int64_t{1} << 62U);
+  return t.time_since_epoch() < kLongest && t.time_since_epoch() > -kLongest;
+}
 
 /// The stamp of the measurement, of a batch its newest event's; nothing for an empty batch.
 inline std::optional<Timestamp> last_stamp(const Measurement& measurement) {

@@ -5,19 +5,36 @@
 #include <algorithm>
 #include <utility>
 
+#include "edged/core/measurement_stamps.hpp"
+
 namespace edged {
 namespace {
 
-/// Farther from zero, differences of stamps would not fit into a Duration.
-constexpr Duration kLongestTime(std::int64_t{1} << 62U);
+const RigCamera* used_camera(const Rig& rig, Mode mode, Modality modality) {
+  const bool unused = mode == (modality == Modality::Events ? Mode::Frames : Mode::Events);
+  return unused ? nullptr : rig.find(modality);
+}
 
-bool absurd(Timestamp t) { return t.time_since_epoch() > kLongestTime || t.time_since_epoch() < -kLongestTime; }
+/// Stamps are compared as recorded: what a camera's clock is behind the IMU's by, it lags by, and the other way round.
+SensorDelays as_recorded(SensorDelays delays, const Rig& rig, Mode mode) {
+  delays.validate();
+  if (delays == kInOrder) return delays;
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    const RigCamera* camera = used_camera(rig, mode, modality);
+    if (camera == nullptr) continue;
+    const double offset_s = to_seconds(camera->time_offset);
+    (modality == Modality::Events ? delays.events_s : delays.frames_s) += std::max(0.0, offset_s);
+    delays.imu_s = std::max(delays.imu_s, delays.imu_s - offset_s);
+  }
+  return delays;
+}
 
 }  // namespace
 
-Intake::Intake(const Rig& rig, Mode mode, const SensorDelays& delays) : sequencer_(mode, delays) {
-  const RigCamera* events = mode == Mode::Frames ? nullptr : rig.find(Modality::Events);
-  const RigCamera* frames = mode == Mode::Events ? nullptr : rig.find(Modality::Frames);
+Intake::Intake(const Rig& rig, Mode mode, const SensorDelays& delays)
+    : sequencer_(mode, as_recorded(delays, rig, mode)) {
+  const RigCamera* events = used_camera(rig, mode, Modality::Events);
+  const RigCamera* frames = used_camera(rig, mode, Modality::Frames);
   for (const RigCamera& camera : rig.cameras) {
     cameras_.push_back({camera.name, camera.modality, camera.model.width(), camera.model.height(),
                         &camera == events || &camera == frames});
@@ -67,23 +84,24 @@ bool Intake::admit(EventBatch& batch) {
   const int width = camera->width, height = camera->height;
   counters_.events_outside +=
       std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
-  counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return absurd(event.t); });
+  counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return !is_plausible(event.t); });
   return !batch.events.empty();
 }
 
-bool Intake::admit(const Frame& frame) {
+bool Intake::admit(Frame& frame) {
   const Camera* camera = find(frame.camera, Modality::Frames);
   if (camera == nullptr || !camera->used) return false;
-  const cv::Mat& image = frame.image;
+  cv::Mat& image = frame.image;
   const bool fits = image.type() == CV_8UC1 && image.cols == camera->width && image.rows == camera->height;
   counters_.frames_unfit += fits ? 0 : 1;
-  counters_.absurd_stamps += absurd(frame.t) ? 1 : 0;
-  return fits && !absurd(frame.t);
+  if (fits && image.u == nullptr) image = image.clone();  // a driver's memory, which may be gone by the time it is used
+  counters_.absurd_stamps += is_plausible(frame.t) ? 0 : 1;
+  return fits && is_plausible(frame.t);
 }
 
 bool Intake::admit(const ImuSample& sample) {
-  counters_.absurd_stamps += absurd(sample.t) ? 1 : 0;
-  return !absurd(sample.t);
+  counters_.absurd_stamps += is_plausible(sample.t) ? 0 : 1;
+  return is_plausible(sample.t);
 }
 
 }  // namespace edged

@@ -46,7 +46,7 @@ class Intake {
   };
   const Camera* find(const std::string& name, Modality modality);
   bool admit(EventBatch& batch);
-  bool admit(const Frame& frame);
+  bool admit(Frame& frame);
   bool admit(const ImuSample& sample);
 
   std::vector<Camera> cameras_;

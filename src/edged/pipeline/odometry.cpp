@@ -47,9 +47,9 @@ Odometry::Odometry(Odometry&& other) noexcept = default;
 Odometry& Odometry::operator=(Odometry&& other) noexcept = default;
 
 void Odometry::add(Measurement measurement) {
-  const auto* imu = std::get_if<ImuSample>(&measurement);
-  const std::optional<ImuSample> sample = imu != nullptr ? std::optional(*imu) : std::nullopt;
-  if (impl_->intake.add(std::move(measurement)) && sample) impl_->prediction.add(*sample);
+  // First the prediction: a step may end at the sample as soon as the intake has it.
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) impl_->prediction.add(*sample);
+  impl_->intake.add(std::move(measurement));
 }
 
 void Odometry::finish() { impl_->intake.finish(); }

@@ -45,12 +45,12 @@ class Odometry {
   Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config = {},
            const FeedConfig& feed = {});
   ~Odometry();
-  Odometry(Odometry&& other) noexcept;
+  Odometry(Odometry&& other) noexcept;  ///< `other` may only be destroyed or assigned to
   Odometry& operator=(Odometry&& other) noexcept;
 
   /// Stamps as recorded, each sensor's own in order. Never throws on data: what cannot be used is counted, as is what
   /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long. Images
-  /// are not copied: what is written into them afterwards is seen.
+  /// that own their pixels are not copied: what is written into them afterwards is seen.
   void add(Measurement measurement);
   /// No more measurements: what is left comes out of next().
   void finish();
@@ -59,7 +59,7 @@ class Odometry {
   std::optional<Step> next();
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
-  /// have come since, in a few microseconds. Nothing while there is no estimate to go by.
+  /// have come since, in a few microseconds. Nothing while there is no estimate to go by, and a second after it.
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
 

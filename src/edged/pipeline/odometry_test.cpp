@@ -122,6 +122,55 @@ TEST(Odometry, GivesTheBitsOfItsPartsInEveryMode) {
   }
 }
 
+TEST(Odometry, ComesBackWhereTheClocksOfItsSensorsAreDecadesApart) {
+  Odometry odometry(small_rig(), {}, Mode::Events);
+  int steps = 0;
+  for (int ms = 0; ms < 500; ms += 5) {
+    odometry.add(resting(stamp(ms) + std::chrono::years(50)));
+    if (ms >= 200) odometry.add(EventBatch{"dvs", {{stamp(ms), 1, 2, true}}});
+    while (odometry.next()) ++steps;  // at standstill, as far as the IMU's clock says
+  }
+  EXPECT_LT(steps, 20);
+}
+
+TEST(Odometry, LosesNothingWhereACamerasClockIsBehindByMoreThanItsDelay) {
+  for (const auto offset : {std::chrono::milliseconds(200), std::chrono::milliseconds(-200)}) {
+    Rig rig = small_rig();
+    for (RigCamera& camera : rig.cameras) camera.time_offset = offset;
+    Odometry odometry(rig, {}, Mode::Fused);
+    std::size_t steps = 0;
+    for (Measurement m : measurements(1500)) {
+      if (auto* frame = std::get_if<Frame>(&m)) frame->t -= offset;
+      if (auto* batch = std::get_if<EventBatch>(&m)) {
+        for (Event& event : batch->events) event.t -= offset;
+      }
+      odometry.add(std::move(m));
+      while (odometry.next()) ++steps;
+    }
+    const PacketizerCounters counters = odometry.counters().packets;
+    EXPECT_EQ(counters.events_late + counters.frames_late + counters.imu_late, 0U);
+    EXPECT_GT(steps, 20U);
+  }
+}
+
+TEST(Odometry, KeepsAnImageInADriversMemory) {
+  Odometry odometry(small_rig(), {}, Mode::Frames, {}, {kInOrder});
+  const cv::Mat image = blocks();
+  cv::Mat buffer = image.clone();
+  int frames = 0;
+  for (int ms = 0; ms < 300; ms += 5) {
+    odometry.add(resting(stamp(ms)));
+    if (ms % 50 == 20) {
+      image.copyTo(buffer);
+      odometry.add(Frame{stamp(ms), "cam", cv::Mat(kHeight, kWidth, CV_8UC1, buffer.data)});
+      buffer.setTo(0);
+    }
+    while (const auto step = odometry.next())
+      frames += std::ranges::equal(cv::Mat_<uchar>(step->frame->image), cv::Mat_<uchar>(image)) ? 1 : 0;
+  }
+  EXPECT_GT(frames, 4);
+}
+
 TEST(Odometry, TellsAllOfAStep) {
   const std::vector<Measurement> all = measurements(1500);
   Odometry odometry(small_rig(), {}, Mode::Fused, {}, {kInOrder});

@@ -101,6 +101,8 @@ void Packetizer::start_at(Timestamp t) {
   if (started_) return;
   started_ = true;
   last_cut_ = heartbeat_from_ = t - kTick;
+  // Another sensor is far ahead already, by another clock or a damaged stamp: no heartbeats from here to there.
+  if (events_complete_ - t > kHole) heartbeat_from_ = events_complete_;
 }
 
 void Packetizer::add_events(const EventBatch& batch) {

@@ -21,6 +21,7 @@ struct SensorDelays {
 
   /// Throws InputError when one is not within 0 .. 10 s.
   void validate() const;
+  bool operator==(const SensorDelays&) const = default;
 };
 
 /// Measurements come in the order that Dataset promises: nothing is waited for.
@@ -37,7 +38,7 @@ class Sequencer {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
 
-  /// Waits for the sensors that the mode uses.
+  /// Waits for the sensors that the mode uses. The delays are valid, as of validate(), but for what was added to them.
   Sequencer(Mode mode, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
 
   /// False when there is no room for it, or after finish(). Batches without events are passed over.

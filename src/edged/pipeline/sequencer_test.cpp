@@ -178,10 +178,10 @@ TEST(Sequencer, TakesNothingAfterTheEndAndPassesOverEmptyBatches) {
   EXPECT_EQ(ready(sequencer), "");
 }
 
-TEST(Sequencer, RefusesDelaysThatAreNone) {
-  EXPECT_THROW(Sequencer(Mode::Fused, {.frames_s = -0.01}), InputError);
-  EXPECT_THROW(Sequencer(Mode::Fused, {.events_s = std::nan("")}), InputError);
-  EXPECT_THROW(Sequencer(Mode::Fused, {.imu_s = 11}), InputError);
+TEST(SensorDelays, AreRefusedWhereTheyAreNone) {
+  EXPECT_THROW(SensorDelays{.frames_s = -0.01}.validate(), InputError);
+  EXPECT_THROW(SensorDelays{.events_s = std::nan("")}.validate(), InputError);
+  EXPECT_THROW(SensorDelays{.imu_s = 11}.validate(), InputError);
 }
 
 }  // namespace

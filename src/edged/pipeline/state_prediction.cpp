@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <span>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
 namespace {
 
 constexpr Duration kKept = std::chrono::seconds(20);
+constexpr Duration kLongest = std::chrono::seconds(1);  // of a prediction: the IMU alone drifts by metres soon
 
 /// The last of what propagates from `start`, which is at the first sample.
 NavState propagated(const NavState& start, std::span<const ImuSample> samples) {
@@ -21,20 +23,25 @@ NavState propagated(const NavState& start, std::span<const ImuSample> samples) {
 
 void StatePrediction::add(const ImuSample& sample) {
   const std::lock_guard lock(mutex_);
-  if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+  if (!is_plausible(sample.t) || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+  if (!imu_.empty() && std::chrono::abs(sample.t - imu_.back().t) > kKept) {  // another clock, or a damaged stamp
+    imu_.clear();
+    states_.clear();
+  }
   if (!imu_.empty() && sample.t <= imu_.back().t) return;
   imu_.push_back(sample);
   if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
+  if (!states_.empty() && sample.t - states_.front().t > kLongest) states_.clear();
   if (sample.t - imu_.front().t <= 2 * kKept) return;
   const auto keep = std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t);
   imu_.erase(imu_.begin(), keep);
-  states_.clear();  // that of an estimate so old is worth nothing
 }
 
 void StatePrediction::correct(const std::optional<NavState>& estimate) {
   const std::lock_guard lock(mutex_);
   states_.clear();
   if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
+  if (imu_.back().t - estimate->t > kLongest) return;
   imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
   states_ = propagate_all(*estimate, imu_);
 }

@@ -84,6 +84,26 @@ TEST(StatePrediction, PassesOverSamplesThatAreNoneOrOutOfOrder) {
   expect_near(prediction.newest(), 0.5);
 }
 
+TEST(StatePrediction, GoesOnAfterAStampFarAheadOrAClockThatWasSetBack) {
+  StatePrediction prediction;
+  for (const double jump_s : {3600.0, -100.0}) {
+    prediction.add(sample(jump_s));
+    for (int i = 0; i <= 100; ++i) prediction.add(sample(0.005 * i));
+    prediction.correct(true_state(0.25));
+    expect_near(prediction.newest(), 0.5);
+  }
+}
+
+TEST(StatePrediction, EndsASecondAfterTheEstimate) {
+  StatePrediction prediction;
+  prediction.add(sample(0));
+  prediction.correct(true_state(0));
+  for (int i = 1; i <= 200; ++i) prediction.add(sample(0.005 * i));
+  expect_near(prediction.newest(), 1.0);
+  prediction.add(sample(1.005));
+  EXPECT_FALSE(prediction.newest());
+}
+
 TEST(StatePrediction, ForgetsAnEstimateThatIsOlderThanTheSamplesItKeeps) {
   StatePrediction prediction;
   prediction.add(sample(0));
