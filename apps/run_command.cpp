@@ -52,7 +52,6 @@ class Run {
   std::optional<Measurement> next_measurement();
   std::optional<Measurement> read();
   void check(const Measurement& measurement);
-  void note_visual(const Measurement& measurement);
   void observe(const Step& step);
   void log_changes(const Step& step) const;
   void show_status(const Step& step);
@@ -130,19 +129,6 @@ void Run::check(const Measurement& measurement) {
   for (const Finding& finding : check_.news()) spdlog::error("{}: {}", finding.text, finding.remedy);
 }
 
-/// The stamps that a pose could cover.
-void Run::note_visual(const Measurement& measurement) {
-  const auto note = [this](Modality modality, Timestamp first, Timestamp last) {
-    const RigCamera* camera = source_.calibration.rig.find(modality);
-    if (camera != nullptr) statistics_.add_visual(first + camera->time_offset, last + camera->time_offset);
-  };
-  if (const auto* batch = std::get_if<EventBatch>(&measurement); batch != nullptr && mode_ != Mode::Frames) {
-    if (!batch->events.empty()) note(Modality::Events, batch->events.front().t, batch->events.back().t);
-  } else if (const auto* frame = std::get_if<Frame>(&measurement); frame != nullptr && mode_ != Mode::Events) {
-    note(Modality::Frames, frame->t, frame->t);
-  }
-}
-
 void Run::observe(const Step& step) {
   if (live_) live_->note_result(step.t);
   log_changes(step);
@@ -195,7 +181,7 @@ std::optional<Measurement> Run::next_measurement() {
   std::optional<Measurement> measurement = read();
   if (!measurement) return measurement;
   check(*measurement);
-  note_visual(*measurement);
+  statistics_.add_visual(*measurement, source_.calibration.rig, mode_);
   return measurement;
 }
 

@@ -10,7 +10,7 @@ namespace edged {
 
 void match_cameras(Source& source, Mode mode) {
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    if (mode == (modality == Modality::Events ? Mode::Frames : Mode::Events)) continue;
+    if (!uses(mode, modality)) continue;
     const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);
     if (!assumed.empty()) spdlog::warn("{}", assumed);
   }

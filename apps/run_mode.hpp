@@ -3,7 +3,7 @@
 // Which cameras of the calibration a run uses.
 #pragma once
 
-#include "edged/pipeline/mode_choice.hpp"
+#include "edged/pipeline/mode.hpp"
 #include "source.hpp"
 
 namespace edged {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "edged/core/measurement_stamps.hpp"
+
 namespace edged {
 namespace {
 
@@ -31,6 +33,15 @@ void RunStatistics::add_visual(Timestamp first, Timestamp last) {
     last_visual_ = last;
   }
   last_visual_ = std::max(last_visual_, last);
+}
+
+void RunStatistics::add_visual(const Measurement& measurement, const Rig& rig, Mode mode) {
+  const std::optional<Timestamp> first = first_stamp(measurement);
+  if (!first || std::holds_alternative<ImuSample>(measurement)) return;
+  const bool events = std::holds_alternative<EventBatch>(measurement);
+  if (const RigCamera* camera = used_camera(rig, mode, events ? Modality::Events : Modality::Frames)) {
+    add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);
+  }
 }
 
 void RunStatistics::add(const Step& step) {

@@ -43,13 +43,13 @@ TEST_P(SimulatedFlight, IsFollowedInEveryMode) {
   const auto& [preset, seed] = GetParam();
   const Flight flight = simulate_flight(preset, seed, kDuration_s);
   for (const Mode mode : kAllModes) {
-    SCOPED_TRACE(to_string(mode));
+    SCOPED_TRACE(mode_name(mode));
     const FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
     // Nearly black: it may lose its way or never find it, but then says so, and the poses it stands by are right.
     const bool blind = preset == "dark" && mode == Mode::Frames;
     if (blind && !run.statistics.first_good_s()) continue;
     const FlightScore result = score(flight, run);
-    std::cout << preset << " " << seed << " " << to_string(mode) << ": " << describe(result, run.statistics) << '\n';
+    std::cout << preset << " " << seed << " " << mode_name(mode) << ": " << describe(result, run.statistics) << '\n';
     EXPECT_LT(result.max_tilt_deg, 3.0);  // 1.9
     if (blind) {
       EXPECT_LT(result.evaluation.ate_m.rmse, 0.08);  // 0.025

@@ -22,7 +22,7 @@ const Flight& flight() {
 FlightRun follow(const Calibration& wrong, Mode mode, double ate_m, double scale_error) {
   FlightRun run = run_flight(wrong, flight().measurements, mode);
   const FlightScore result = score(flight(), run);
-  std::cout << to_string(mode) << ": " << describe(result, run.statistics) << '\n';
+  std::cout << mode_name(mode) << ": " << describe(result, run.statistics) << '\n';
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
   EXPECT_EQ(run.statistics.times_lost(), 0U);
   EXPECT_LT(result.evaluation.ate_m.rmse, ate_m);
@@ -72,7 +72,7 @@ TEST_P(WrongCalibration, OfTheFocalLengthByAPercentIsBorne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, WrongCalibration, testing::ValuesIn(kAllModes),
-                         [](const auto& test) { return to_string(test.param); });
+                         [](const auto& test) { return mode_name(test.param); });
 
 }  // namespace
 }  // namespace edged

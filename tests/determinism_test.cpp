@@ -68,7 +68,7 @@ FlightRun run(Mode mode) { return run_flight(flight().calibration, flight().meas
 
 TEST(Determinism, TwoRunsGiveTheSameBitsInEveryModeWhereverTheirMemoryLies) {
   for (const Mode mode : kAllModes) {
-    SCOPED_TRACE(to_string(mode));
+    SCOPED_TRACE(mode_name(mode));
     const FlightRun first = run(mode);
     // Holes of all sizes: what the second run allocates comes to lie in another order.
     std::mt19937_64 random(1);
@@ -104,7 +104,7 @@ TEST(Determinism, UnixStampsGiveTheBitsOfStampsFromZero) {
     }
   }
   for (const Mode mode : kAllModes) {
-    SCOPED_TRACE(to_string(mode));
+    SCOPED_TRACE(mode_name(mode));
     expect_the_same_bits(run(mode), run_flight(flight().calibration, later, mode), shift);
   }
 }

@@ -23,18 +23,6 @@ Eigen::Vector3d body_velocity(const StampedPose& before, const StampedPose& afte
          to_seconds(after.t - before.t);
 }
 
-void note_visual(RunStatistics& statistics, const Measurement& measurement, const Rig& rig, Mode mode) {
-  const auto note = [&](Modality modality, Timestamp first, Timestamp last) {
-    const Duration offset = rig.find(modality)->time_offset;
-    statistics.add_visual(first + offset, last + offset);
-  };
-  if (const auto* batch = std::get_if<EventBatch>(&measurement); batch != nullptr && mode != Mode::Frames) {
-    if (!batch->events.empty()) note(Modality::Events, batch->events.front().t, batch->events.back().t);
-  } else if (const auto* frame = std::get_if<Frame>(&measurement); frame != nullptr && mode != Mode::Events) {
-    note(Modality::Frames, frame->t, frame->t);
-  }
-}
-
 }  // namespace
 
 Flight read_flight(Dataset& dataset, const Calibration& calibration) {
@@ -64,7 +52,7 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
   FlightRun run;
   const auto next_measurement = [&, next = measurements.begin()]() mutable -> std::optional<Measurement> {
     if (next == measurements.end()) return std::nullopt;
-    note_visual(run.statistics, *next, calibration.rig, mode);
+    run.statistics.add_visual(*next, calibration.rig, mode);
     return *next++;
   };
   drive(odometry, next_measurement, [&](Step step) {
@@ -112,8 +100,6 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   result.evaluation = evaluate(associate(truth, estimate), protocol("P3"));
   return result;
 }
-
-std::string to_string(Mode mode) { return mode == Mode::Events ? "events" : mode == Mode::Frames ? "frames" : "fused"; }
 
 std::string describe(const FlightScore& s, const RunStatistics& statistics) {
   return fmt::format(

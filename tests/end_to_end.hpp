@@ -52,7 +52,6 @@ struct FlightScore {
 FlightScore score(const Flight& flight, const FlightRun& run);
 
 inline constexpr Mode kAllModes[] = {Mode::Events, Mode::Frames, Mode::Fused};
-std::string to_string(Mode mode);
 
 /// One line for a person: accuracy, scale, coverage.
 std::string describe(const FlightScore& score, const RunStatistics& statistics);

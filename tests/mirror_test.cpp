@@ -24,7 +24,7 @@ Result run_recording(const std::filesystem::path& folder, const std::optional<Ca
   const Flight flight = read_flight(*recording.dataset, rig ? *rig : *recording.calibration);
   const FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
   const Result result{score(flight, run), run.statistics};
-  std::cout << folder.filename().string() << " " << to_string(mode) << ": " << describe(result.score, result.statistics)
+  std::cout << folder.filename().string() << " " << mode_name(mode) << ": " << describe(result.score, result.statistics)
             << '\n';
   return result;
 }

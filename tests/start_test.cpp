@@ -34,12 +34,12 @@ TEST_P(StartInMotion, IsRightWhenItIsGood) {
   const Flight flight = simulate_flight(config);
   for (const Mode mode : {Mode::Events, Mode::Fused}) {
     if (how.preset == "dark" && mode == Mode::Fused) continue;
-    SCOPED_TRACE(to_string(mode));
+    SCOPED_TRACE(mode_name(mode));
     const FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
     ASSERT_TRUE(run.statistics.first_good_s()) << run.steps.back().waiting_for;
     EXPECT_EQ(run.statistics.times_lost(), 0U);
     const FlightScore result = score(flight, run);
-    std::cout << how.name << " " << to_string(mode) << ": good after " << *run.statistics.first_good_s()
+    std::cout << how.name << " " << mode_name(mode) << ": good after " << *run.statistics.first_good_s()
               << " s, scale of the start " << result.evaluation.start_scale << ", " << describe(result, run.statistics)
               << '\n';
     EXPECT_LT(*run.statistics.first_good_s(), how.duration_s - 1.0);

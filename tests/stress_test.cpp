@@ -50,11 +50,11 @@ bool stays_good(const FlightRun& run) {
 FlightRun withstand(const Flight& flight, Mode mode) {
   FlightRun run = run_flight(flight.calibration, flight.measurements, mode);
   if (!run.statistics.first_good_s()) {
-    ADD_FAILURE() << to_string(mode) << ": never good, waits for " << run.steps.back().waiting_for;
+    ADD_FAILURE() << mode_name(mode) << ": never good, waits for " << run.steps.back().waiting_for;
     return run;
   }
   const FlightScore result = score(flight, run);
-  std::cout << to_string(mode) << ": " << describe(result, run.statistics) << '\n';
+  std::cout << mode_name(mode) << ": " << describe(result, run.statistics) << '\n';
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
   for (std::size_t i = 1; i < run.steps.size(); ++i) EXPECT_LT(run.steps[i - 1].state.t, run.steps[i].state.t);
   EXPECT_TRUE(result.evaluation.mpe_percent < 5.0 || run.statistics.times_lost() > 0);
@@ -69,8 +69,8 @@ FlightRun withstand(const Flight& flight, Mode mode) {
 /// The same, Good in time, and never lost.
 FlightRun start_and_withstand(const Flight& flight, Mode mode, double within_s) {
   FlightRun run = withstand(flight, mode);
-  EXPECT_LT(run.statistics.first_good_s().value_or(1e9), within_s) << to_string(mode);
-  EXPECT_EQ(run.statistics.times_lost(), 0U) << to_string(mode);
+  EXPECT_LT(run.statistics.first_good_s().value_or(1e9), within_s) << mode_name(mode);
+  EXPECT_EQ(run.statistics.times_lost(), 0U) << mode_name(mode);
   return run;
 }
 
@@ -151,7 +151,7 @@ TEST(Stress, AStandstillDriftsByLessThanACentimetre) {
   for (const Mode mode : {Mode::Frames, Mode::Fused}) {
     const FlightRun run = withstand(flight, mode);
     EXPECT_TRUE(stays_good(run));
-    EXPECT_LT(drift_m(run, kAt_s + 0.2, kAt_s + kStandstill_s), 0.01) << to_string(mode);
+    EXPECT_LT(drift_m(run, kAt_s + 0.2, kAt_s + kStandstill_s), 0.01) << mode_name(mode);
   }
 }
 
@@ -212,10 +212,10 @@ TEST(Stress, BeingPutDownAndPickedUpIsNoContradiction) {
       disturbed_flight(DisturbanceKind::PutDown, kRest_s, {"disturbance.strength=4", "imu.rate_hz=200"});
   for (const Mode mode : kAllModes) {
     const FlightRun run = start_and_withstand(flight, mode, kFromRest_s);
-    EXPECT_LT(drift_m(run, kAt_s + 1.2, kAt_s + kRest_s), 0.01) << to_string(mode);
+    EXPECT_LT(drift_m(run, kAt_s + 1.2, kAt_s + kRest_s), 0.01) << mode_name(mode);
     for (const double knock_s : {kAt_s, kAt_s + kRest_s})
       EXPECT_TRUE(good_between(run, knock_s + 1.0, knock_s + 2.0))
-          << to_string(mode) << ", knock at " << knock_s << " s";
+          << mode_name(mode) << ", knock at " << knock_s << " s";
   }
 }
 

@@ -146,8 +146,7 @@ void check_imu(const py::array& samples) {
 }
 
 void check_image(const py::array& image) {
-  if (!image.dtype().equal(py::dtype::of<std::uint8_t>()))
-    throw py::type_error(fmt::format("image: dtype is {}; wanted is uint8", std::string(py::str(image.dtype()))));
+  check_dtype(image, py::dtype::of<std::uint8_t>(), "image", "wanted is uint8");
   if (image.ndim() != 2)
     throw py::value_error(fmt::format("image: has {} dimensions; wanted is grey, height x width", image.ndim()));
   if ((image.flags() & py::array::c_style) == 0)

@@ -34,6 +34,9 @@ void set_options(Config& config, const OptionValues& values) {
   }
 }
 
+/// A Calibration, or the name or the file of one.
+Calibration calibration_of(const py::object& calibration);
+
 /// Cameras by name.
 py::dict cameras(const Rig& rig);
 

@@ -12,6 +12,11 @@ py::array poses_of(const Calibration& calibration, const py::array& body, const 
 
 }  // namespace
 
+Calibration calibration_of(const py::object& calibration) {
+  if (py::isinstance<Calibration>(calibration)) return calibration.cast<Calibration>();
+  return load_rig(py::str(calibration));
+}
+
 py::dict cameras(const Rig& rig) {
   py::dict result;
   for (const RigCamera& camera : rig.cameras) result[py::str(camera.name)] = camera;

@@ -4,7 +4,7 @@
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
-#include "edged/pipeline/mode_choice.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged::python {
 namespace {
@@ -27,12 +27,10 @@ SensorDelays delays_of(const std::map<std::string, double>& given, bool in_order
   return delays;
 }
 
-/// A Calibration, or the name or the file of one.
 std::unique_ptr<PyOdometry> make_odometry(const py::object& calibration, const std::string& mode,
                                           const OptionValues& options, bool in_order,
                                           const std::map<std::string, double>& delays) {
-  const Calibration chosen = py::isinstance<Calibration>(calibration) ? calibration.cast<Calibration>()
-                                                                      : load_rig(std::string(py::str(calibration)));
+  const Calibration chosen = calibration_of(calibration);
   if (!chosen.has_extrinsics)
     throw InputError("the calibration holds intrinsics only: the pose of the camera to the IMU is missing");
   return std::make_unique<PyOdometry>(chosen, parse_mode(mode), options, delays_of(delays, in_order));
@@ -48,12 +46,11 @@ void add_events(PyOdometry& self, std::string camera, const py::array& events) {
 
 void add_frame(PyOdometry& self, std::string camera, Timestamp t, const py::array& image) {
   check_image(image);
-  // The library keeps images, and the caller may write into this one again.
-  const cv::Mat mine = cv::Mat(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), CV_8UC1,
-                               const_cast<void*>(image.data()))
-                           .clone();
+  // A view of the caller's memory: Odometry::add copies the pixels of an image that does not own them.
+  const cv::Mat pixels(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), CV_8UC1,
+                       const_cast<void*>(image.data()));
   const py::gil_scoped_release free;
-  self.odometry.add(Frame{t, std::move(camera), mine});
+  self.odometry.add(Frame{t, std::move(camera), pixels});
 }
 
 void add_imu(PyOdometry& self, const py::array& samples) {

@@ -6,10 +6,11 @@
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/core/recording_piece.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/pipeline/mode_choice.hpp"
+#include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged::python {
@@ -37,19 +38,14 @@ std::unique_ptr<PyRecording> piece_of(Recording recording, const std::optional<d
   return std::make_unique<PyRecording>(std::move(recording));
 }
 
-std::optional<Calibration> chosen_calibration(const py::object& rig) {
-  if (rig.is_none()) return std::nullopt;
-  if (py::isinstance<Calibration>(rig)) return rig.cast<Calibration>();
-  return load_rig(py::str(rig));
-}
-
 std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
                                   const std::map<std::string, std::string>& topics,
                                   const std::optional<std::array<int, 2>>& geometry,
                                   const std::optional<std::string>& time_unit, const std::optional<double>& begin_s,
                                   const std::optional<double>& end_s) {
   const std::string file = py::str(path);
-  std::optional<Calibration> calibration = chosen_calibration(rig);
+  std::optional<Calibration> calibration;
+  if (!rig.is_none()) calibration = calibration_of(rig);
   RecordingOptions options;
   options.topics = topics;
   options.interrupted = interrupted;
@@ -105,7 +101,7 @@ Calibration matched_calibration(const PyRecording& self, Mode mode) {
     throw InputError::format("{}: its calibration holds intrinsics only; open it with rig=NAME, one of known_rigs()",
                              info.name);
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    if (mode == (modality == Modality::Events ? Mode::Frames : Mode::Events)) continue;
+    if (!uses(mode, modality)) continue;
     const std::string assumed = match_camera(calibration.rig, info, modality);
     if (!assumed.empty() && PyErr_WarnEx(PyExc_UserWarning, assumed.c_str(), 1) != 0) throw py::error_already_set();
   }
@@ -127,12 +123,7 @@ std::optional<std::string> camera(const PyMeasurement& measurement) {
   return std::nullopt;
 }
 
-Timestamp stamp(const PyMeasurement& measurement) {
-  if (const auto* batch = std::get_if<EventBatch>(&measurement.value))
-    return batch->events.empty() ? Timestamp() : batch->events.front().t;
-  if (const auto* frame = std::get_if<Frame>(&measurement.value)) return frame->t;
-  return std::get<ImuSample>(measurement.value).t;
-}
+Timestamp stamp(const PyMeasurement& measurement) { return first_stamp(measurement.value).value_or(Timestamp()); }
 
 py::array data(const py::object& self) {
   const Measurement& measurement = self.cast<const PyMeasurement&>().value;

@@ -10,11 +10,6 @@
 namespace edged {
 namespace {
 
-const RigCamera* used_camera(const Rig& rig, Mode mode, Modality modality) {
-  const bool unused = mode == (modality == Modality::Events ? Mode::Frames : Mode::Events);
-  return unused ? nullptr : rig.find(modality);
-}
-
 /// Stamps are compared as recorded: what a camera's clock is behind the IMU's by, it lags by, and the other way round.
 SensorDelays as_recorded(SensorDelays delays, const Rig& rig, Mode mode) {
   delays.validate();

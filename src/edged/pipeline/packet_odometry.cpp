@@ -13,15 +13,6 @@
 namespace edged {
 namespace {
 
-const RigCamera& need(const Rig& rig, Modality modality) {
-  const RigCamera* camera = rig.find(modality);
-  if (camera == nullptr) {
-    throw InputError::format("rig '{}' has no {} camera, which this mode needs: choose another --mode or --rig",
-                             rig.name, modality == Modality::Events ? "event" : "frame");
-  }
-  return *camera;
-}
-
 /// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
@@ -37,8 +28,9 @@ std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Tim
 
 Rig rig_of_mode(const Rig& rig, Mode mode) {
   Rig used{rig.name, {}};
-  if (mode != Mode::Frames) used.cameras.push_back(need(rig, Modality::Events));
-  if (mode != Mode::Events) used.cameras.push_back(need(rig, Modality::Frames));
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    if (const RigCamera* camera = used_camera(rig, mode, modality)) used.cameras.push_back(*camera);
+  }
   return used;
 }
 

@@ -19,14 +19,6 @@ constexpr Duration kImuBeforeFirst = std::chrono::seconds(20);
 constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // slower frames are not waited for
 constexpr std::size_t kMaxWaitingPackets = 256;
 
-const RigCamera& require_camera(const Rig& rig, Modality modality) {
-  const RigCamera* camera = rig.find(modality);
-  if (camera != nullptr) return *camera;
-  const bool events = modality == Modality::Events;
-  throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name,
-                           events ? "event" : "frame", events ? "frames" : "events");
-}
-
 std::size_t count_of(double per_pixel, const CameraModel& camera) {
   return static_cast<std::size_t>(std::max(1.0, std::round(per_pixel * camera.width() * camera.height())));
 }
@@ -53,17 +45,15 @@ Packetizer::Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config
     throw InputError::format("packets.min_interval_s = {} is above packets.max_interval_s = {}: lower it",
                              config_.min_interval_s, config_.max_interval_s);
   }
-  if (mode_ != Mode::Frames) {
-    const RigCamera& camera = require_camera(rig, Modality::Events);
-    event_camera_ = camera.name;
-    event_offset_ = camera.time_offset;
-    cut_events_ = count_of(config_.events_per_pixel, camera.model);
-    window_events_ = count_of(config_.window_per_pixel, camera.model);
+  if (const RigCamera* camera = used_camera(rig, mode_, Modality::Events)) {
+    event_camera_ = camera->name;
+    event_offset_ = camera->time_offset;
+    cut_events_ = count_of(config_.events_per_pixel, camera->model);
+    window_events_ = count_of(config_.window_per_pixel, camera->model);
   }
-  if (mode_ != Mode::Events) {
-    const RigCamera& camera = require_camera(rig, Modality::Frames);
-    frame_camera_ = camera.name;
-    frame_offset_ = camera.time_offset;
+  if (const RigCamera* camera = used_camera(rig, mode_, Modality::Frames)) {
+    frame_camera_ = camera->name;
+    frame_offset_ = camera->time_offset;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "edged/camera/rig.hpp"
 #include "edged/core/config.hpp"
 #include "edged/core/types.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 
@@ -31,8 +32,6 @@ struct Packet {
   /// The events of the event frame: the newest window_per_pixel * pixels, none older than max_age_s.
   std::span<const Event> window() const { return std::span<const Event>(events).last(window_events); }
 };
-
-enum class Mode { Events, Frames, Fused };
 
 /// When a packet is cut (architecture, section 4).
 struct PacketizerConfig {

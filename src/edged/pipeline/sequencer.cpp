@@ -31,8 +31,8 @@ void SensorDelays::validate() const {
 
 Sequencer::Sequencer(Mode mode, const SensorDelays& delays, std::size_t most_bytes)
     : most_bytes_(most_bytes),
-      events_{mode != Mode::Frames, duration_from_seconds(delays.events_s)},
-      frames_{mode != Mode::Events, duration_from_seconds(delays.frames_s)},
+      events_{uses(mode, Modality::Events), duration_from_seconds(delays.events_s)},
+      frames_{uses(mode, Modality::Frames), duration_from_seconds(delays.frames_s)},
       imu_{true, duration_from_seconds(delays.imu_s)} {}
 
 bool Sequencer::add(Measurement measurement) {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "edged/core/types.hpp"
-#include "edged/pipeline/packetizer.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 

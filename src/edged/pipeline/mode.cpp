@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/pipeline/mode_choice.hpp"
+#include "edged/pipeline/mode.hpp"
 
 #include <map>
 
@@ -12,6 +12,14 @@ namespace {
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
 
 }  // namespace
+
+const RigCamera* used_camera(const Rig& rig, Mode mode, Modality modality) {
+  if (!uses(mode, modality)) return nullptr;
+  if (const RigCamera* camera = rig.find(modality)) return camera;
+  const bool events = modality == Modality::Events;
+  throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name,
+                           events ? "event" : "frame", events ? "frames" : "events");
+}
 
 std::string mode_name(Mode mode) {
   for (const auto& [name, value] : kModes) {
