@@ -18,7 +18,7 @@ std::vector<InitFrame> views_of(TestWorld& world, double begin_s, int views = 20
   std::vector<InitFrame> frames;
   for (int i = 0; i < views; ++i) {
     const EstimatorInput input = world.packet(begin_s + i * kSpacing_s, kSpacing_s, true);
-    frames.push_back({input.t, input.imu, input.observations});
+    frames.push_back({input.t, input.motion.samples(), input.observations});
   }
   return frames;
 }

@@ -51,7 +51,7 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
-  standstill_.add(input.imu, input.observations, input.events_quiet);
+  standstill_.add(input.motion.samples(), input.observations, input.events_quiet);
   result.standstill = standstill_.still();
   if (start(input, result) || !initialized_) return result;
   append(input);
@@ -110,7 +110,8 @@ void Estimator::settle_scale(const EstimatorInput& input) {
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {
   const NavState from = newest();
-  return {input.imu, from.bias_gyro, from.bias_accel, noise_};
+  const bool same = input.motion.bias_gyro() == from.bias_gyro && input.motion.bias_accel() == from.bias_accel;
+  return same ? input.motion : input.motion.reintegrated(from.bias_gyro, from.bias_accel);
 }
 
 Eigen::Vector3d Estimator::gyro_bias() const { return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero(); }
@@ -145,7 +146,7 @@ void Estimator::append(const EstimatorInput& input) {
   Preintegration imu = since_newest(input);
   NavState state = propagate(before, imu);
   state.t = input.t;
-  const StateId id = window_.add_state(window_state(state, input.imu.back().gyro_B, std::move(imu), input.keyframe));
+  const StateId id = window_.add_state(window_state(state, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {

@@ -8,13 +8,15 @@
 
 #include "edged/core/types.hpp"
 #include "edged/estimator/region_depth.hpp"
+#include "edged/imu/preintegration.hpp"
 
 namespace edged {
 
 /// One packet as the estimator sees it.
 struct EstimatorInput {
   Timestamp t;
-  std::vector<ImuSample> imu;  ///< from the previous input's t to t, both ends included
+  /// From the previous input's t to t, best around the biases of the newest estimate: others are integrated again.
+  Preintegration motion;
   std::vector<CameraObservations> observations;
   bool keyframe = false;
   bool events_quiet = false;                        ///< the event camera sees nothing move

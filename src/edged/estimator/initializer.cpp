@@ -109,10 +109,10 @@ StartResult Initializer::add(const EstimatorInput& input, const StandstillDetect
 
 /// Keeps the input as a view when it is time for the next. True when it was.
 bool Initializer::buffer_view(const EstimatorInput& input) {
-  append_imu(pending_imu_, input.imu);
+  append_imu(pending_imu_, input.motion.samples());
   if (to_seconds(input.t - pending_imu_.front().t) > kMaxPendingImu_s) {
     buffer_.clear();
-    pending_imu_ = input.imu;
+    pending_imu_ = input.motion.samples();
   }
   const bool any_corner = std::any_of(input.observations.begin(), input.observations.end(),
                                       [](const CameraObservations& view) { return !view.features.empty(); });
@@ -157,7 +157,7 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
   Window window(rig_, config_.cauchy_scale, config_.depth_factor);
-  const StateId id = window.add_state(window_state(state, input.imu.back().gyro_B, {}, true));
+  const StateId id = window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true));
   window.add_observations(id, input.observations);
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
   window.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));

@@ -138,7 +138,9 @@ TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
   EstimatorResult result;
   for (int i = 1; i <= 20; ++i) {
     EstimatorInput input = world.packet(i * kEvery_s, kEvery_s, true);
-    for (ImuSample& sample : input.imu) sample.accel_B /= 9.81;
+    std::vector<ImuSample> in_g = input.motion.samples();
+    for (ImuSample& sample : in_g) sample.accel_B /= 9.81;
+    input.motion = Preintegration(in_g, {0, 0, 0}, {0, 0, 0}, world.noise());
     result = estimator.add(input);
   }
   EXPECT_FALSE(estimator.initialized());

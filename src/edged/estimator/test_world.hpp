@@ -115,9 +115,11 @@ class TestWorld {
       input.observations.push_back(observe(t, camera));
     }
     const int n = static_cast<int>(std::lround(dt * 200.0));
-    if (last_imu_) input.imu.push_back(*last_imu_);
-    for (int i = last_imu_ ? 1 : 0; i <= n; ++i) input.imu.push_back(imu(t - dt + i * dt / n));
-    last_imu_ = input.imu.back();
+    std::vector<ImuSample> samples;
+    if (last_imu_) samples.push_back(*last_imu_);
+    for (int i = last_imu_ ? 1 : 0; i <= n; ++i) samples.push_back(imu(t - dt + i * dt / n));
+    last_imu_ = samples.back();
+    input.motion = Preintegration(samples, {0, 0, 0}, {0, 0, 0}, noise());
     return input;
   }
 

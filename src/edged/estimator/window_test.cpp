@@ -28,7 +28,7 @@ Window window_at_truth(TestWorld& world, const TestWorldOptions& options, int st
     state.pose = to_block(world.T_W_B(t));
     Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
     state.keyframe = true;
-    if (i > 0) state.imu = Preintegration(input.imu, options.bias_gyro, options.bias_accel, world.noise());
+    if (i > 0) state.imu = input.motion.reintegrated(options.bias_gyro, options.bias_accel);
     window.add_observations(window.add_state(std::move(state)), input.observations);
   }
   const auto first = window.states.begin();

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/body_motion.hpp"
 
-#include "edged/imu/preintegration.hpp"
-
 namespace edged {
 
 bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
@@ -14,11 +12,14 @@ bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
   return true;
 }
 
-void BodyMotion::predict(const std::vector<ImuSample>& imu, Timestamp t, bool started) {
+Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool started) {
+  Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
+  const Timestamp t = motion.end();
+  started_ = started;
   std::erase_if(T_W_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
     for (const NavState& state : propagate_all(now_, imu)) T_W_B_.push_back({state.t, state.T_W_B});
-    now_ = propagate(now_, Preintegration(imu, now_.bias_gyro, now_.bias_accel, noise_));
+    now_ = propagate(now_, motion);
   } else {
     // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
     SE3& pose = now_.T_W_B;
@@ -32,6 +33,7 @@ void BodyMotion::predict(const std::vector<ImuSample>& imu, Timestamp t, bool st
   }
   now_.t = t;
   omega_B_ = imu.back().gyro_B - now_.bias_gyro;
+  return motion;
 }
 
 SE3 BodyMotion::moved_on(Duration time) const {

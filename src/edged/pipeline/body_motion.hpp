@@ -7,6 +7,7 @@
 
 #include "edged/core/types.hpp"
 #include "edged/imu/noise.hpp"
+#include "edged/imu/preintegration.hpp"
 
 namespace edged {
 
@@ -18,13 +19,16 @@ class BodyMotion {
   /// history: how long before a packet poses are kept (the oldest event that a packet's frame can show).
   BodyMotion(const ImuNoise& noise, Duration history) : noise_(noise), history_(history) {}
 
-  /// Moves `now` to t, the end of imu. started: the estimator knows speed and tilt; else attitude by gyro only.
-  void predict(const std::vector<ImuSample>& imu, Timestamp t, bool started);
+  /// Moves `now` to the end of `imu` and gives that motion, integrated. started: the estimator knows speed and tilt;
+  /// else attitude by gyro only.
+  Preintegration predict(const std::vector<ImuSample>& imu, bool started);
 
   /// The estimator's word on `now`: the history moves along. Returns old to new world frame, T_new_old.
   SE3 correct(const NavState& estimate);
 
   const NavState& now() const { return now_; }
+  /// Whether speed and tilt of `now` mean anything.
+  bool started() const { return started_; }
   /// T_W_B a few milliseconds after now, turning and moving on as it does now.
   SE3 moved_on(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
@@ -34,6 +38,7 @@ class BodyMotion {
   ImuNoise noise_;
   Duration history_;
   NavState now_;
+  bool started_ = false;
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_W_B_;
 };

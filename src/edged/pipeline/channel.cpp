@@ -14,25 +14,20 @@ void HealthConfig::visit(ConfigFields& fields) {
              {"", 0, 1000, "corners kept on event frames where the standard frames carry all of theirs (fused mode)"});
 }
 
-void Channel::show(const cv::Mat& image, const cv::Mat& corners) {
-  image_ = image;
-  corners_ = corners;
-}
-
 Eigen::Matrix3d Channel::since_keyframe(const SE3& T_W_B) const {
   const Eigen::Quaterniond R_Bkf_B = T_W_Bkeyframe.rotation().conjugate() * T_W_B.rotation();
   const Eigen::Matrix3d R_B_C = camera.T_B_C.R();
   return R_B_C.transpose() * R_Bkf_B.toRotationMatrix() * R_B_C;
 }
 
-void Channel::track(Timestamp t, const SE3& T_W_B, double scene_depth,
+void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, double scene_depth,
                     const std::function<std::optional<double>(FeatureId)>& depth) {
   std::optional<TrackPrediction> prediction;
   if (any_image_) {
     const SE3 T_cur_prev = T_W_C(T_W_B).inverse() * T_W_C(T_W_Blast);
     prediction = TrackPrediction{T_cur_prev, scene_depth, depth, alignment_px_};
   }
-  const TrackSummary summary = tracker.track(image_, t, prediction);
+  const TrackSummary summary = tracker.track(image, t, prediction);
   align(summary);
   weigh(summary, t);
   any_image_ = true;
@@ -70,8 +65,8 @@ void Channel::reject(const SE3& T_W_B, bool trust_gyro) {
   tracker.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
-void Channel::mark_keyframe(const SE3& T_W_B, FeatureId& next_feature, int most) {
-  tracker.detect(corners_, next_feature, most);
+void Channel::mark_keyframe(const cv::Mat& image, const SE3& T_W_B, FeatureId& next_feature, int most) {
+  tracker.detect(image, next_feature, most);
   tracker.mark_keyframe();
   T_W_Bkeyframe = T_W_B;
 }
@@ -86,10 +81,10 @@ void Channel::move(const SE3& T_new_old) {
   T_W_Bkeyframe = T_new_old * T_W_Bkeyframe;
 }
 
-const Channel* leading_channel(std::span<const Channel> channels) {
+const Channel* leading_channel(std::span<const View> views) {
   const Channel* leading = nullptr;
-  for (const Channel& channel : channels) {
-    if (channel.has_image() && (leading == nullptr || channel.carried() >= leading->carried())) leading = &channel;
+  for (const View& view : views) {
+    if (leading == nullptr || view.channel->carried() >= leading->carried()) leading = view.channel;
   }
   return leading;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
 
@@ -34,22 +35,18 @@ class Channel {
           const AlignmentConfig& alignment, const HealthConfig& health)
       : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
 
-  /// The next image: corners are followed on `image` and found on `corners`. Empty: this packet brought none.
-  void show(const cv::Mat& image, const cv::Mat& corners);
-  bool has_image() const { return !image_.empty(); }
-
   SE3 T_W_C(const SE3& T_W_B) const { return T_W_B * camera.T_B_C; }
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
   Eigen::Matrix3d since_keyframe(const SE3& T_W_B) const;
 
   /// Follows the tracks into the image. T_W_B: the body now, as predicted; scene_depth [m] for corners whose depth is
   /// not known.
-  void track(Timestamp t, const SE3& T_W_B, double scene_depth,
+  void track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, double scene_depth,
              const std::function<std::optional<double>(FeatureId)>& depth);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
   void reject(const SE3& T_W_B, bool trust_gyro);
-  /// Finds new corners, up to `most` live ones, and makes the image the keyframe.
-  void mark_keyframe(const SE3& T_W_B, FeatureId& next_feature, int most);
+  /// Finds new corners in the image, up to `most` live ones, and makes it the keyframe.
+  void mark_keyframe(const cv::Mat& image, const SE3& T_W_B, FeatureId& next_feature, int most);
 
   /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
   double survival() const { return survival_; }
@@ -76,14 +73,19 @@ class Channel {
   HealthConfig health_;
   double survival_ = 1.0;
   Timestamp last_image_;
-  cv::Mat image_, corners_;
   bool any_image_ = false;
   // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;
   // to shift the places where they are searched instead is the same, and leaves the frame where the poses put it.
   Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();
 };
 
-/// Of the channels with an image the one that carries the most tracks, the last of equals (frames); null without any.
-const Channel* leading_channel(std::span<const Channel> channels);
+/// A camera with its image of a packet: corners are followed on `track` and found on `detect`.
+struct View {
+  Channel* channel;
+  cv::Mat track, detect;
+};
+
+/// The camera that carries the most tracks, the last of equals (frames); null without any.
+const Channel* leading_channel(std::span<const View> views);
 
 }  // namespace edged

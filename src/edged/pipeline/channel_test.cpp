@@ -19,13 +19,12 @@ class ChannelHealth : public testing::Test {
   Channel start() {
     Channel channel(camera_, scene_.camera(), {}, {}, {});
     show(channel, scene_.image({}), 0);
-    channel.mark_keyframe({}, next_id_, 1000);
+    channel.mark_keyframe(scene_.image({}), {}, next_id_, 1000);
     return channel;
   }
 
   static void show(Channel& channel, const cv::Mat& image, int index) {
-    channel.show(image, image);
-    channel.track(timestamp_from_ns(40'000'000LL * index), {}, 2.0, {});
+    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, 2.0, {});
   }
 
   /// Nothing but noise, another one every time.
@@ -56,7 +55,7 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
   const double after_one = channel.survival();
   EXPECT_LT(after_one, 1.0);
   for (int i = 2; i <= 30; ++i) {
-    channel.mark_keyframe({}, next_id_, 1000);
+    channel.mark_keyframe(darkness(), {}, next_id_, 1000);
     show(channel, darkness(), i);
   }
   EXPECT_LT(channel.survival(), HealthConfig{}.min_survival);
@@ -66,12 +65,12 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
 TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
   Channel channel = start();
   for (int i = 1; i <= 30; ++i) {
-    channel.mark_keyframe({}, next_id_, 1000);
+    channel.mark_keyframe(darkness(), {}, next_id_, 1000);
     show(channel, darkness(), i);
   }
   for (int i = 31; i <= 80; ++i) {
     show(channel, scene_.image({}), i);
-    channel.mark_keyframe({}, next_id_, 1000);
+    channel.mark_keyframe(scene_.image({}), {}, next_id_, 1000);
   }
   EXPECT_GT(channel.survival(), 0.95);
   EXPECT_FALSE(channel.observations().features.empty());
@@ -80,23 +79,24 @@ TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
 TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
   Channel channel(camera_, scene_.camera(), {}, {}, {});
   show(channel, scene_.image({}), 0);
-  channel.mark_keyframe({}, next_id_, 25);
+  channel.mark_keyframe(scene_.image({}), {}, next_id_, 25);
   EXPECT_EQ(channel.tracker.tracks().size(), 25U);
-  channel.mark_keyframe({}, next_id_, 10);
+  channel.mark_keyframe(scene_.image({}), {}, next_id_, 10);
   EXPECT_EQ(channel.tracker.tracks().size(), 25U) << "live tracks stay";
 }
 
 TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
-  std::vector<Channel> channels(2, Channel(camera_, scene_.camera(), {}, {}, {}));
-  EXPECT_EQ(leading_channel(channels), nullptr);
-  for (Channel& channel : channels) show(channel, scene_.image({}), 0);
-  channels[0].mark_keyframe({}, next_id_, 40);
-  channels[1].mark_keyframe({}, next_id_, 1000);
-  EXPECT_EQ(leading_channel(channels), &channels[1]);
-  channels[1].show({}, {});
-  EXPECT_EQ(leading_channel(channels), &channels[0]) << "the other one has no image now";
-  show(channels[1], darkness(), 1);
-  EXPECT_EQ(leading_channel(channels), &channels[0]) << "the other one has lost its tracks";
+  const cv::Mat image = scene_.image({});
+  Channel few(camera_, scene_.camera(), {}, {}, {}), many = few;
+  for (Channel* channel : {&few, &many}) show(*channel, image, 0);
+  few.mark_keyframe(image, {}, next_id_, 40);
+  many.mark_keyframe(image, {}, next_id_, 1000);
+  const std::vector<View> views = {{&many, image, image}, {&few, image, image}};
+  EXPECT_EQ(leading_channel({}), nullptr);
+  EXPECT_EQ(leading_channel(views), &many);
+  EXPECT_EQ(leading_channel(std::span(views).last(1)), &few) << "the other one has no image now";
+  show(many, darkness(), 1);
+  EXPECT_EQ(leading_channel(views), &few) << "the other one has lost its tracks";
 }
 
 }  // namespace

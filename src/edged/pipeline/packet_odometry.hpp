@@ -10,14 +10,15 @@
 
 #include "edged/camera/rig.hpp"
 #include "edged/core/timing.hpp"
-#include "edged/events/accumulate.hpp"
 #include "edged/imu/noise.hpp"
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/channel.hpp"
+#include "edged/pipeline/event_view.hpp"
 #include "edged/pipeline/odometry_config.hpp"
 #include "edged/pipeline/packetizer.hpp"
 #include "edged/pipeline/scene_depth.hpp"
 #include "edged/pipeline/step.hpp"
+#include "edged/pipeline/world_frame.hpp"
 
 namespace edged {
 
@@ -38,26 +39,27 @@ class PacketOdometry {
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
  private:
-  void predict(const Packet& packet);
-  void measure_depth(const Packet& packet);
-  std::span<const Event> drawn_events(const Packet& packet) const;
-  void draw_event_frame(const Packet& packet);
+  Preintegration predict(const Packet& packet);
+  double measure_depth(const Packet& packet);
+  EventImage draw(const Packet& packet, double scene_depth);
+  std::optional<DepthGrid> event_depths(double scene_depth) const;
   std::vector<SeenDepth> landmarks_in_view() const;
-  DepthGrid event_depths() const;
-  void take_frame(const Packet& packet);
-  void track(Channel& channel, Timestamp t);
-  void reject(Channel& channel);
-  bool is_keyframe(const Packet& packet) const;
+  std::vector<View> views_of(const Packet& packet, const EventImage& drawn);
+  void track(const View& view, Timestamp t, double scene_depth);
+  void reject(const View& view);
+  bool is_keyframe(const Packet& packet, std::span<const View> views) const;
   int corners_wanted(const Channel& channel) const;
-  void mark_keyframe(Timestamp t);
+  void mark_keyframe(Timestamp t, std::span<const View> views);
+  EstimatorResult estimate(const Packet& packet, const Preintegration& motion, std::span<const View> views,
+                           bool keyframe);
   void calibrate();
+  void update_covariance(Timestamp t);
+  Step describe(Packet packet, const EventImage& drawn, const EstimatorResult& result, TrackingStatus status) const;
+
   /// The body at the instant of the channel's image: the packet's, but for what the camera's clock is still off by.
   SE3 T_W_B_of(const Channel& channel) const { return body_.moved_on(channel.camera.time_offset); }
-  EstimatorResult estimate(const Packet& packet, bool keyframe);
-  void start_frame(const SE3& T_new_old);
-  NavState in_world(const NavState& state) const;
-  void update_covariance(Timestamp t);
-  Step describe(Packet packet, EstimatorResult result, TrackingStatus status, bool keyframe) const;
+  /// The first of that modality, null without any.
+  const Channel* find_channel(Modality modality) const;
 
   Mode mode_;
   OdometryConfig config_;
@@ -65,24 +67,20 @@ class PacketOdometry {
   Rig given_rig_;  ///< the cameras of the mode
   Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
   Estimator estimator_;
-  std::vector<Channel> channels_;  ///< events first
-  std::optional<EventFrameRenderer> renderer_;
+  std::vector<Channel> channels_;  ///< as in rig_
+  std::optional<EventView> event_view_;
   StageTimings timings_;
 
-  SE3 T_W_S_;  ///< the estimator's own frame in the world: moved when it starts again after a loss
+  WorldFrame world_;
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised
   DimImageStretch dim_frames_;
   bool gyro_saturated_ = false;  ///< since the last keyframe
-  bool quiet_ = false;           ///< the event camera sees nothing move
   SceneDepth depth_;
-  double scene_depth_ = 0.0;  ///< of the present packet, for the warp and the tracks [m]
   std::optional<Timestamp> last_keyframe_, last_frame_;
   std::optional<PoseCovariance> covariance_;
   Timestamp covariance_at_;
-  cv::Mat event_frame_;
-  std::size_t drawn_ = 0;  ///< events in it
 };
 
 }  // namespace edged

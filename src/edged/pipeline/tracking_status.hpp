@@ -34,7 +34,6 @@ class StatusJudge {
 
   /// Of a packet at t; while the estimator has not started, Initializing before its first start and Lost after.
   TrackingStatus judge(const EstimatorResult& result, bool started, Timestamp t);
-  bool ever_started() const { return ever_started_; }
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
 

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/body_motion.hpp"
+
+#include <gtest/gtest.h>
+
+namespace edged {
+namespace {
+
+constexpr double kTurnRate = 0.8;  // [rad/s] about z
+
+Timestamp seconds_in(double s) { return timestamp_from_seconds(s); }
+
+/// A body that goes straight on and turns about the vertical: samples every 5 ms.
+std::vector<ImuSample> samples(double from_s, double to_s) {
+  std::vector<ImuSample> imu;
+  for (double t = from_s; t < to_s + 1e-6; t += 0.005) {
+    imu.push_back({seconds_in(t), {0, 0, kTurnRate}, {0, 0, 9.81}});
+  }
+  return imu;
+}
+
+NavState moving(double t_s, double speed) {
+  NavState state;
+  state.t = seconds_in(t_s);
+  state.v_W = {speed, 0, 0};
+  return state;
+}
+
+TEST(BodyMotion, BeforeTheStartTurnsInPlace) {
+  BodyMotion body({}, duration_from_seconds(0.1));
+  body.predict(samples(0.0, 0.05), false);
+  EXPECT_FALSE(body.started());
+  EXPECT_EQ(body.now().T_W_B.translation(), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(so3::log(body.now().T_W_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
+}
+
+TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
+  BodyMotion body({}, duration_from_seconds(0.1));
+  body.predict(samples(0.0, 0.05), false);
+  body.correct(moving(0.05, 2.0));
+  const Preintegration motion = body.predict(samples(0.05, 0.1), true);
+  EXPECT_TRUE(body.started());
+  EXPECT_EQ(motion.begin(), seconds_in(0.05));
+  EXPECT_EQ(motion.end(), body.now().t);
+  EXPECT_NEAR(body.now().T_W_B.translation().x(), 0.1, 1e-9);
+  EXPECT_NEAR(body.moved_on(duration_from_seconds(0.01)).translation().x(), 0.12, 1e-9);
+  EXPECT_NEAR(so3::log(body.moved_on(duration_from_seconds(0.01)).rotation()).z(), 0.06 * kTurnRate, 1e-9);
+}
+
+TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
+  BodyMotion body({}, duration_from_seconds(0.1));
+  for (int i = 0; i < 6; ++i) {
+    body.predict(samples(0.05 * i, 0.05 * (i + 1)), i > 0);
+    NavState estimate = body.now();
+    estimate.T_W_B = SE3(estimate.T_W_B.rotation(), estimate.T_W_B.translation() + Eigen::Vector3d(0, 1, 0));
+    const double before = body.poses().front().T.translation().y();
+    body.correct(estimate);
+    EXPECT_NEAR(body.poses().front().T.translation().y(), before + 1.0, 1e-9);
+  }
+  EXPECT_GE(body.poses().front().t, seconds_in(0.2));
+  EXPECT_EQ(body.poses().back().t, body.now().t);
+  for (std::size_t i = 1; i < body.poses().size(); ++i) EXPECT_LT(body.poses()[i - 1].t, body.poses()[i].t);
+}
+
+}  // namespace
+}  // namespace edged

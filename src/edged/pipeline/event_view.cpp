@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/event_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "edged/camera/undistort.hpp"
+
+namespace edged {
+namespace {
+
+/// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
+std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
+  std::size_t first = poses.size() - 2;
+  while (first > 0 && poses[first].t > t) --first;
+  return std::span(poses).subspan(first);
+}
+
+}  // namespace
+
+EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
+    : renderer_(UndistortTable(camera, ideal_pinhole(camera)), config.event_frame),
+      enhance_(config.enhance),
+      enhance_track_(config.enhance_track),
+      enhance_detect_(config.enhance_detect),
+      quiet_rate_per_pixel_(config.quiet_rate_per_pixel),
+      max_travel_px_(config.max_travel_px),
+      max_age_s_(config.packets.max_age_s),
+      least_events_(static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * pixels()))) {}
+
+bool EventView::quiet(const Packet& packet) const { return packet.event_rate_hz < quiet_rate_per_pixel_ * pixels(); }
+
+/// The packet's window, shortened when the body moves fast: over a long way the warp smears what does not lie at the
+/// scene's one depth. Rotation does not count, its warp knows no depth. Empty when there are too few for a frame.
+std::span<const Event> EventView::drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const {
+  const std::span<const Event> window = packet.window();
+  if (window.size() < least_events_) return {};
+  if (!body.started()) return window;
+  const double travel_px_per_s = ideal().mean_focal() * body.now().v_W.norm() / scene_depth;
+  const double age_s = std::min(max_travel_px_ / std::max(travel_px_per_s, 1e-3), max_age_s_);
+  const auto oldest = std::lower_bound(window.begin(), window.end(), packet.t - duration_from_seconds(age_s),
+                                       [](const Event& event, Timestamp t) { return event.t < t; });
+  return window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_));
+}
+
+EventImage EventView::draw(const Packet& packet, const RigCamera& camera, const BodyMotion& body, double scene_depth,
+                           const DepthGrid* depths) {
+  const std::span<const Event> events = drawn_events(packet, body, scene_depth);
+  if (events.empty() || body.poses().size() < 2) return {};
+  const std::span<const StampedPose> poses = covering(body.poses(), events.front().t + camera.time_offset);
+  const CameraMotion motion = camera_motion(poses, body.moved_on(camera.time_offset), camera.T_B_C, camera.time_offset);
+  EventImage image;
+  image.drawn = events.size();
+  image.frame = renderer_.render(events, motion, scene_depth, depths);
+  const cv::Mat enhanced = enhance(image.frame, enhance_);
+  image.track = enhance_track_ ? enhanced : image.frame;
+  image.detect = enhance_detect_ ? enhanced : image.frame;
+  return image;
+}
+
+}  // namespace edged

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the event camera shows of a packet: which of its events are drawn, where, and how the frame is enhanced.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <span>
+
+#include "edged/events/accumulate.hpp"
+#include "edged/pipeline/body_motion.hpp"
+#include "edged/pipeline/odometry_config.hpp"
+#include "edged/pipeline/packetizer.hpp"
+
+namespace edged {
+
+/// One event frame. All images are empty when there were too few events for one.
+struct EventImage {
+  cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
+  cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): corners are followed on one, found on the other
+  std::size_t drawn = 0;  ///< events in it, the newest of the packet
+};
+
+class EventView {
+ public:
+  EventView(const CameraModel& camera, const OdometryConfig& config);
+
+  /// Fewer events than anything that moves would make.
+  bool quiet(const Packet& packet) const;
+  /// camera: as calibrated so far; body: predicted to the packet; scene_depth: z [m]; depths: that of every event in
+  /// its place, null: scene_depth for all.
+  EventImage draw(const Packet& packet, const RigCamera& camera, const BodyMotion& body, double scene_depth,
+                  const DepthGrid* depths);
+
+  /// The undistorted camera of the images.
+  const CameraModel& ideal() const { return renderer_.camera(); }
+
+ private:
+  std::span<const Event> drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const;
+  double pixels() const { return static_cast<double>(ideal().width()) * ideal().height(); }
+
+  EventFrameRenderer renderer_;
+  EnhanceConfig enhance_;
+  bool enhance_track_, enhance_detect_;
+  double quiet_rate_per_pixel_, max_travel_px_, max_age_s_;
+  std::size_t least_events_;
+};
+
+}  // namespace edged
