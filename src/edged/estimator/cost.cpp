@@ -21,10 +21,15 @@ void add_motion_factors(const Window& window, std::vector<Factor>& out) {
   for (auto b = std::next(window.states.begin()); b != window.states.end(); ++b) {
     const BlockKey pose_a{BlockKind::Pose, std::prev(b)->first}, pose_b{BlockKind::Pose, b->first};
     const BlockKey motion_a{BlockKind::Motion, pose_a.id}, motion_b{BlockKind::Motion, pose_b.id};
-    out.push_back(
-        {std::make_unique<ImuFactor>(b->second.imu), nullptr, {pose_a, motion_a, pose_b, motion_b, kImuIntrinsicsKey}});
+    out.push_back({FactorKind::Imu,
+                   std::make_unique<ImuFactor>(b->second.imu),
+                   nullptr,
+                   {pose_a, motion_a, pose_b, motion_b, kImuIntrinsicsKey}});
     if (!b->second.rested) continue;
-    out.push_back({std::make_unique<StandstillFactor>(kRestSigma_m, kRestSigma_rad), nullptr, {pose_a, pose_b}});
+    out.push_back({FactorKind::Standstill,
+                   std::make_unique<StandstillFactor>(kRestSigma_m, kRestSigma_rad),
+                   nullptr,
+                   {pose_a, pose_b}});
   }
 }
 
@@ -40,7 +45,9 @@ void add_visual_factors(Window& window, Sights sights, std::vector<Factor>& out)
     const StateId anchor = *feature.anchor;
     const LandmarkView from = view(anchor);
     for (const TrackStep& step : track_steps(window, feature, sights)) {
-      Factor factor{nullptr, window.visual_loss(), {pose(anchor), pose(step.seen)}};
+      Factor factor{FactorKind::Sight, nullptr, window.visual_loss(), {pose(anchor), pose(step.seen)}};
+      factor.state = step.seen;
+      factor.landmark = id;
       // The anchor's sight is exact by the choice of the landmark: the first step has no error to start from.
       if (step.before == anchor || step.correlation == 0.0) {
         factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, from, view(step.seen), step.sigma);
@@ -60,9 +67,9 @@ void add_visual_factors(Window& window, Sights sights, std::vector<Factor>& out)
 std::vector<Factor> factors_of(Window& window, Sights sights) {
   std::vector<Factor> out;
   if (!window.prior.empty())
-    out.push_back({std::make_unique<LinearPriorFactor>(window.prior), nullptr, window.prior.blocks});
+    out.push_back({FactorKind::Prior, std::make_unique<LinearPriorFactor>(window.prior), nullptr, window.prior.blocks});
   for (const LinearPrior& soft : window.soft_priors) {
-    out.push_back({std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
+    out.push_back({FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
   }
   add_motion_factors(window, out);
   add_visual_factors(window, sights, out);

@@ -15,7 +15,7 @@ namespace edged {
 /// marginalised, not dropped.
 enum class Sights { All, OfKeyframes };
 
-/// The terms of the present window, each once, the prior first. They borrow from the window: use them before it
+/// The terms of the present window, each once. They borrow from the window: use them before it
 /// changes.
 std::vector<Factor> factors_of(Window& window, Sights sights = Sights::All);
 

@@ -73,7 +73,9 @@ Factor depth_factor(Window& window, StateId state, const Middle& middle) {
   double weight = 1.0 / sigma_ln(window.depth_config, depth, middle.in_region);
   // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
   if (window.depth_config.form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(ln_s);
-  Factor factor;
+  Factor factor{FactorKind::SceneDepth};
+  factor.state = state;
+  factor.lasting = poses.size() == 1;
   factor.cost = std::make_unique<DepthFactor>(window.depth_config.form, T_B_E(window, depth), std::move(landmarks),
                                               poses.size(), depth.depth_m, weight);
   factor.loss = window.depth_loss();

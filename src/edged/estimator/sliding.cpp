@@ -16,12 +16,9 @@ constexpr double kRestStretch = 10.0;
 /// The prior (always) and every other factor with a block that leaves.
 std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
   std::vector<Factor> factors = factors_of(window, Sights::OfKeyframes);
-  const bool has_prior = !window.prior.empty();
-  std::size_t index = 0;
   std::erase_if(factors, [&](const Factor& factor) {
-    if (index++ == 0 && has_prior) return false;
-    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
-                        [&](const BlockKey& key) { return leaving.contains(key); });
+    return factor.kind != FactorKind::Prior &&
+           std::ranges::none_of(factor.blocks, [&](const BlockKey& key) { return leaving.contains(key); });
   });
   return factors;
 }
@@ -38,17 +35,15 @@ StateId youngest_keyframe(const Window& window) {
 /// Whether a factor that touches leaving blocks is to stay out of the prior. inherited: the landmarks anchored in the
 /// leaving state, and whether the heir goes on with them.
 bool stays_out(const Factor& factor, const Window& window, const std::map<FeatureId, bool>& inherited, StateId heir) {
-  const BlockKey& depth = factor.blocks.back();
-  if (depth.kind != BlockKind::InverseDepth) return false;
-  const StateId seen_by = factor.blocks[1].id;
-  if (factor.blocks.front().kind == BlockKind::LogScale) {
-    // A depth factor leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
-    return seen_by != window.states.begin()->first || factor.blocks[2].kind == BlockKind::Pose;
+  if (factor.kind == FactorKind::SceneDepth) {
+    // It leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
+    return factor.state != window.states.begin()->first || !factor.lasting;
   }
-  const auto found = inherited.find(depth.id);
+  if (factor.kind != FactorKind::Sight) return false;
+  const auto found = inherited.find(factor.landmark);
   if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
   // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
-  return found->second && seen_by > heir;
+  return found->second && factor.state > heir;
 }
 
 }  // namespace
@@ -87,7 +82,8 @@ void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
   LinearPrior scale_walk;
   if (!window.ln_scale.empty()) {
     scale_walk = begin_scale(window, to_seconds(std::next(window.states.begin())->second.t - oldest.t));
-    touching.push_back({std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
+    touching.push_back(
+        {FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
   }
   window.prior = marginalize(window, touching, leaving);
   for (auto it = window.features.begin(); it != window.features.end();) {

@@ -6,6 +6,7 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -13,11 +14,18 @@
 
 namespace edged {
 
+/// What a term of the cost says. Prior: what has left the window; SoftPrior: set by hand.
+enum class FactorKind : std::uint8_t { Prior, SoftPrior, Imu, Standstill, Sight, SceneDepth };
+
 /// One term of the cost.
 struct Factor {
-  std::unique_ptr<ceres::CostFunction> cost;
+  FactorKind kind;
+  std::unique_ptr<ceres::CostFunction> cost = nullptr;
   ceres::LossFunction* loss = nullptr;  ///< owned by the window
-  std::vector<BlockKey> blocks;
+  std::vector<BlockKey> blocks = {};
+  std::uint64_t state = 0;     ///< Sight, SceneDepth: the one whose image or events told it
+  std::uint64_t landmark = 0;  ///< Sight: of this one
+  bool lasting = true;         ///< SceneDepth: its landmarks are all anchored in its state, and leave with it
 };
 
 }  // namespace edged
