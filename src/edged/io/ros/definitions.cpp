@@ -43,6 +43,25 @@ constexpr std::array kFields = {
            "uint32 height\n"
            "uint32 width\n"
            "dvs_msgs/Event[] events\n"},
+    Fields{"prophesee_event_msgs/Event", "",
+           "uint16 x\n"
+           "uint16 y\n"
+           "TIME ts\n"
+           "bool polarity\n"},
+    Fields{"prophesee_event_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "prophesee_event_msgs/Event[] events\n"},
+    Fields{"event_camera_msgs/EventPacket", "8a6101b351a64529ac77bd8b71074e52",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "uint64 seq\n"
+           "uint64 time_base\n"
+           "string encoding\n"
+           "bool is_bigendian\n"
+           "uint8[] events\n"},
     Fields{"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743",
            "std_msgs/Header header\n"
            "uint32 height\n"
@@ -107,6 +126,11 @@ void add_inner_types(std::string_view text, Wire wire, std::vector<std::string>&
 }
 
 }  // namespace
+
+std::string_view ros1_md5_of(std::string_view type) {
+  const auto* const found = std::ranges::find(kFields, type, &Fields::type);
+  return found == kFields.end() ? std::string_view() : found->md5;
+}
 
 MessageDefinition definition_of(std::string_view type, Wire wire) {
   MessageDefinition definition{text_of(type, wire), wire == Wire::Ros1 ? std::string(fields_of(type).md5) : ""};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the messages that are written consist of, as ROS tools want it told in the file.
+// What messages consist of that are written, or that ROS itself hands over, as its tools want it told.
 #pragma once
 
 #include <string>
@@ -15,7 +15,10 @@ struct MessageDefinition {
   std::string md5;   ///< by which ROS 1 knows versions of a message; empty for CDR
 };
 
-/// type: "dvs_msgs/EventArray" or another one that is written here (CheckError for any other).
+/// type: "dvs_msgs/EventArray" or another one that is known here (CheckError for any other).
 MessageDefinition definition_of(std::string_view type, Wire wire);
+
+/// The md5 by which ROS 1 knows the type; empty for one that is not known here.
+std::string_view ros1_md5_of(std::string_view type);
 
 }  // namespace edged

@@ -73,28 +73,17 @@ void RosDataset::judge(std::size_t role, const std::string& reason) {
 }
 
 void RosDataset::feed_events(const std::string& type, WireReader message) {
-  cv::Size size;
-  std::vector<Event> events;
-  if (type == "event_camera_msgs/EventPacket" || type == "event_array_msgs/EventArray") {
-    const EventPacket packet = read_event_packet(message);
-    size = cv::Size(static_cast<int>(packet.width), static_cast<int>(packet.height));
-    events = packets_.decode(packet);
-  } else {
-    EventArray array = read_event_array(message);
-    size = cv::Size(static_cast<int>(array.width), static_cast<int>(array.height));
-    events = std::move(array.events);
-  }
-  constexpr int kMostSide = 16384;  // as --geometry
-  if (size.width > kMostSide || size.height > kMostSide) throw Damage("a sensor of that size");
+  EventArray array = events_.decode(type, message);
+  const cv::Size size(static_cast<int>(array.width), static_cast<int>(array.height));
   if (info_.event_sensor.empty()) {
     const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
     set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));
   }
-  push_events(std::move(events));
+  push_events(std::move(array.events));
 }
 
 void RosDataset::feed_frame(const std::string& type, WireReader message) {
-  GrayImage gray = type == "sensor_msgs/Image" ? read_image(message) : read_compressed_image(message);
+  GrayImage gray = read_frame(type, message);
   push_frame(gray.t, std::move(gray.image));
 }
 

@@ -6,8 +6,8 @@
 #include <array>
 
 #include "edged/io/recording.hpp"
-#include "edged/io/ros/event_packets.hpp"
 #include "edged/io/ros/message_source.hpp"
+#include "edged/io/ros/sensor_messages.hpp"
 #include "edged/io/ros/topic_choice.hpp"
 #include "edged/io/streamed_dataset.hpp"
 
@@ -37,7 +37,7 @@ class RosDataset final : public StreamedDataset {
   TopicChoice choice_;
   std::optional<Rig> rig_;
   std::optional<cv::Size> geometry_;
-  EventPacketDecoder packets_;
+  EventMessageDecoder events_;
   std::array<std::size_t, kRoleNames.size()> good_{}, bad_{};  ///< messages, by role
 };
 

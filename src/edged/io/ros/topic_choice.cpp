@@ -8,7 +8,6 @@
 #include "edged/core/check.hpp"
 
 namespace edged {
-namespace {
 
 std::optional<Role> role_of(const std::string& type) {
   static const std::map<std::string, Role> roles = {
@@ -31,6 +30,8 @@ std::optional<Role> role_of(const std::string& type) {
   const auto found = roles.find(type);
   return found == roles.end() ? std::nullopt : std::optional(found->second);
 }
+
+namespace {
 
 std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
   std::vector<std::size_t> found;

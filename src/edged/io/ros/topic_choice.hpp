@@ -15,6 +15,9 @@ namespace edged {
 enum class Role { Events, Frames, Imu, Truth };
 inline constexpr std::array<const char*, 4> kRoleNames = {"events", "frames", "imu", "truth"};
 
+/// Of messages of that type ("dvs_msgs/EventArray"); nothing for what is of no use here.
+std::optional<Role> role_of(const std::string& type);
+
 /// Roles by name with the topic the user wants, or "none".
 using WantedTopics = std::map<std::string, std::string>;
 

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How the node is, in one message: status, reason, and what became of everything that came.
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "backlog.hpp"
+#include "edged/pipeline/odometry.hpp"
+#include "sensor_input.hpp"
+
+namespace edged::ros1 {
+
+struct NodeHealth {
+  std::optional<TrackingStatus> status;         ///< of the newest step
+  std::string reason;                           ///< what a start waits for, or what ended the last estimate
+  std::map<std::string, InputCounters> inputs;  ///< by topic
+  OdometryCounters odometry;
+  BacklogCounters left_out;
+  std::optional<Duration> age;  ///< from the newest step to the newest measurement
+};
+
+/// Measurements that came and that no packet has: unreadable, unfit, late, left out, without room.
+std::size_t lost_measurements(const NodeHealth& health);
+
+/// hardware: the rig's name.
+diagnostic_msgs::DiagnosticStatus diagnostics_message(const NodeHealth& health, const std::string& hardware);
+
+}  // namespace edged::ros1

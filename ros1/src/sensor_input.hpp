@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Serialised messages of one topic into measurements, by the decoders that read bags.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "edged/core/types.hpp"
+#include "edged/io/ros/sensor_messages.hpp"
+#include "edged/io/ros/topic_choice.hpp"
+
+namespace edged::ros1 {
+
+/// What came in by one topic.
+struct InputCounters {
+  std::size_t messages = 0;
+  std::size_t events = 0;      ///< in them
+  std::size_t unreadable = 0;  ///< messages that were left out: damaged, or of a type that is none of the sensor's
+  std::size_t missed = 0;      ///< messages that never came: gaps in the numbers of the headers
+  std::string trouble;         ///< with the last unreadable one
+};
+
+/// A message as it came over the wire.
+struct WireMessage {
+  std::string type, md5;
+  ByteSpan bytes;
+};
+
+class SensorInput {
+ public:
+  /// camera: whose events or frames come; of no meaning for the IMU.
+  SensorInput(Role role, std::string camera) : role_(role), camera_(std::move(camera)) {}
+
+  /// What the message says; nothing, and counted, where it cannot be read. One thread at a time.
+  std::optional<Measurement> read(const WireMessage& message);
+  /// From any thread.
+  InputCounters counters() const;
+
+ private:
+  Measurement decode(const WireMessage& message);
+  void note_number(std::uint32_t number);
+
+  const Role role_;
+  const std::string camera_;
+  EventMessageDecoder decoder_;
+  std::optional<std::uint32_t> last_number_;
+  mutable std::mutex mutex_;  // of what is below
+  InputCounters counters_;
+};
+
+}  // namespace edged::ros1

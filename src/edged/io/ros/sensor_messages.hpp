@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What sensors say in their messages, by the type of the message.
+#pragma once
+
+#include "edged/io/ros/event_packets.hpp"
+#include "edged/io/ros/messages.hpp"
+
+namespace edged {
+
+/// Every type of event messages; of one stream, in its order.
+class EventMessageDecoder {
+ public:
+  /// type: one with the role Events. Throws Damage.
+  EventArray decode(std::string_view type, WireReader message);
+
+ private:
+  EventPacketDecoder packets_;
+};
+
+/// Every type of images, by one with the role Frames. Throws Damage.
+GrayImage read_frame(std::string_view type, WireReader message);
+
+}  // namespace edged
