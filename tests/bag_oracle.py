@@ -24,8 +24,10 @@ def numbers(message, names):
 
 
 def describe(kind, m):
-    if kind == "dvs_msgs/EventArray":
+    if kind in ("dvs_msgs/EventArray", "prophesee_event_msgs/EventArray"):
         return f"width={m.width} height={m.height} events={len(m.events)}"
+    if kind == "event_camera_msgs/EventPacket":
+        return f"{m.encoding} width={m.width} height={m.height} seq={m.seq} time_base={m.time_base} bytes={len(m.events)}"
     if kind == "sensor_msgs/Image":
         return f"{m.encoding} {m.width}x{m.height} step={m.step} first={m.data[0]}"
     if kind == "sensor_msgs/Imu":

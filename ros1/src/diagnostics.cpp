@@ -16,12 +16,13 @@ std::string summary(const NodeHealth& health) {
     if (input.messages == 0) text += fmt::format("; nothing has come on {}", topic);
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
   }
+  if (health.newly_lost > 0) text += fmt::format("; {} measurements lost since the last report", health.newly_lost);
   return text;
 }
 
 std::uint8_t level_of(const NodeHealth& health) {
   if (health.status == TrackingStatus::Lost) return DiagnosticStatus::ERROR;
-  const bool fine = health.status == TrackingStatus::Good && lost_measurements(health) == 0;
+  const bool fine = health.status == TrackingStatus::Good && health.newly_lost == 0;
   return fine ? DiagnosticStatus::OK : DiagnosticStatus::WARN;
 }
 

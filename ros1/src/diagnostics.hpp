@@ -21,13 +21,14 @@ struct NodeHealth {
   std::map<std::string, InputCounters> inputs;  ///< by topic
   OdometryCounters odometry;
   BacklogCounters left_out;
+  std::size_t newly_lost = 0;   ///< of lost_measurements, since the last report
   std::optional<Duration> age;  ///< from the newest step to the newest measurement
 };
 
 /// Measurements that came and that no packet has: unreadable, unfit, late, left out, without room.
 std::size_t lost_measurements(const NodeHealth& health);
 
-/// hardware: the rig's name.
+/// A warning unless the status is Good and nothing was newly lost. hardware: the rig's name.
 diagnostic_msgs::DiagnosticStatus diagnostics_message(const NodeHealth& health, const std::string& hardware);
 
 }  // namespace edged::ros1

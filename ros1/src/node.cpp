@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace edged::ros1 {
 namespace {
@@ -97,9 +98,7 @@ void Node::run(const std::function<bool()>& stop) {
   spinner_.stop();
   odometry_.finish();
   while (make_step()) continue;
-  publish_diagnostics();
-  for (const auto& value : diagnostics_message(health(), rig_name_).values)
-    ROS_INFO("%s: %s", value.key.c_str(), value.value.c_str());
+  for (const auto& value : publish_diagnostics().values) ROS_INFO("%s: %s", value.key.c_str(), value.value.c_str());
 }
 
 /// Whether there was something to do.
@@ -133,12 +132,18 @@ void Node::report(const Step& step) {
 }
 
 NodeHealth Node::health() {
-  NodeHealth health{status_, reason_, {}, odometry_.counters(), backlog_.counters(), backlog_.age()};
+  NodeHealth health{status_, reason_, {}, odometry_.counters(), backlog_.counters(), 0, backlog_.age()};
   for (const auto& [topic, input] : inputs_) health.inputs.emplace(topic, input.counters());
+  const std::size_t lost = lost_measurements(health);
+  health.newly_lost = lost - std::exchange(lost_, lost);
   return health;
 }
 
-void Node::publish_diagnostics() { outputs_.publish(diagnostics_message(health(), rig_name_)); }
+diagnostic_msgs::DiagnosticStatus Node::publish_diagnostics() {
+  diagnostic_msgs::DiagnosticStatus status = diagnostics_message(health(), rig_name_);
+  outputs_.publish(status);
+  return status;
+}
 
 void Node::wait() {
   std::unique_lock lock(mutex_);

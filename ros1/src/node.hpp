@@ -37,8 +37,8 @@ class Node {
   void predict(const ImuSample& sample);
   bool make_step();
   void report(const Step& step);
-  NodeHealth health();
-  void publish_diagnostics();
+  NodeHealth health();  ///< what is newly lost in it is so since the last call
+  diagnostic_msgs::DiagnosticStatus publish_diagnostics();
   void wait();
 
   /// The sample that was the newest at t.
@@ -51,6 +51,7 @@ class Node {
   Outputs outputs_;
   std::optional<TrackingStatus> status_;
   std::string reason_;
+  std::size_t lost_ = 0;  ///< as of the last report
 
   std::mutex mutex_;  // of what is below
   std::condition_variable added_;

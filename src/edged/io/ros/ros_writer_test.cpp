@@ -126,6 +126,22 @@ TEST(BagOracle, ReadsWhatWeWriteMessageForMessageAndAgreesWithItsDefinitions) {
   }
 }
 
+TEST(BagOracle, AgreesWithTheDefinitionsOfTheEventMessagesOfDrivers) {
+  if (no_oracle()) GTEST_SKIP() << "no python3-rosbag (Debian), which reads bags as ROS does";
+  const TempFolder folder;
+  const Timestamp t = timestamp_from_seconds(100);
+  const auto topic = [&](const char* name, const char* type, const std::string& message) {
+    return TestTopic{name, type, {{t, message}}, definition_of(type, Wire::Ros1)};
+  };
+  const fs::path file = write_bag(
+      folder, kBagContainers[0],
+      {topic("/a", "prophesee_event_msgs/EventArray", event_array_message(Wire::Ros1, bag_events(t, 7, 1), kBagSensor)),
+       topic("/b", "event_camera_msgs/EventPacket", event_packet_message(Wire::Ros1, t, 5, 6, "evt3", "12345678"))});
+  const std::string fields = oracle("fields " + file.string());  // checks the md5 sums, too
+  EXPECT_THAT(fields, HasSubstr("/a header.stamp=100000000000 width=346 height=260 events=7"));
+  EXPECT_THAT(fields, HasSubstr("/b header.stamp=100000000000 evt3 width=346 height=260 seq=5 time_base=6 bytes=8"));
+}
+
 TEST(BagOracle, WritesWhatWeReadMessageForMessageInEveryCompression) {
   if (no_oracle()) GTEST_SKIP() << "no python3-rosbag (Debian), which writes bags as ROS does";
   TempFolder folder;

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "sensor_input.hpp"
+
+#include <gmock/gmock.h>
+#include <sensor_msgs/Image.h>
+
+#include "edged/io/ros/bag_test_support.hpp"
+#include "edged/io/ros/definitions.hpp"
+
+namespace edged::ros1 {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr Timestamp kStart = timestamp_from_ns(1'700'000'000'000'000'000);
+constexpr const char* kDvs = "dvs_msgs/EventArray";
+
+std::optional<Measurement> read(SensorInput& input, const std::string& type, const std::string& bytes) {
+  return input.read({type, std::string(ros1_md5_of(type)), as_bytes(bytes)});
+}
+
+/// The header's number is the first field.
+std::string numbered(std::string message, std::uint32_t number) {
+  std::memcpy(message.data(), &number, sizeof number);
+  return message;
+}
+
+TEST(SensorInput, ReadsTheEventsOfEveryDriver) {
+  const EventBatch batch = bag_events(kStart, 20, 1);
+  SensorInput input(Role::Events, "dvs");
+  for (const char* type : {kDvs, "prophesee_event_msgs/EventArray", "dv_ros_msgs/EventArray"}) {
+    const auto measurement = read(input, type, event_array_message(Wire::Ros1, batch, kBagSensor));
+    ASSERT_TRUE(measurement) << input.counters().trouble;
+    EXPECT_EQ(std::get<EventBatch>(*measurement).camera, "dvs");
+    EXPECT_TRUE(std::get<EventBatch>(*measurement).events == batch.events) << type;
+  }
+  const std::string word(8, '\0');  // of encoding mono: time base, pixel 0, 0
+  const auto packet =
+      read(input, "event_camera_msgs/EventPacket",
+           event_packet_message(Wire::Ros1, kStart, 0, static_cast<std::uint64_t>(to_ns(kStart)), "mono", word));
+  ASSERT_TRUE(packet) << input.counters().trouble;
+  EXPECT_EQ(std::get<EventBatch>(*packet).events.size(), 1U);
+  EXPECT_EQ(input.counters().messages, 4U);
+  EXPECT_EQ(input.counters().events, 61U);
+}
+
+TEST(SensorInput, ReadsImagesAndImuSamples) {
+  SensorInput frames(Role::Frames, "cam"), imu(Role::Imu, "");
+  const auto frame =
+      read(frames, "sensor_msgs/Image", image_message(Wire::Ros1, {kStart, "", cv::Mat(4, 6, CV_8UC1, cv::Scalar(7))}));
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(std::get<Frame>(*frame).camera, "cam");
+  EXPECT_EQ(std::get<Frame>(*frame).t, kStart);
+  EXPECT_EQ(std::get<Frame>(*frame).image.at<std::uint8_t>(3, 5), 7);
+  const auto sample = read(imu, "sensor_msgs/Imu",
+                           imu_message(Wire::Ros1, {kStart, Eigen::Vector3d(1, 2, 3), Eigen::Vector3d::Ones()}));
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(std::get<ImuSample>(*sample).gyro_B, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(SensorInput, KnowsTypesByTheSumsThatRosHas) {
+  EXPECT_EQ(ros1_md5_of("sensor_msgs/Image"), ros::message_traits::MD5Sum<sensor_msgs::Image>::value());
+}
+
+TEST(SensorInput, WhatCannotBeReadIsCountedWithItsReason) {
+  const std::string message = event_array_message(Wire::Ros1, bag_events(kStart, 20, 1), kBagSensor);
+  SensorInput input(Role::Events, "dvs");
+  EXPECT_FALSE(read(input, kDvs, message.substr(0, 100)));
+  EXPECT_FALSE(read(input, "sensor_msgs/Imu", message));
+  EXPECT_THAT(input.counters().trouble, HasSubstr("sensor_msgs/Imu: cannot be events"));
+  EXPECT_FALSE(input.read({kDvs, "another", as_bytes(message)}));
+  EXPECT_THAT(input.counters().trouble, HasSubstr("dvs_msgs/EventArray: of another version: md5 another"));
+  EXPECT_FALSE(read(input, kDvs, ""));
+  EXPECT_EQ(input.counters().messages, 4U);
+  EXPECT_EQ(input.counters().unreadable, 4U);
+}
+
+TEST(SensorInput, GapsInTheNumbersOfTheHeadersAreMissedMessages) {
+  const std::string message = imu_message(Wire::Ros1, {kStart, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  SensorInput input(Role::Imu, "");
+  for (const std::uint32_t number : {10U, 11U, 15U, 16U}) read(input, "sensor_msgs/Imu", numbered(message, number));
+  EXPECT_EQ(input.counters().missed, 3U);
+  for (const std::uint32_t begun_anew : {0U, 1U, 1U}) read(input, "sensor_msgs/Imu", numbered(message, begun_anew));
+  EXPECT_EQ(input.counters().missed, 3U);
+}
+
+}  // namespace
+}  // namespace edged::ros1
