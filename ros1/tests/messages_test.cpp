@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
+#include <opencv2/core.hpp>
+
 namespace edged::ros1 {
 namespace {
 
@@ -56,7 +58,8 @@ TEST(RosMessages, TheCovarianceOfTheRotationIsAboutTheAxesOfTheWorld) {
 
 TEST(RosMessages, TransformsLeadFromTheWorldToTheBodyAndOnToEachCamera) {
   Rig rig;
-  rig.cameras.push_back({"dvs", Modality::Events, CameraModel(), SE3({1, 0, 0, 0}, Eigen::Vector3d(0, 0, 0.1))});
+  rig.cameras.push_back(
+      {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
   const auto transforms = transforms_message(turned_state(), rig, kFrames).transforms;
   ASSERT_EQ(transforms.size(), 2U);
   EXPECT_EQ(transforms[0].header.frame_id, "odom");
