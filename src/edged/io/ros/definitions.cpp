@@ -22,6 +22,20 @@ struct Fields {
 constexpr std::string_view kHeader1 = "uint32 seq\ntime stamp\nstring frame_id\n";
 constexpr std::string_view kHeader2 = "builtin_interfaces/Time stamp\nstring frame_id\n";
 
+constexpr std::string_view kEvent = "uint16 x\nuint16 y\nTIME ts\nbool polarity\n";
+constexpr std::string_view kCameraInfo =
+    "std_msgs/Header header\n"
+    "uint32 height\n"
+    "uint32 width\n"
+    "string distortion_model\n"
+    "float64[] D\n"
+    "float64[9] K\n"
+    "float64[9] R\n"
+    "float64[12] P\n"
+    "uint32 binning_x\n"
+    "uint32 binning_y\n"
+    "sensor_msgs/RegionOfInterest roi\n";
+
 constexpr std::array kFields = {
     Fields{"builtin_interfaces/Time", "", "int32 sec\nuint32 nanosec\n"},
     Fields{"geometry_msgs/Quaternion", "", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
@@ -33,21 +47,13 @@ constexpr std::array kFields = {
            "std_msgs/Header header\n"
            "string child_frame_id\n"
            "geometry_msgs/Transform transform\n"},
-    Fields{"dvs_msgs/Event", "",
-           "uint16 x\n"
-           "uint16 y\n"
-           "TIME ts\n"
-           "bool polarity\n"},
+    Fields{"dvs_msgs/Event", "", kEvent},
     Fields{"dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
            "std_msgs/Header header\n"
            "uint32 height\n"
            "uint32 width\n"
            "dvs_msgs/Event[] events\n"},
-    Fields{"prophesee_event_msgs/Event", "",
-           "uint16 x\n"
-           "uint16 y\n"
-           "TIME ts\n"
-           "bool polarity\n"},
+    Fields{"prophesee_event_msgs/Event", "", kEvent},
     Fields{"prophesee_event_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
            "std_msgs/Header header\n"
            "uint32 height\n"
@@ -84,18 +90,7 @@ constexpr std::array kFields = {
            "uint32 height\n"
            "uint32 width\n"
            "bool do_rectify\n"},
-    Fields{"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "string distortion_model\n"
-           "float64[] D\n"
-           "float64[9] K\n"
-           "float64[9] R\n"
-           "float64[12] P\n"
-           "uint32 binning_x\n"
-           "uint32 binning_y\n"
-           "sensor_msgs/RegionOfInterest roi\n"},
+    Fields{"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214", kCameraInfo},
 };
 
 const Fields& fields_of(std::string_view type) {
