@@ -68,12 +68,16 @@ void Node::on_message(SensorInput& input, const topic_tools::ShapeShifter& messa
 
 void Node::predict(const ImuSample& sample) {
   std::optional<PoseCovariance> covariance;
+  Duration back(0);
   {
     const std::lock_guard lock(mutex_);
-    recent_imu_.push_back(sample);
+    if (recent_imu_.empty() || sample.t > recent_imu_.back().t) recent_imu_.push_back(sample);
     while (sample.t - recent_imu_.front().t > kRecentImu) recent_imu_.pop_front();
+    back = recent_imu_.back().t - sample.t;
     covariance = covariance_;
   }
+  if (back > kRecentImu)
+    ROS_ERROR_THROTTLE(5, "the clock of the IMU has jumped back by %.1f s: restart the node", to_seconds(back));
   // A late sample is no news.
   if (const auto state = odometry_.newest_state(); state && state->t == sample.t)
     outputs_.publish_prediction(*state, sample.gyro_B, covariance);
