@@ -96,7 +96,8 @@ class Session:
 
     def interrupt_node(self):
         _, _, uri = self.master.lookupNode("/test", "/edged")
-        _, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/test")
+        with xmlrpc.client.ServerProxy(uri) as node:
+            _, _, pid = node.getPid("/test")
         os.kill(pid, signal.SIGINT)
         self.launch.wait(timeout=60)
 
@@ -105,6 +106,7 @@ class Session:
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
                 process.wait(timeout=60)
+        self.master("close")()
 
 
 def write_tum(file, odometry):
