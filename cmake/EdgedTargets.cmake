@@ -25,13 +25,16 @@ if(EDGED_SANITIZE)
 endif()
 
 # edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ... TEST_DEPENDS libs ...)
-# makes the library edged_NAME (alias edged::NAME), a part of EDGED_COMPONENT, and the test program edged_NAME_test.
+# makes the library edged_NAME (alias edged::NAME), a part of EDGED_COMPONENT, and the test program edged_NAME_test. Its
+# folder is <root>/edged/NAME, and <root> is where it is included from.
 function(edged_module NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;TEST_DEPENDS" ${ARGN})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH root)
+  cmake_path(GET root PARENT_PATH root)
   add_library(edged_${NAME} STATIC ${ARG_SOURCES})
   add_library(edged::${NAME} ALIAS edged_${NAME})
   target_compile_features(edged_${NAME} PUBLIC cxx_std_20)
-  target_include_directories(edged_${NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+  target_include_directories(edged_${NAME} PUBLIC $<BUILD_INTERFACE:${root}>
                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(edged_${NAME} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:edged_options>)
   edged_export(edged_${NAME} ${NAME})

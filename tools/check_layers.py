@@ -5,8 +5,9 @@
 no components include one another in a cycle.
 
 The table is the rule: `| module | may use | holds |`, one row a module, bottom to top. A row may name only rows above it,
-so there are no cycles of modules. A component is a path without its extension: x.hpp and x.cpp are one, x_test.cpp is of
-none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
+so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
+toolbox/edged, which may be missing as a whole. A component is a path without its extension: x.hpp and x.cpp are one,
+x_test.cpp is of none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
 import graphlib
 import itertools
@@ -16,6 +17,7 @@ import sys
 
 ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+ROOTS = ("src", "toolbox")  # where "edged/..." is included from; the method's first
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
 
 
@@ -35,13 +37,19 @@ def read_table(architecture):
     return allowed, errors
 
 
-def code_files(root):
-    return sorted(p for p in (root / "src" / "edged").rglob("*") if p.suffix in (".hpp", ".cpp"))
+def modules(root):
+    """Module -> its folder."""
+    return {p.parent.name: p.parent for base in ROOTS for p in sorted((root / base / "edged").glob("*/CMakeLists.txt"))}
 
 
-def check_includes(root, allowed):
-    for file in code_files(root):
-        module = file.relative_to(root / "src" / "edged").parts[0]
+def code_files(folders):
+    """(module, file) of all code."""
+    return [(module, file) for module, folder in folders.items() for file in sorted(folder.rglob("*"))
+            if file.suffix in (".hpp", ".cpp")]
+
+
+def check_includes(root, folders, allowed):
+    for module, file in code_files(folders):
         for number, line in enumerate(file.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
             if not match:
@@ -49,7 +57,7 @@ def check_includes(root, allowed):
             where, included = f"{file.relative_to(root)}:{number}", match.group(1)
             if not included.startswith("edged/"):
                 yield f'{where}: "{included}" is not included from the root (edged/...)'
-            elif not (root / "src" / included).is_file():
+            elif not any((root / base / included).is_file() for base in ROOTS):
                 yield f'{where}: "{included}" does not exist'
             else:
                 target = included.split("/")[1]
@@ -57,13 +65,13 @@ def check_includes(root, allowed):
                     yield f"{where}: {module} may not include {target}"
 
 
-def check_cycles(root):
+def check_cycles(folders):
     """Cycles of components, no two of which share a step."""
     uses = {}
-    for file in code_files(root):
+    for module, file in code_files(folders):
         if file.stem.endswith("_test"):
             continue
-        component = str(file.relative_to(root / "src").with_suffix(""))
+        component = str(file.relative_to(folders[module].parent.parent).with_suffix(""))
         for include in filter(None, map(INCLUDE.match, file.read_text().splitlines())):
             uses.setdefault(component, {})[str(pathlib.PurePath(include.group(1)).with_suffix(""))] = None
         uses.get(component, {}).pop(component, None)
@@ -77,28 +85,33 @@ def check_cycles(root):
                 del uses[component][used]
 
 
-def check_links(root, allowed):
+def check_links(root, folders, allowed):
     """What CMake links: DEPENDS of a module; test programs link what they like."""
-    for module in allowed:
-        section = None
-        for line in (root / "src" / "edged" / module / "CMakeLists.txt").read_text().splitlines():
+    for module, folder in folders.items():
+        section, file = None, folder / "CMakeLists.txt"
+        for line in file.read_text().splitlines():
             for keyword, target, other in LINKS.findall(line):
                 if keyword or other:
                     section = keyword or other
-                elif section == "DEPENDS" and target not in allowed[module]:
-                    yield f"src/edged/{module}/CMakeLists.txt: {module} may not link {target}"
+                elif section == "DEPENDS" and target not in allowed.get(module, set()):
+                    yield f"{file.relative_to(root)}: {module} may not link {target}"
 
 
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
     allowed, errors = read_table(root / "ARCHITECTURE.md")
-    present = {p.parent.name for p in (root / "src" / "edged").glob("*/CMakeLists.txt")}
-    errors += [f"ARCHITECTURE.md: `{name}` stands in the table, but there is no src/edged/{name}" for name in
-               sorted(allowed.keys() - present)]
-    errors += [f"src/edged/{name}: has no row in the table of ARCHITECTURE.md" for name in sorted(present - allowed.keys())]
-    errors += check_includes(root, allowed)
-    errors += check_cycles(root)
-    errors += check_links(root, {m: a for m, a in allowed.items() if m in present})
+    folders = modules(root)
+    if (root / "toolbox").is_dir():
+        errors += [f"ARCHITECTURE.md: `{name}` stands in the table, but there is no edged/{name} in {' or '.join(ROOTS)}"
+                   for name in sorted(allowed.keys() - folders.keys())]
+    errors += [f"{folders[name].relative_to(root)}: has no row in the table of ARCHITECTURE.md"
+               for name in sorted(folders.keys() - allowed.keys())]
+    method = {name for name, folder in folders.items() if folder.is_relative_to(root / "src")}
+    errors += [f"ARCHITECTURE.md: `{name}` is of the method, `{use}` is not" for name in sorted(method & allowed.keys())
+               for use in sorted(allowed[name] - method)]
+    errors += check_includes(root, folders, allowed)
+    errors += check_cycles(folders)
+    errors += check_links(root, folders, allowed)
     print("\n".join(errors) or f"{len(allowed)} modules keep their layers, no components include one another in a cycle")
     return 1 if errors else 0
 
