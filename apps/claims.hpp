@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "edged/eval/consistency.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 namespace edged {
 

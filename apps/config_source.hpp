@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/live/measurement_queue.hpp"
-#include "edged/pipeline/odometry_config.hpp"
+#include "edged/options.hpp"
 
 namespace edged {
 

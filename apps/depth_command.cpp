@@ -17,6 +17,7 @@
 #include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/depth/depth_config.hpp"
+#include "edged/depth/network.hpp"
 #include "edged/events/voxel_grid.hpp"
 #include "exit_code.hpp"
 

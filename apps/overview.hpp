@@ -6,8 +6,8 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
-#include "edged/core/types.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -14,7 +14,7 @@
 #include "config_source.hpp"
 #include "edged/core/check.hpp"
 #include "edged/live/live_source.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"

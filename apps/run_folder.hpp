@@ -12,7 +12,7 @@
 #include "edged/core/timing.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/io/trajectory_io.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 namespace edged {
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/types.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/measurement.hpp"
+#include "edged/odometry.hpp"
 
 namespace edged {
 

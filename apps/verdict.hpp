@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
+#include "edged/rig.hpp"
 #include "edged/survey/diagnosis.hpp"
 #include "run_statistics.hpp"
 #include "source.hpp"

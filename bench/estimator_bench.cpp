@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "edged/estimator/cost.hpp"
+#include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/marginalization.hpp"
 #include "edged/estimator/solver.hpp"
 #include "edged/estimator/test_world.hpp"

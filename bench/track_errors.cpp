@@ -12,7 +12,7 @@
 #include "config_source.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "exit_code.hpp"
 #include "program.hpp"
 #include "run_mode.hpp"

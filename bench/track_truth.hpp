@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
 #include "edged/core/dataset.hpp"
-#include "edged/core/types.hpp"
+#include "edged/rig.hpp"
 #include "edged/sim/simulator.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -13,16 +13,18 @@ endif()
 set(DOXYGEN_PROJECT_NAME "Edged USLAM")
 set(DOXYGEN_PROJECT_BRIEF "visual-inertial odometry from events, frames and an IMU")
 set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
-set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/src)
+set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include ${PROJECT_SOURCE_DIR}/src)
 set(DOXYGEN_FILE_PATTERNS *.hpp)
 set(DOXYGEN_EXTRACT_ALL YES)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 set(DOXYGEN_QUIET YES)
 set(DOXYGEN_HAVE_DOT NO)
-set(documented pipeline core camera imu/noise.hpp depth/depth_config.hpp estimator/estimator_config.hpp
-               estimator/estimator_input.hpp estimator/region_depth.hpp frontend/tracker.hpp depth/network_depth.hpp)
+# What the public headers lean on.
+set(documented core/config.hpp core/timing.hpp depth/depth_config.hpp estimator/estimator_config.hpp
+               estimator/region_depth.hpp events/events_config.hpp frontend/frontend_config.hpp frontend/track.hpp
+               pipeline/counters.hpp)
 list(TRANSFORM documented PREPEND ${PROJECT_SOURCE_DIR}/src/edged/)
-doxygen_add_docs(docs ${documented})
+doxygen_add_docs(docs ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include ${documented})
 if(EDGED_TESTS)
   add_test(NAME docs COMMAND Doxygen::doxygen ${CMAKE_CURRENT_BINARY_DIR}/Doxyfile.docs)
 endif()

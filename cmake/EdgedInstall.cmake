@@ -7,6 +7,8 @@ include(CMakePackageConfigHelpers)
 if(EDGED_APPS)
   install(TARGETS edged RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/edged COMPONENT program)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/edged)

@@ -12,7 +12,7 @@
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "edged/sim/simulator.hpp"
 #include "run_statistics.hpp"
 

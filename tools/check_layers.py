@@ -4,10 +4,10 @@
 """Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
 no components include one another in a cycle.
 
-The table is the rule: `| module | may use | holds |`, one row a module, bottom to top. A row may name only rows above it,
-so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
-toolbox/edged, which may be missing as a whole. A component is a path without its extension: x.hpp and x.cpp are one,
-x_test.cpp is of none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
+The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
+above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
+toolbox/edged, which may be missing as a whole. `public` names the headers in include/edged that are the module's. A
+component is a path without its extension, module/x: x.hpp, in include/edged too, and x.cpp are one, x_test.cpp is of none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
 import graphlib
 import itertools
@@ -15,15 +15,15 @@ import pathlib
 import re
 import sys
 
-ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|")
+ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
-ROOTS = ("src", "toolbox")  # where "edged/..." is included from; the method's first
+ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
 
 
 def read_table(architecture):
-    """Module -> modules it may use, in the order of the table, and what is wrong with the table itself."""
-    allowed, errors, inside = {}, [], False
+    """Module -> modules it may use, in the order of the table; public header -> its module; what is wrong with the table."""
+    allowed, public, errors, inside = {}, {}, [], False
     for number, line in enumerate(architecture.read_text().splitlines(), 1):
         if re.match(r"^\|\s*module\s*\|\s*may use\s*\|", line):
             inside = True
@@ -34,7 +34,8 @@ def read_table(architecture):
             errors += [f"{architecture.name}:{number}: `{name}` uses `{use}`, which has no row above it"
                        for use in uses if use not in allowed]
             allowed[name] = set(uses)
-    return allowed, errors
+            public.update((header, name) for header in re.findall(r"`(\w+)`", row.group(3)))
+    return allowed, public, errors
 
 
 def modules(root):
@@ -42,14 +43,25 @@ def modules(root):
     return {p.parent.name: p.parent for base in ROOTS for p in sorted((root / base / "edged").glob("*/CMakeLists.txt"))}
 
 
-def code_files(folders):
-    """(module, file) of all code."""
-    return [(module, file) for module, folder in folders.items() for file in sorted(folder.rglob("*"))
-            if file.suffix in (".hpp", ".cpp")]
+def public_header(root, name):
+    """The file of include/edged, maybe filled in by CMake; None where there is none."""
+    files = (root / "include" / "edged" / (name + end) for end in (".hpp", ".hpp.in"))
+    return next(filter(pathlib.Path.is_file, files), None)
 
 
-def check_includes(root, folders, allowed):
-    for module, file in code_files(folders):
+def code_files(root, folders, public):
+    """(module, file, component) of all code."""
+    for name, module in public.items():
+        if file := public_header(root, name):
+            yield module, file, f"edged/{module}/{name}"
+    for module, folder in folders.items():
+        for file in sorted(folder.rglob("*")):
+            if file.suffix in (".hpp", ".cpp"):
+                yield module, file, str(file.relative_to(folder.parent.parent).with_suffix(""))
+
+
+def check_includes(root, folders, public, allowed):
+    for module, file, _ in code_files(root, folders, public):
         for number, line in enumerate(file.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
             if not match:
@@ -57,23 +69,27 @@ def check_includes(root, folders, allowed):
             where, included = f"{file.relative_to(root)}:{number}", match.group(1)
             if not included.startswith("edged/"):
                 yield f'{where}: "{included}" is not included from the root (edged/...)'
-            elif not any((root / base / included).is_file() for base in ROOTS):
+                continue
+            target = public.get(included.removeprefix("edged/").removesuffix(".hpp"))
+            if not target and not any((root / base / included).is_file() for base in ROOTS):
                 yield f'{where}: "{included}" does not exist'
             else:
-                target = included.split("/")[1]
+                target = target or included.split("/")[1]
                 if target != module and target not in allowed.get(module, set()):
                     yield f"{where}: {module} may not include {target}"
 
 
-def check_cycles(folders):
+def check_cycles(root, folders, public):
     """Cycles of components, no two of which share a step."""
     uses = {}
-    for module, file in code_files(folders):
-        if file.stem.endswith("_test"):
+    for _, file, component in code_files(root, folders, public):
+        if component.endswith("_test"):
             continue
-        component = str(file.relative_to(folders[module].parent.parent).with_suffix(""))
         for include in filter(None, map(INCLUDE.match, file.read_text().splitlines())):
-            uses.setdefault(component, {})[str(pathlib.PurePath(include.group(1)).with_suffix(""))] = None
+            used = pathlib.PurePath(include.group(1)).with_suffix("")
+            if used.name in public and len(used.parts) == 2:
+                used = used.parent / public[used.name] / used.name
+            uses.setdefault(component, {})[str(used)] = None
         uses.get(component, {}).pop(component, None)
     while True:
         try:
@@ -99,7 +115,7 @@ def check_links(root, folders, allowed):
 
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
-    allowed, errors = read_table(root / "ARCHITECTURE.md")
+    allowed, public, errors = read_table(root / "ARCHITECTURE.md")
     folders = modules(root)
     if (root / "toolbox").is_dir():
         errors += [f"ARCHITECTURE.md: `{name}` stands in the table, but there is no edged/{name} in {' or '.join(ROOTS)}"
@@ -109,8 +125,11 @@ def main():
     method = {name for name, folder in folders.items() if folder.is_relative_to(root / "src")}
     errors += [f"ARCHITECTURE.md: `{name}` is of the method, `{use}` is not" for name in sorted(method & allowed.keys())
                for use in sorted(allowed[name] - method)]
-    errors += check_includes(root, folders, allowed)
-    errors += check_cycles(folders)
+    headers = {file.name.removesuffix(".in").removesuffix(".hpp") for file in (root / "include" / "edged").iterdir()}
+    errors += [f"ARCHITECTURE.md: no row has include/edged/{name}.hpp" for name in sorted(headers - public.keys())]
+    errors += [f"ARCHITECTURE.md: there is no include/edged/{name}.hpp" for name in sorted(public.keys() - headers)]
+    errors += check_includes(root, folders, public, allowed)
+    errors += check_cycles(root, folders, public)
     errors += check_links(root, folders, allowed)
     print("\n".join(errors) or f"{len(allowed)} modules keep their layers, no components include one another in a cycle")
     return 1 if errors else 0

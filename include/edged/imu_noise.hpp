@@ -3,8 +3,6 @@
 // The error model of an IMU.
 #pragma once
 
-#include "edged/core/config.hpp"
-
 namespace edged {
 
 /// Continuous-time densities, as in a Kalibr imu.yaml.

@@ -8,27 +8,17 @@
 #include <optional>
 #include <string>
 
-#include "edged/camera/rig.hpp"
 #include "edged/core/timing.hpp"
-#include "edged/imu/noise.hpp"
-#include "edged/pipeline/intake.hpp"
-#include "edged/pipeline/odometry_config.hpp"
-#include "edged/pipeline/step.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/measurement.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/counters.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
+#include "edged/step.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
-
-/// How the odometry is fed and worked. The defaults are for sensors whose drivers have a thread each; a recording,
-/// which is in order, is `{kInOrder}`.
-struct FeedConfig {
-  SensorDelays delays;
-  Inference inference = Inference::Synchronous;  ///< OwnThread: the depth network never keeps the others waiting
-};
-
-/// What became of the measurements.
-struct OdometryCounters {
-  IntakeCounters intake;
-  PacketizerCounters packets;
-};
 
 /// One rig, one mode, from the first measurement to the last:
 ///

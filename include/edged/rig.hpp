@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A pinhole camera with radial-tangential or equidistant distortion.
+// The cameras around the body, addressed by name, never by index: lenses, poses, clocks.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "edged/se3.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 
@@ -16,6 +20,7 @@ enum class DistortionModel {
   Equidistant,  ///< Kannala-Brandt: k1..k4
 };
 
+/// A pinhole camera with radial-tangential or equidistant distortion.
 /// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
 /// A value: cheap to copy, never changed after construction.
 class CameraModel {
@@ -71,5 +76,25 @@ class CameraModel {
 };
 
 std::string to_string(DistortionModel model);
+
+enum class Modality { Events, Frames };
+
+struct RigCamera {
+  std::string name;
+  Modality modality = Modality::Frames;
+  CameraModel model;                   ///< of the raw (distorted) image
+  SE3 T_B_C;                           ///< camera frame to body: p_B = T_B_C * p_C
+  Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
+};
+
+struct Rig {
+  std::string name;
+  std::vector<RigCamera> cameras;
+
+  /// Throws InputError that lists the names there are.
+  const RigCamera& camera(const std::string& camera_name) const;
+  /// First camera of that kind, or null.
+  const RigCamera* find(Modality modality) const;
+};
 
 }  // namespace edged

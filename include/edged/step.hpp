@@ -9,12 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/types.hpp"
 #include "edged/estimator/region_depth.hpp"
-#include "edged/frontend/tracker.hpp"
-#include "edged/pipeline/tracking_status.hpp"
+#include "edged/frontend/track.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
+
+/// How far the present pose can be relied on.
+enum class TrackingStatus { Initializing, Good, Degraded, Lost };
+std::string to_string(TrackingStatus status);
+/// Whether there is a pose to go by: Good or Degraded.
+bool is_tracking(TrackingStatus status);
 
 /// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position
 /// and yaw are exact.

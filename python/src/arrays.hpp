@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "casts.hpp"
-#include "edged/core/types.hpp"
 #include "edged/frontend/tracker.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
 
 namespace edged::python {
 

@@ -11,7 +11,7 @@
 
 #include "arrays.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 namespace edged::python {
 

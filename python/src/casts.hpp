@@ -7,7 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "edged/core/time.hpp"
+#include "edged/time.hpp"
 
 namespace pybind11::detail {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
+#include "edged/version.hpp"
 
 PYBIND11_MODULE(_edged, module) {
   using namespace edged::python;

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <optional>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged::ros1 {
 

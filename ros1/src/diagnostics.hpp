@@ -10,7 +10,7 @@
 #include <string>
 
 #include "backlog.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "sensor_input.hpp"
 
 namespace edged::ros1 {

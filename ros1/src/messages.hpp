@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/pipeline/step.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
 #include "node_config.hpp"
 
 namespace edged::ros1 {

@@ -16,7 +16,7 @@
 
 #include "backlog.hpp"
 #include "edged/io/calib/sensor_head.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "outputs.hpp"
 #include "sensor_input.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "edged/pipeline/odometry_config.hpp"
+#include "edged/options.hpp"
 #include "edged/pipeline/sequencer.hpp"
 
 namespace edged::ros1 {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/types.hpp"
 #include "edged/io/ros/sensor_messages.hpp"
 #include "edged/io/ros/topic_choice.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged::ros1 {
 

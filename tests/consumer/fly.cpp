@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "edged/io/calibration.hpp"
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 #include "edged/sim/simulator.hpp"
 
 int main() {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 int main() {
   const edged::CameraModel lens(240, 180, 200, 200, 120, 90, edged::DistortionModel::None);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/camera/camera_model.hpp"
+#include "edged/rig.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {

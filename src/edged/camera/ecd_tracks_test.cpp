@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
 #include "edged/camera/two_view.hpp"
-#include "edged/core/types.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 namespace {

@@ -3,7 +3,7 @@
 // How wide a camera sees.
 #pragma once
 
-#include "edged/camera/camera_model.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "edged/camera/rig.hpp"
-#include "edged/core/types.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 

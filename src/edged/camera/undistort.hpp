@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

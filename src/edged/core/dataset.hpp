@@ -9,7 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

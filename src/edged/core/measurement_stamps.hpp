@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

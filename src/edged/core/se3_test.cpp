@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edged/core/time.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -1,13 +1,55 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which depth prior a run uses, with all its options, and the one function that makes it.
+// The options of the scene depth: which prior a run uses, and how each works.
 #pragma once
 
-#include <memory>
+#include <string>
 
-#include "edged/depth/fused_depth.hpp"
+#include "edged/core/config.hpp"
 
 namespace edged {
+
+struct DepthFilterConfig {
+  double min_m = 0.15;  ///< measurements outside (min, max) are rejected, the estimate before is held
+  double max_m = 30.0;
+  double time_constant_s = 0.25;  ///< of the smoothing; 0: none
+  double max_age_s = 1.0;         ///< an estimate is held that long
+  double drift = 0.3;             ///< growth of sigma_ln [1/sqrt(s)]
+
+  void visit(ConfigFields& fields);
+};
+
+struct LandmarkDepthConfig {
+  int min_landmarks = 5;  ///< in the region, for a measurement
+
+  void visit(ConfigFields& fields);
+};
+
+/// What stands for all depths of the region. The paper takes the mean, which a far background pulls away.
+enum class RegionValue { Median, Mean };
+
+struct NetworkDepthConfig {
+  std::string model = "small";  ///< of config/depth, or the path of an ONNX file
+  int margin_px = 16;           ///< the network sees that much more than the region on each side
+  RegionValue region_value = RegionValue::Median;
+  double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
+  double time_constant_s = 0.5;        ///< of the smoothing, in place of the filter's: best on held-out scenes
+
+  void visit(ConfigFields& fields);
+};
+
+/// Where the network runs: within add_events, every window (the same events give the same bits), or in a thread of its
+/// own, the newest window only, so that add_events never waits for it.
+enum class Inference { Synchronous, OwnThread };
+
+/// The scale s of a depth source, as ln s: a Kalman filter over one number with a prior and a slow random walk.
+struct ScaleConfig {
+  double prior_sigma = 0.5;         ///< of ln s around 0
+  double walk = 0.05;               ///< random walk of ln s [1/sqrt(s)]
+  double measurement_sigma = 0.35;  ///< of one window's ln ratio: error of the network that changes with time
+
+  void visit(ConfigFields& fields);
+};
 
 enum class DepthSource { Constant, Landmarks, Network, Fused };
 
@@ -23,9 +65,5 @@ struct DepthConfig {
 
   void visit(ConfigFields& fields);
 };
-
-/// camera: the event camera, raw (distorted). Throws InputError when the network's model cannot be used.
-std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera,
-                                             Inference inference = Inference::Synchronous);
 
 }  // namespace edged

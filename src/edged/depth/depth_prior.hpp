@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

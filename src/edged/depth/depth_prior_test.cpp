@@ -9,6 +9,8 @@
 #include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/depth/fused_depth.hpp"
+#include "edged/depth/make_depth_prior.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {

@@ -5,19 +5,11 @@
 
 #include <memory>
 
+#include "edged/depth/depth_config.hpp"
 #include "edged/depth/landmark_depth.hpp"
 #include "edged/depth/network_depth.hpp"
 
 namespace edged {
-
-/// The scale s of a depth source, as ln s: a Kalman filter over one number with a prior and a slow random walk.
-struct ScaleConfig {
-  double prior_sigma = 0.5;         ///< of ln s around 0
-  double walk = 0.05;               ///< random walk of ln s [1/sqrt(s)]
-  double measurement_sigma = 0.35;  ///< of one window's ln ratio: error of the network that changes with time
-
-  void visit(ConfigFields& fields);
-};
 
 class ScaleEstimate {
  public:

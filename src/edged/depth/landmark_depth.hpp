@@ -5,16 +5,10 @@
 
 #include <Eigen/Core>
 
-#include "edged/camera/camera_model.hpp"
 #include "edged/depth/depth_filter.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
-
-struct LandmarkDepthConfig {
-  int min_landmarks = 5;  ///< in the region, for a measurement
-
-  void visit(ConfigFields& fields);
-};
 
 /// The central region of an image on the unit plane of its camera: what lies between two corners.
 struct CentralRegion {

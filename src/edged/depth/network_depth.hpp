@@ -7,29 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
+#include "edged/depth/depth_config.hpp"
 #include "edged/depth/depth_filter.hpp"
 #include "edged/depth/latest_window.hpp"
 #include "edged/depth/network.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
-
-/// What stands for all depths of the region. The paper takes the mean, which a far background pulls away.
-enum class RegionValue { Median, Mean };
-
-struct NetworkDepthConfig {
-  std::string model = "small";  ///< of config/depth, or the path of an ONNX file
-  int margin_px = 16;           ///< the network sees that much more than the region on each side
-  RegionValue region_value = RegionValue::Median;
-  double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
-  double time_constant_s = 0.5;        ///< of the smoothing, in place of the filter's: best on held-out scenes
-
-  void visit(ConfigFields& fields);
-};
-
-/// Where the network runs: within add_events, every window (the same events give the same bits), or in a thread of its
-/// own, the newest window only, so that add_events never waits for it.
-enum class Inference { Synchronous, OwnThread };
 
 /// Cuts the events into windows of the model's length and runs the network at the end of each. Only the pixels around
 /// the central region reach it. Depths are scaled by the ratio of the focal lengths, for which an image looks the same.

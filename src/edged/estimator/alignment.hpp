@@ -21,10 +21,10 @@
 #include <set>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/core/types.hpp"
 #include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/estimator/factors/depth_factor.hpp"
+
 namespace edged {
 namespace {
 

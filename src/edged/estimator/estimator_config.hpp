@@ -3,12 +3,72 @@
 // The options of the estimator, those of its start included.
 #pragma once
 
+#include <cstdint>
+
 #include "edged/core/config.hpp"
-#include "edged/estimator/landmarks.hpp"
-#include "edged/estimator/region_depth.hpp"
-#include "edged/estimator/standstill.hpp"
 
 namespace edged {
+
+/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds
+/// that part as it is given.
+struct CalibrationConfig {
+  double rotation_sigma_deg = 1.0;
+  double time_offset_sigma_ms = 8.0;
+  double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
+  void visit(ConfigFields& fields);
+};
+
+/// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
+/// two sights dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov process, and
+/// on top of it what each image has of its own.
+struct TrackNoise {
+  double correlation = 0.95;
+  double time_s = 2.0;
+  void visit(ConfigFields& fields);
+};
+
+struct LandmarkConfig {
+  double min_parallax_deg = 0.6;  ///< a corner becomes a landmark once its rays differ by this
+  double min_depth_m = 0.1;
+  double max_depth_m = 60.0;
+  double max_residual_sigma = 2.5;    ///< a sight that fits worse is taken out
+  double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
+  double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
+  int max_per_camera = 70;            ///< landmarks in the cost, longest seen first
+  void visit(ConfigFields& fields);
+};
+
+struct StandstillConfig {
+  double window_s = 0.4;           ///< the body must have rested for this long
+  double max_gyro = 0.03;          ///< spread of the angular rate's block means [rad/s]
+  double max_accel = 0.25;         ///< spread of the acceleration's block means [m/s^2]
+  double max_gyro_mean = 0.15;     ///< a mean rate above this is motion, not bias [rad/s]
+  double max_image_motion = 4e-3;  ///< median travel of the corners over the window, on the unit plane [rad]
+  double quiet_window_s = 0.7;     ///< quiet for so long, the IMU needs no picture
+  double quiet_gyro = 0.008;       ///< spread then, near a sensor's own noise [rad/s]
+  double quiet_accel = 0.1;        ///< [m/s^2]
+  void visit(ConfigFields& fields);
+};
+
+/// The residual of Eq. 5.
+enum class DepthResidual : std::uint8_t {
+  Log,    ///< ln rho_bar - ln s - ln rho_source: free of units, what a relative error calls for
+  Paper,  ///< rho_bar - s rho_source [1/m]
+};
+
+struct DepthFactorConfig {
+  bool enabled = false;
+  DepthResidual form = DepthResidual::Log;
+  double scale_sigma = 0.5;     ///< of ln s before anything is known
+  double scale_walk = 0.02;     ///< [1/sqrt(s)]
+  double noise_share = 0.5;     ///< of the source's sigma_ln: what changes with time and s cannot explain
+  double min_interval_s = 0.5;  ///< between two factors: what the source gets wrong lasts
+  int min_landmarks = 8;        ///< in the region
+  double gate = 3.0;            ///< [sigma]
+  double cauchy_scale = 1.0;    ///< [sigma]
+
+  void visit(ConfigFields& fields);
+};
 
 struct EstimatorConfig {
   int recent_states = 3;                ///< newest states, keyframes or not

@@ -6,9 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/core/observation.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -6,8 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/core/observation.hpp"
 #include "edged/estimator/region_depth.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

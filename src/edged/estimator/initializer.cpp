@@ -11,6 +11,7 @@
 
 #include "edged/estimator/covariance.hpp"
 #include "edged/estimator/depth_terms.hpp"
+#include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/solver.hpp"
 
 namespace edged {

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
 #include "edged/estimator/alignment.hpp"
 #include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -7,21 +7,10 @@
 #include <set>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
-
-struct LandmarkConfig {
-  double min_parallax_deg = 0.6;  ///< a corner becomes a landmark once its rays differ by this
-  double min_depth_m = 0.1;
-  double max_depth_m = 60.0;
-  double max_residual_sigma = 2.5;    ///< a sight that fits worse is taken out
-  double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
-  double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
-  int max_per_camera = 70;            ///< landmarks in the cost, longest seen first
-  void visit(ConfigFields& fields);
-};
 
 enum class Tracks { Alive, All };
 

@@ -11,22 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/config.hpp"
-#include "edged/core/types.hpp"
+#include "edged/core/observation.hpp"
+#include "edged/estimator/estimator_config.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
-
-struct StandstillConfig {
-  double window_s = 0.4;           ///< the body must have rested for this long
-  double max_gyro = 0.03;          ///< spread of the angular rate's block means [rad/s]
-  double max_accel = 0.25;         ///< spread of the acceleration's block means [m/s^2]
-  double max_gyro_mean = 0.15;     ///< a mean rate above this is motion, not bias [rad/s]
-  double max_image_motion = 4e-3;  ///< median travel of the corners over the window, on the unit plane [rad]
-  double quiet_window_s = 0.7;     ///< quiet for so long, the IMU needs no picture
-  double quiet_gyro = 0.008;       ///< spread then, near a sensor's own noise [rad/s]
-  double quiet_accel = 0.1;        ///< [m/s^2]
-  void visit(ConfigFields& fields);
-};
 
 class StandstillDetector {
  public:

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
 #include "edged/camera/two_view.hpp"
-#include "edged/core/types.hpp"
 #include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "edged/camera/rig.hpp"
 #include "edged/estimator/estimator.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -11,35 +11,19 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/core/types.hpp"
+#include "edged/core/observation.hpp"
+#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/factors/reprojection_factor.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 
 using StateId = std::uint64_t;
-
-/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds
-/// that part as it is given.
-struct CalibrationConfig {
-  double rotation_sigma_deg = 1.0;
-  double time_offset_sigma_ms = 8.0;
-  double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
-  void visit(ConfigFields& fields);
-};
-
-/// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
-/// two sights dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov process, and
-/// on top of it what each image has of its own.
-struct TrackNoise {
-  double correlation = 0.95;
-  double time_s = 2.0;
-  void visit(ConfigFields& fields);
-};
 
 /// One instant of the window: a keyframe, or one of the newest states.
 struct WindowState {

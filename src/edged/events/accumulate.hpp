@@ -6,26 +6,10 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 
-#include "edged/core/config.hpp"
+#include "edged/events/events_config.hpp"
 #include "edged/events/warp.hpp"
 
 namespace edged {
-
-/// The d_i of Eq. 2.
-enum class EventDepth {
-  Scene,      ///< one depth for all events
-  Landmarks,  ///< per event that of the nearest landmark
-};
-
-struct EventFrameConfig {
-  WarpInterpolation interpolation = WarpInterpolation::Piecewise;
-  double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
-  EventDepth depth = EventDepth::Landmarks;
-  DepthGridSettings depth_grid;  ///< with EventDepth::Landmarks
-  double blur_sigma_px = 0.8;    ///< Gaussian on the sum, before the scaling; 0: none
-
-  void visit(ConfigFields& fields);
-};
 
 /// Draws event frames of one camera, reusing its buffers. Polarity is ignored. The scaling does not depend on the
 /// content, so that brightness is constant from frame to frame.

@@ -8,16 +8,13 @@
 #include <span>
 #include <vector>
 
+#include "edged/events/events_config.hpp"
+
 namespace edged {
 
 struct DepthSample {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< undistorted
   double depth = 1.0;                               ///< z-depth [m]
-};
-
-struct DepthGridSettings {
-  int cell_px = 8;
-  double reach_px = 40.0;  ///< cells further from every sample have the scene's depth
 };
 
 /// One inverse depth per square cell of an image: that of the sample nearest to the cell's centre.

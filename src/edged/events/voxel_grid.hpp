@@ -7,7 +7,7 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

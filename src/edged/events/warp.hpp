@@ -9,18 +9,13 @@
 #include <vector>
 
 #include "edged/camera/undistort.hpp"
-#include "edged/core/lie.hpp"
-#include "edged/core/types.hpp"
 #include "edged/events/depth_grid.hpp"
+#include "edged/events/events_config.hpp"
+#include "edged/measurement.hpp"
+#include "edged/se3.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
-
-/// How the camera's pose is read between the knots of a CameraMotion.
-enum class WarpInterpolation {
-  None,         ///< the camera stands still: events are only undistorted
-  SingleTwist,  ///< one constant twist from the first knot to the last (paper Eq. 1)
-  Piecewise,    ///< a constant twist per pair of neighbouring knots
-};
 
 struct MotionKnot {
   Timestamp t;  ///< same clock as the events

@@ -10,35 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/frontend/frontend_config.hpp"
 
 namespace edged {
-
-enum class CornerKind {
-  /// FAST-9 candidates ranked by the Harris score: the detector of ORB (Rublee et al., 2011), so there is no kind Orb
-  /// beside it. What ORB adds are scales (DetectorConfig::levels), a cut to the strongest of the whole image, which
-  /// would come before the grid and defeat it, and descriptors, which tracking by optical flow does not use.
-  FastHarris,
-  Fast,       ///< FAST-9 ranked by its own score: the detector of USLAM
-  ShiTomasi,  ///< local maxima of the smaller eigenvalue of the structure tensor (Shi and Tomasi, 1994)
-};
-
-struct DetectorConfig {
-  CornerKind corners = CornerKind::FastHarris;
-  int max_features = 120;
-  double cell_px = 20.0;
-  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
-  double separation_px = 8.0;
-  int border_px = 8;
-  int fast_threshold = 20;
-  int fast_threshold_low = 8;
-  double min_gradient = 2.0;
-  bool subpixel = false;
-
-  static constexpr double kLevelFactor = 1.2;  ///< as ORB
-
-  void visit(ConfigFields& fields);
-};
 
 struct Corner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();

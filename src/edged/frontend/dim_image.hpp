@@ -5,17 +5,9 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "edged/core/config.hpp"
+#include "edged/frontend/frontend_config.hpp"
 
 namespace edged {
-
-struct DimImageConfig {
-  double below_range = 80.0;    ///< grey levels between the image's dark and bright ends; fewer are stretched
-  double target_range = 160.0;  ///< to so many
-  double max_gain = 12.0;
-  double smoothing_px = 1.0;  ///< standard deviation of the blur before it
-  void visit(ConfigFields& fields);
-};
 
 /// Brightens the images of one camera where they are dim. They are smoothed before they are stretched: the mean of a
 /// few noisy pixels has more grey levels than any of them. One gain for the whole image, held until the light has

@@ -6,23 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/config.hpp"
-#include "edged/core/time.hpp"
+#include "edged/frontend/frontend_config.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
-
-struct KeyframeConfig {
-  double min_tracked_share = 0.6;
-  double parallax_deg = 1.5;
-  double rotation_deg = 10.0;
-  int min_tracks = 15;
-  double starved_interval_s = 0.2;
-  double min_interval_s = 0.05;
-  double max_interval_s = 0.5;
-  double still_parallax_deg = 0.2;
-
-  void visit(ConfigFields& fields);
-};
 
 /// What became of the last keyframe's corners in one camera.
 struct KeyframeTracks {

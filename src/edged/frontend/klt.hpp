@@ -7,19 +7,9 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/frontend/frontend_config.hpp"
 
 namespace edged {
-
-struct KltConfig {
-  int window_px = 11;
-  int levels = 3;
-  int iterations = 20;
-  double epsilon_px = 0.005;
-  double min_gradient = 1.0;
-
-  void visit(ConfigFields& fields);
-};
 
 /// Half-size levels of an image with their gradients. Copies share the pixels.
 class ImagePyramid {

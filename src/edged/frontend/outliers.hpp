@@ -8,20 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/frontend/frontend_config.hpp"
 
 namespace edged {
-
-struct OutlierConfig {
-  double threshold_px = 2.0;
-  double rotation_only_px = 1.0;
-  double rotation_gate_px = 6.0;
-  double fallback_share = 0.6;
-  double min_share = 0.3;
-  int iterations = 100;
-
-  void visit(ConfigFields& fields);
-};
 
 /// The same corner in two views, on the unit plane of the camera.
 struct Correspondence {

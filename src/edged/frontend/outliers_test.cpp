@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "edged/camera/camera_model.hpp"
-#include "edged/core/lie.hpp"
+#include "edged/rig.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 

@@ -11,49 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
-#include "edged/core/types.hpp"
+#include "edged/core/observation.hpp"
 #include "edged/frontend/detector.hpp"
+#include "edged/frontend/frontend_config.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
+#include "edged/frontend/track.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
-
-enum class TemplatePolicy {
-  Previous,  ///< each image is matched to the one before it
-  Keyframe,  ///< then moved onto the patch of the last keyframe, where it still looks alike: less drift, more time
-};
-
-struct TrackerConfig {
-  DetectorConfig detector;
-  KltConfig klt;
-  OutlierConfig outliers;
-  TemplatePolicy templates = TemplatePolicy::Previous;
-  double forward_backward_px = 1.0;
-  // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
-  double min_correlation = 0.3;
-  double border_px = 4.0;
-  double merge_px = 3.0;
-  double retry_share = 0.5;
-  double refill_share = 0.5;
-  double sigma_px = 1.0;
-
-  void visit(ConfigFields& fields);
-};
-
-struct Track {
-  FeatureId id = 0;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();           ///< in the newest image
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();           ///< the same on the unit plane
-  Eigen::Vector2d previous_pixel = Eigen::Vector2d::Zero();  ///< in the image before
-  Eigen::Vector2d previous_point = Eigen::Vector2d::Zero();
-  Eigen::Vector2d keyframe_pixel = Eigen::Vector2d::Zero();  ///< at the last keyframe; only when in_keyframe
-  Eigen::Vector2d keyframe_point = Eigen::Vector2d::Zero();
-  bool in_keyframe = false;  ///< existed at the last keyframe
-  int age = 0;               ///< images it has been followed through
-  Timestamp first_seen;
-};
 
 /// Where the corners are expected in the next image.
 struct TrackPrediction {

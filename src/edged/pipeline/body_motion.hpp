@@ -5,9 +5,10 @@
 
 #include <vector>
 
-#include "edged/core/types.hpp"
-#include "edged/imu/noise.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -8,25 +8,11 @@
 #include <optional>
 #include <span>
 
-#include "edged/camera/rig.hpp"
 #include "edged/frontend/tracker.hpp"
+#include "edged/options.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
-
-/// How what a camera gives is weighed by what becomes of its tracks.
-struct HealthConfig {
-  double time_constant_s = 0.3;  ///< of the running mean of the share of tracks that survive an image
-  double min_survival = 0.4;     ///< below it the camera's sights are ignored
-  int min_event_corners = 40;    ///< kept on event frames where the standard frames carry all of theirs
-
-  void visit(ConfigFields& fields);
-};
-
-/// The running mean of delta x_last, paper Eq. 2.
-struct AlignmentConfig {
-  double gain = 0.0;    ///< weight of the newest image; 0: off
-  double max_px = 3.0;  ///< bound of the mean
-};
 
 class Channel {
  public:

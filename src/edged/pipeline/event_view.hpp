@@ -7,8 +7,8 @@
 #include <span>
 
 #include "edged/events/accumulate.hpp"
+#include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
-#include "edged/pipeline/odometry_config.hpp"
 #include "edged/pipeline/packetizer.hpp"
 
 namespace edged {

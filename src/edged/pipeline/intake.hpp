@@ -9,19 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/counters.hpp"
 #include "edged/pipeline/sequencer.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
-
-/// What was left out as it came.
-struct IntakeCounters {
-  std::size_t unknown_camera = 0;  ///< measurements of a camera that the rig does not have
-  std::size_t absurd_stamps = 0;   ///< events and measurements more than 146 years from zero
-  std::size_t events_outside = 0;  ///< of the pixels of their camera
-  std::size_t frames_unfit = 0;    ///< not grey (CV_8UC1), or not of their camera's size
-  std::size_t no_room = 0;         ///< measurements that came when too much waited already, or after finish()
-};
 
 class Intake {
  public:

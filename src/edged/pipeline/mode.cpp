@@ -5,6 +5,7 @@
 #include <map>
 
 #include "edged/core/check.hpp"
+#include "edged/core/dataset.hpp"
 
 namespace edged {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 #include <utility>
 
+#include "edged/pipeline/intake.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
 #include "edged/pipeline/state_prediction.hpp"
 

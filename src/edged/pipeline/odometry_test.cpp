@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A body at rest before a picture of blocks: small enough for every sanitizer, and yet the whole odometry.
-#include "edged/pipeline/odometry.hpp"
+#include "edged/odometry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/events/enhance.hpp"
 
 namespace edged {
 namespace {

@@ -8,17 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
 #include "edged/core/timing.hpp"
-#include "edged/imu/noise.hpp"
+#include "edged/estimator/estimator.hpp"
+#include "edged/frontend/dim_image.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/event_view.hpp"
-#include "edged/pipeline/odometry_config.hpp"
 #include "edged/pipeline/packetizer.hpp"
 #include "edged/pipeline/scene_depth.hpp"
-#include "edged/pipeline/step.hpp"
+#include "edged/pipeline/status_judge.hpp"
 #include "edged/pipeline/world_frame.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
 
 namespace edged {
 

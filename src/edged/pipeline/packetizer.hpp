@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/core/config.hpp"
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/counters.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 
@@ -31,30 +32,6 @@ struct Packet {
 
   /// The events of the event frame: the newest window_per_pixel * pixels, none older than max_age_s.
   std::span<const Event> window() const { return std::span<const Event>(events).last(window_events); }
-};
-
-/// When a packet is cut (architecture, section 4).
-struct PacketizerConfig {
-  double events_per_pixel = 0.35;      ///< a packet is cut after this many new events per pixel
-  double window_per_pixel = 0.35;      ///< events a packet carries back in time, per pixel
-  double max_age_s = 0.25;             ///< but none older than this: at standstill the old ones are noise
-  double max_interval_s = 0.04;        ///< a cut at the latest after this time (the heartbeat at standstill)
-  double min_interval_s = 0.015;       ///< and never sooner than this after the last, but for a frame
-  int max_waiting_events = 4'000'000;  ///< in packets that wait for the IMU; 16 bytes each
-  void visit(ConfigFields& fields);
-};
-
-/// What became of the input. Every event added is in `new_events` of exactly one packet or in one of these counts.
-struct PacketizerCounters {
-  std::size_t packets = 0;             ///< handed out
-  std::size_t packets_before_imu = 0;  ///< dropped: not after the first IMU sample
-  std::size_t packets_after_imu = 0;   ///< dropped at the end: after the last IMU sample
-  std::size_t packets_overflow = 0;    ///< dropped: the IMU stayed away for too long
-  std::size_t events_late = 0;         ///< dropped: older than an event or a cut before them
-  std::size_t events_lost = 0;         ///< new events of dropped packets, and those after the last cut
-  std::size_t frames_late = 0;         ///< dropped: not after the last cut
-  std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
-  std::size_t imu_late = 0;            ///< dropped: not after the sample before
 };
 
 /// Frames cut packets always. Events cut one when there are enough of them, or after the longest time; these cuts keep

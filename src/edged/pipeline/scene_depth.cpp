@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/scene_depth.hpp"
 
+#include "edged/depth/make_depth_prior.hpp"
+
 namespace edged {
 namespace {
 

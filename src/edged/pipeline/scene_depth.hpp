@@ -7,9 +7,11 @@
 #include <memory>
 #include <span>
 
-#include "edged/camera/rig.hpp"
 #include "edged/depth/depth_config.hpp"
+#include "edged/depth/depth_prior.hpp"
+#include "edged/depth/landmark_depth.hpp"
 #include "edged/estimator/region_depth.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

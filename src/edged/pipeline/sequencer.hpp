@@ -7,25 +7,11 @@
 #include <deque>
 #include <optional>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
+#include "edged/options.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged {
-
-/// By how much the measurements of a sensor may lag behind the newest of all, stamp against stamp [s]. A sensor that
-/// delivers is waited for no longer than until it has passed what waits, so that the delay costs latency only where it
-/// is silent or slow: of the frames, those packets of events that lie between two of them. The defaults hold for what
-/// drivers usually do: event cameras come in USB packets of up to 33 ms, a frame a readout after its exposure's middle.
-struct SensorDelays {
-  double events_s = 0.05, frames_s = 0.05, imu_s = 0.05;
-
-  /// Throws InputError when one is not within 0 .. 10 s.
-  void validate() const;
-  bool operator==(const SensorDelays&) const = default;
-};
-
-/// Measurements come in the order that Dataset promises: nothing is waited for.
-inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0};
 
 /// Each sensor's own measurements in order, those of different sensors as they come. What a sensor may still precede is
 /// held back; what comes later than its delay goes out at once, out of order, for the packetizer to use or to count.

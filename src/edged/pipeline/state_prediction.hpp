@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/pipeline/tracking_status.hpp"
+#include "edged/pipeline/status_judge.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -12,22 +12,6 @@ namespace {
 constexpr double kMorePatience = 1.5;
 
 }  // namespace
-
-std::string to_string(TrackingStatus status) {
-  switch (status) {
-    case TrackingStatus::Initializing:
-      return "Initializing";
-    case TrackingStatus::Good:
-      return "Good";
-    case TrackingStatus::Degraded:
-      return "Degraded";
-    case TrackingStatus::Lost:
-      return "Lost";
-  }
-  EDGED_CHECK(false, "status {}", static_cast<int>(status));
-}
-
-bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
 
 void StatusConfig::visit(ConfigFields& fields) {
   fields.add("degraded_after_s", degraded_after_s,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/pipeline/tracking_status.hpp"
+#include "edged/pipeline/status_judge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 namespace {

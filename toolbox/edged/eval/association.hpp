@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "edged/core/types.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "edged/camera/rig.hpp"
 #include "edged/core/dataset.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "edged/camera/rig.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "edged/core/stream_order.hpp"
-#include "edged/core/types.hpp"
 #include "edged/io/repairs.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/time.hpp"
 #include "edged/io/source_path.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

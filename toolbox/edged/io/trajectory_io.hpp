@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/types.hpp"
 #include "edged/io/source_path.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "edged/core/types.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "edged/core/config.hpp"
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edged/core/config.hpp"
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 #include "edged/sim/random.hpp"
 
 namespace edged {

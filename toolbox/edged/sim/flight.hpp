@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "edged/core/types.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "edged/core/config.hpp"
-#include "edged/core/types.hpp"
-#include "edged/imu/noise.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/measurement.hpp"
 #include "edged/sim/random.hpp"
 #include "edged/sim/trajectory.hpp"
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
+#include "edged/rig.hpp"
 #include "edged/sim/light_field.hpp"
 #include "edged/sim/scene.hpp"
 

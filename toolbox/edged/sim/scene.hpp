@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "edged/core/config.hpp"
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/light.hpp"
 #include "edged/sim/texture.hpp"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "edged/state.hpp"
+
 namespace edged {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
+#include "edged/rig.hpp"
 #include "edged/survey/gyro_agreement.hpp"
 #include "edged/survey/survey.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 #include "edged/survey/hot_pixels.hpp"
 
 namespace edged {

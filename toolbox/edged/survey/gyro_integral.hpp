@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "edged/core/lie.hpp"
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 

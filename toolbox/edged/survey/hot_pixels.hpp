@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/time.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

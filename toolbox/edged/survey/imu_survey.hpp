@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/time.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -11,9 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/core/types.hpp"
 #include "edged/frontend/tracker.hpp"
+#include "edged/measurement.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

@@ -9,8 +9,7 @@
 #include <array>
 #include <cstdint>
 
-#include "edged/core/lie.hpp"
-#include "edged/core/types.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 

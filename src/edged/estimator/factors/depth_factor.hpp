@@ -7,18 +7,12 @@
 #include <ceres/cost_function.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "edged/core/lie.hpp"
+#include "edged/estimator/estimator_config.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
-
-/// The residual of Eq. 5.
-enum class DepthResidual : std::uint8_t {
-  Log,    ///< ln rho_bar - ln s - ln rho_source: free of units, what a relative error calls for
-  Paper,  ///< rho_bar - s rho_source [1/m]
-};
 
 /// A landmark as the factor sees it.
 struct DepthLandmark {

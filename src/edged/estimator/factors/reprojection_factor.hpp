@@ -5,7 +5,7 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include "edged/core/lie.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/camera/rig.hpp"
-#include "edged/imu/noise.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/lie.hpp"
-#include "edged/core/time.hpp"
 #include "edged/io/source_path.hpp"
+#include "edged/se3.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -11,10 +11,10 @@
 #include <filesystem>
 #include <numeric>
 
-#include "edged/core/types.hpp"
 #include "edged/io/hdf5/ecf_test_support.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/h5_filters.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

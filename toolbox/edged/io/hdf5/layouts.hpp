@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/types.hpp"
 #include "edged/io/hdf5/h5.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/types.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/time.hpp"
 #include "edged/io/bytes.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -6,9 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/camera/camera_model.hpp"
-#include "edged/core/types.hpp"
 #include "edged/io/ros/message_source.hpp"
+#include "edged/measurement.hpp"
+#include "edged/rig.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 

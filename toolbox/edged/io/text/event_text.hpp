@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "edged/core/types.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/io/text.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 

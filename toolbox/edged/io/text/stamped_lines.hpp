@@ -9,9 +9,9 @@
 #include <string_view>
 #include <utility>
 
-#include "edged/core/time.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/io/text.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
+#pragma once
+
+#include "edged/core/config.hpp"
+
+namespace edged {
+
+enum class CornerKind {
+  /// FAST-9 candidates ranked by the Harris score: the detector of ORB (Rublee et al., 2011), so there is no kind Orb
+  /// beside it. What ORB adds are scales (DetectorConfig::levels), a cut to the strongest of the whole image, which
+  /// would come before the grid and defeat it, and descriptors, which tracking by optical flow does not use.
+  FastHarris,
+  Fast,       ///< FAST-9 ranked by its own score: the detector of USLAM
+  ShiTomasi,  ///< local maxima of the smaller eigenvalue of the structure tensor (Shi and Tomasi, 1994)
+};
+
+struct DetectorConfig {
+  CornerKind corners = CornerKind::FastHarris;
+  int max_features = 120;
+  double cell_px = 20.0;
+  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
+  double separation_px = 8.0;
+  int border_px = 8;
+  int fast_threshold = 20;
+  int fast_threshold_low = 8;
+  double min_gradient = 2.0;
+  bool subpixel = false;
+
+  static constexpr double kLevelFactor = 1.2;  ///< as ORB
+
+  void visit(ConfigFields& fields);
+};
+
+struct KltConfig {
+  int window_px = 11;
+  int levels = 3;
+  int iterations = 20;
+  double epsilon_px = 0.005;
+  double min_gradient = 1.0;
+
+  void visit(ConfigFields& fields);
+};
+
+struct OutlierConfig {
+  double threshold_px = 2.0;
+  double rotation_only_px = 1.0;
+  double rotation_gate_px = 6.0;
+  double fallback_share = 0.6;
+  double min_share = 0.3;
+  int iterations = 100;
+
+  void visit(ConfigFields& fields);
+};
+
+enum class TemplatePolicy {
+  Previous,  ///< each image is matched to the one before it
+  Keyframe,  ///< then moved onto the patch of the last keyframe, where it still looks alike: less drift, more time
+};
+
+struct TrackerConfig {
+  DetectorConfig detector;
+  KltConfig klt;
+  OutlierConfig outliers;
+  TemplatePolicy templates = TemplatePolicy::Previous;
+  double forward_backward_px = 1.0;
+  // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
+  double min_correlation = 0.3;
+  double border_px = 4.0;
+  double merge_px = 3.0;
+  double retry_share = 0.5;
+  double refill_share = 0.5;
+  double sigma_px = 1.0;
+
+  void visit(ConfigFields& fields);
+};
+
+struct KeyframeConfig {
+  double min_tracked_share = 0.6;
+  double parallax_deg = 1.5;
+  double rotation_deg = 10.0;
+  int min_tracks = 15;
+  double starved_interval_s = 0.2;
+  double min_interval_s = 0.05;
+  double max_interval_s = 0.5;
+  double still_parallax_deg = 0.2;
+
+  void visit(ConfigFields& fields);
+};
+
+struct DimImageConfig {
+  double below_range = 80.0;    ///< grey levels between the image's dark and bright ends; fewer are stretched
+  double target_range = 160.0;  ///< to so many
+  double max_gain = 12.0;
+  double smoothing_px = 1.0;  ///< standard deviation of the blur before it
+  void visit(ConfigFields& fields);
+};
+
+}  // namespace edged

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/step.hpp"
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+
+std::string to_string(TrackingStatus status) {
+  switch (status) {
+    case TrackingStatus::Initializing:
+      return "Initializing";
+    case TrackingStatus::Good:
+      return "Good";
+    case TrackingStatus::Degraded:
+      return "Degraded";
+    case TrackingStatus::Lost:
+      return "Lost";
+  }
+  EDGED_CHECK(false, "status {}", static_cast<int>(status));
+}
+
+bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
+
+}  // namespace edged
