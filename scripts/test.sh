@@ -3,23 +3,25 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds everything and runs the tests as released, but for the longest (label stress): 20
 # minutes on two cores. --full, which CI runs: these as well, and before them what has threads under the thread
-# sanitizer and what is not too long under those of addresses and undefined behaviour. Ends with ctest's summary of the
-# tests as released.
+# sanitizer, what is not too long under those of addresses and undefined behaviour, and the public headers and the
+# pipeline through clang-tidy. Ends with ctest's summary of the tests as released.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 presets=(release)
 left_out=(--label-exclude stress)
+tools=()
 case "${1:-}" in
   "") ;;
-  --full) presets=(tsan sanitize release) left_out=() ;;
+  --full) presets=(tsan sanitize release) left_out=() tools=(clang-tidy) ;;
   *) echo "usage: scripts/test.sh [--full]" >&2; exit 2 ;;
 esac
 
-scripts/setup.sh
+scripts/setup.sh "${tools[@]}"
 for preset in "${presets[@]}"; do
   echo "== $preset"
   cmake --preset "$preset" >/dev/null
+  if [ "$preset" = sanitize ]; then scripts/tidy.sh build/sanitize; fi
   cmake --build --preset "$preset"
   ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}"
 done

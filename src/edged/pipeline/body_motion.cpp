@@ -42,7 +42,7 @@ SE3 BodyMotion::moved_on(Duration time) const {
 }
 
 SE3 BodyMotion::correct(const NavState& estimate) {
-  const SE3 correction = estimate.T_W_B * now_.T_W_B.inverse();
+  SE3 correction = estimate.T_W_B * now_.T_W_B.inverse();
   now_ = estimate;
   for (StampedPose& pose : T_W_B_) pose.T = correction * pose.T;
   return correction;

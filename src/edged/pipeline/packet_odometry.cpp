@@ -238,7 +238,7 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, const Preintegrat
     view.channel->T_W_Blast = T_W_B_of(*view.channel);
     input.observations.push_back(view.channel->observations());
   }
-  const EstimatorResult result = estimator_.add(input);
+  EstimatorResult result = estimator_.add(input);
   for (Channel& channel : channels_) channel.tracker.remove(result.outliers);
   if (!estimator_.initialized()) return result;
   const SE3 T_new_old = body_.correct(estimator_.newest());

@@ -213,7 +213,7 @@ void Packetizer::drop_overflow() {
   }
 }
 
-void Packetizer::drop_waiting(std::deque<Packet>::iterator packet) {
+void Packetizer::drop_waiting(const std::deque<Packet>::iterator& packet) {
   counters_.events_lost += packet->new_events;
   waiting_events_ -= packet->events.size();
   waiting_.erase(packet);

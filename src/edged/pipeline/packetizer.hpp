@@ -73,7 +73,7 @@ class Packetizer {
   void make_packet(const Cut& cut);
   void take_events(Packet& packet);
   void drop_overflow();
-  void drop_waiting(std::deque<Packet>::iterator packet);
+  void drop_waiting(const std::deque<Packet>::iterator& packet);
 
   Mode mode_;
   PacketizerConfig config_;

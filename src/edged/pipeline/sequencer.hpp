@@ -54,8 +54,8 @@ class Sequencer {
   std::optional<Measurement> pop(Line<T>& line);
   std::optional<Measurement> pop_events(Timestamp end);
   Timestamp first_stamp_of(const EventBatch& batch) const { return batch.events[events_out_].t; }
-  Timestamp first_stamp_of(const Frame& frame) const { return frame.t; }
-  Timestamp first_stamp_of(const ImuSample& sample) const { return sample.t; }
+  static Timestamp first_stamp_of(const Frame& frame) { return frame.t; }
+  static Timestamp first_stamp_of(const ImuSample& sample) { return sample.t; }
 
   std::size_t most_bytes_;
   Line<EventBatch> events_;  // none empty
