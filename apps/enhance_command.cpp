@@ -17,6 +17,7 @@
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
 #include "edged/events/warp.hpp"
 #include "edged/odometry.hpp"
