@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edged/camera/undistort.hpp"
+#include "edged/events/enhance.hpp"
 
 namespace edged {
 namespace {
