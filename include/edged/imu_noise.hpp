@@ -16,6 +16,9 @@ struct ImuNoise {
   /// Noise is multiplied by this where saturated or missing: a clipped rate is off by as much as it is over the range,
   /// for as long as it lasts, so that the IMU knows next to nothing there.
   double saturation_inflation = 1e4;
+
+  /// Throws InputError that names the first value that cannot be: not above zero, or no number.
+  void validate() const;
 };
 
 }  // namespace edged

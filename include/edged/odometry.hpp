@@ -30,8 +30,8 @@ namespace edged {
 /// for a depth network that has a thread of its own. Prints nothing.
 class Odometry {
  public:
-  /// Throws InputError when the rig lacks a camera that the mode needs, or an option is out of its range or contradicts
-  /// another.
+  /// Throws InputError when the rig lacks a camera that the mode needs, an option is out of its range or contradicts
+  /// another, or the IMU's noise cannot be.
   Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config = {},
            const FeedConfig& feed = {});
   ~Odometry();
@@ -39,7 +39,8 @@ class Odometry {
   Odometry& operator=(Odometry&& other) noexcept;
 
   /// Stamps as recorded, each sensor's own in order. Never throws on data: what cannot be used is counted, as is what
-  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long. Images
+  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long. Where a
+  /// clock is set back by more than a second, for good, the estimate is lost and starts again in the new time. Images
   /// that own their pixels are not copied: what is written into them afterwards is seen.
   void add(Measurement measurement);
   /// No more measurements: what is left comes out of next().

@@ -75,6 +75,8 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
   const auto [in, out] = guarded(self.mutex, [&] { return self.odometry.counters(); });
   return {{"unknown_camera", in.unknown_camera},
           {"absurd_stamps", in.absurd_stamps},
+          {"far_ahead", in.far_ahead},
+          {"clocks_set_back", in.clocks_set_back},
           {"events_outside", in.events_outside},
           {"frames_unfit", in.frames_unfit},
           {"no_room", in.no_room},
@@ -85,6 +87,7 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
           {"events_late", out.events_late},
           {"events_lost", out.events_lost},
           {"frames_late", out.frames_late},
+          {"frames_missing", out.frames_missing},
           {"imu_not_finite", out.imu_not_finite},
           {"imu_late", out.imu_late}};
 }

@@ -9,11 +9,13 @@ namespace edged {
 
 /// What was left out as it came.
 struct IntakeCounters {
-  std::size_t unknown_camera = 0;  ///< measurements of a camera that the rig does not have
-  std::size_t absurd_stamps = 0;   ///< events and measurements more than 146 years from zero
-  std::size_t events_outside = 0;  ///< of the pixels of their camera
-  std::size_t frames_unfit = 0;    ///< not grey (CV_8UC1), or not of their camera's size
-  std::size_t no_room = 0;         ///< measurements that came when too much waited already, or after finish()
+  std::size_t unknown_camera = 0;   ///< measurements of a camera that the rig does not have
+  std::size_t absurd_stamps = 0;    ///< events and measurements more than 146 years from zero
+  std::size_t far_ahead = 0;        ///< the same more than 10 s ahead of all, and contradicted by the next
+  std::size_t clocks_set_back = 0;  ///< how often; each time all begins anew
+  std::size_t events_outside = 0;   ///< of the pixels of their camera
+  std::size_t frames_unfit = 0;     ///< not grey (CV_8UC1), or not of their camera's size
+  std::size_t no_room = 0;          ///< measurements that came when too much waited already, or after finish()
 };
 
 /// What became of the input. Every event added is in `new_events` of exactly one packet or in one of these counts.
@@ -25,6 +27,7 @@ struct PacketizerCounters {
   std::size_t events_late = 0;         ///< dropped: older than an event or a cut before them
   std::size_t events_lost = 0;         ///< new events of dropped packets, and those after the last cut
   std::size_t frames_late = 0;         ///< dropped: not after the last cut
+  std::size_t frames_missing = 0;      ///< Frames mode: packets without one, as none came for 5 s
   std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
   std::size_t imu_late = 0;            ///< dropped: not after the sample before
 };

@@ -13,14 +13,19 @@ namespace edged {
 struct Odometry::Impl {
   Impl(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config, const FeedConfig& feed)
       : intake(rig, mode, feed.delays),
-        packetizer(rig, mode, config.packets),
+        new_packetizer([rig, mode, packets = config.packets](const PacketizerCounters& so_far) {
+          return Packetizer(rig, mode, packets, so_far);
+        }),
+        packetizer(new_packetizer({})),
         packet_odometry(rig, noise, mode, config, feed.inference) {}
 
   std::optional<Packet> next_packet();
 
   Intake intake;               // any thread's
   StatePrediction prediction;  // any thread's
+  std::function<Packetizer(const PacketizerCounters& so_far)> new_packetizer;
   Packetizer packetizer;
+  std::optional<Measurement> begins_time;  // waits for the packets of the time before
   PacketOdometry packet_odometry;
   bool finished = false;
 };
@@ -29,8 +34,15 @@ std::optional<Packet> Odometry::Impl::next_packet() {
   const auto timer = packet_odometry.timings().measure("packetize");
   while (true) {
     if (std::optional<Packet> packet = packetizer.next()) return packet;
-    if (std::optional<Measurement> measurement = intake.next()) {
-      packetizer.add(std::move(*measurement));
+    if (begins_time) {
+      packetizer = new_packetizer(packetizer.counters());
+      packet_odometry.begin_time();
+      packetizer.add(*std::exchange(begins_time, std::nullopt));
+    } else if (std::optional<Intake::Item> item = intake.next(); item && item->begins_time) {
+      packetizer.finish();
+      begins_time = std::move(item->measurement);
+    } else if (item) {
+      packetizer.add(std::move(item->measurement));
     } else if (!finished && intake.ended()) {
       packetizer.finish();
       finished = true;
@@ -42,7 +54,7 @@ std::optional<Packet> Odometry::Impl::next_packet() {
 
 Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
                    const FeedConfig& feed)
-    : impl_((config.validate(), std::make_unique<Impl>(rig, imu_noise, mode, config, feed))) {}
+    : impl_((config.validate(), imu_noise.validate(), std::make_unique<Impl>(rig, imu_noise, mode, config, feed))) {}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&& other) noexcept = default;
 Odometry& Odometry::operator=(Odometry&& other) noexcept = default;

@@ -133,6 +133,75 @@ TEST(Odometry, ComesBackWhereTheClocksOfItsSensorsAreDecadesApart) {
   EXPECT_LT(steps, 20);
 }
 
+/// As of the clock that measured them.
+Measurement shifted(Measurement m, Duration by) {
+  if (auto* batch = std::get_if<EventBatch>(&m)) {
+    for (Event& event : batch->events) event.t += by;
+  } else if (auto* frame = std::get_if<Frame>(&m)) {
+    frame->t += by;
+  } else {
+    std::get<ImuSample>(m).t += by;
+  }
+  return m;
+}
+
+TEST(Odometry, StartsAgainWithinASecondOnceTheClockWasSetBack) {
+  Odometry odometry(small_rig(), {}, Mode::Fused);
+  const auto back = -std::chrono::seconds(10);
+  std::vector<Step> steps;
+  const auto feed = [&](Duration by) {
+    for (const Measurement& m : measurements(3000)) {
+      odometry.add(shifted(m, by));
+      while (auto step = odometry.next()) steps.push_back(std::move(*step));
+    }
+  };
+  feed(Duration(0));
+  ASSERT_EQ(steps.back().status, TrackingStatus::Good);
+  const std::size_t before = steps.size();
+  feed(std::chrono::seconds(3) + back);
+  ASSERT_GT(steps.size(), before + 50);
+  const auto first =
+      std::ranges::find_if(steps, [&](const Step& s) { return s.t < Timestamp(std::chrono::seconds(-2)); });
+  ASSERT_NE(first, steps.end());
+  EXPECT_LT(first->t, stamp(4000) + back);
+  EXPECT_EQ(first->status, TrackingStatus::Lost);
+  EXPECT_EQ(first->lost_because, "a clock was set back");
+  EXPECT_EQ(steps.back().status, TrackingStatus::Good);
+  EXPECT_TRUE(odometry.newest_state());
+  EXPECT_EQ(odometry.counters().intake.clocks_set_back, 1U);
+}
+
+TEST(Odometry, GoesOnAfterAStampAnHourAhead) {
+  const std::vector<Measurement> all = measurements(1500);
+  Odometry odometry(small_rig(), {}, Mode::Fused, {}, {kInOrder});
+  Numbers steps;
+  for (const Measurement& m : all) {
+    odometry.add(m);
+    if (std::holds_alternative<ImuSample>(m) && *first_stamp(m) == stamp(700)) {
+      for (const Measurement& damaged : {m, Measurement(EventBatch{"dvs", {{stamp(700), 1, 1, true}}})})
+        odometry.add(shifted(damaged, std::chrono::hours(1)));
+    }
+    for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
+  }
+  odometry.finish();
+  for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
+  expect_same_bits(steps, fed_in_order(all, Mode::Fused));
+  EXPECT_EQ(odometry.counters().intake.far_ahead, 2U);
+}
+
+TEST(Odometry, TellsEveryFiveSecondsThatFramesStayAway) {
+  Odometry odometry(small_rig(), {}, Mode::Frames);
+  odometry.add(Frame{stamp(5), "cam", blocks()});
+  std::vector<Timestamp> steps;
+  for (int ms = 0; ms <= 60'000; ms += 5) {
+    odometry.add(resting(stamp(ms)));
+    while (const auto step = odometry.next()) steps.push_back(step->t);
+  }
+  ASSERT_EQ(steps.size(), 12U);
+  EXPECT_EQ(steps.back(), stamp(55'005));
+  EXPECT_EQ(odometry.counters().packets.frames_missing, 11U);
+}
+
 TEST(Odometry, LosesNothingWhereACamerasClockIsBehindByMoreThanItsDelay) {
   for (const auto offset : {std::chrono::milliseconds(200), std::chrono::milliseconds(-200)}) {
     Rig rig = small_rig();
@@ -313,11 +382,14 @@ TEST(Odometry, PredictsTheStateUpToTheNewestImuSample) {
   EXPECT_FALSE(odometry.state_at(last->t - Duration(1)));
 }
 
-TEST(Odometry, RefusesOptionsAndRigsThatCannotBe) {
+TEST(Odometry, RefusesOptionsRigsAndNoiseThatCannotBe) {
   OdometryConfig config;
   config.packets.max_interval_s = -1.0;
   EXPECT_THROW(Odometry(small_rig(), {}, Mode::Fused, config), InputError);
   EXPECT_THROW(Odometry(small_rig(), {}, Mode::Fused, {}, {.delays = {.events_s = -1.0}}), InputError);
+  ImuNoise silent;
+  silent.gyro_noise = 0.0;
+  EXPECT_THROW(Odometry(small_rig(), silent, Mode::Fused), InputError);
   Rig blind = small_rig();
   blind.cameras.pop_back();
   EXPECT_THROW(Odometry(blind, {}, Mode::Fused), InputError);

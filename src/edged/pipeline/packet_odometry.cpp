@@ -44,6 +44,7 @@ PacketOdometry::PacketOdometry(const Rig& rig, const ImuNoise& noise, Mode mode,
                                Inference inference)
     : mode_(mode),
       config_(config),
+      inference_(inference),
       noise_(noise),
       given_rig_(rig_of_mode(rig, mode)),
       rig_(without_offsets(given_rig_)),
@@ -52,14 +53,30 @@ PacketOdometry::PacketOdometry(const Rig& rig, const ImuNoise& noise, Mode mode,
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
       dim_frames_(config.dim_frames),
       depth_(config.depth, depth_camera(rig_), config.estimator.depth_factor.enabled, inference) {
+  make_channels();
+}
+
+void PacketOdometry::make_channels() {
+  channels_.clear();
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
-      event_view_.emplace(camera.model, config_);
+      if (!event_view_) event_view_.emplace(camera.model, config_);
       channels_.emplace_back(camera, event_view_->ideal(), config_.event_tracker, config_.alignment, config_.health);
     } else {
       channels_.emplace_back(camera, camera.model, config_.frame_tracker, AlignmentConfig{}, config_.health);
     }
   }
+}
+
+void PacketOdometry::begin_time() {
+  estimator_ = Estimator(rig_, noise_, config_.estimator);
+  make_channels();
+  depth_ = SceneDepth(config_.depth, depth_camera(rig_), config_.estimator.depth_factor.enabled, inference_);
+  judge_.lose("a clock was set back");
+  last_keyframe_.reset();
+  last_frame_.reset();
+  covariance_.reset();
+  gyro_saturated_ = false;
 }
 
 Step PacketOdometry::process(Packet packet) {

@@ -34,6 +34,9 @@ class PacketOdometry {
 
   /// Packets in time order. Never throws on data; lost tracking is a status.
   Step process(Packet packet);
+  /// A clock was set back, and the packets that follow are of a new time: tracks and estimate end. The next start goes
+  /// on from where the body was, as after a loss.
+  void begin_time();
 
   /// Of the stages; whoever calls may add his own.
   StageTimings& timings() { return timings_; }
@@ -42,6 +45,7 @@ class PacketOdometry {
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
  private:
+  void make_channels();
   Preintegration predict(const Packet& packet);
   double measure_depth(const Packet& packet);
   EventImage draw(const Packet& packet, double scene_depth);
@@ -66,6 +70,7 @@ class PacketOdometry {
 
   Mode mode_;
   OdometryConfig config_;
+  Inference inference_;
   ImuNoise noise_;
   Rig given_rig_;  ///< the cameras of the mode
   Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over

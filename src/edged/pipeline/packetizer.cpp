@@ -16,6 +16,7 @@ namespace {
 constexpr Duration kTick(1);
 constexpr Duration kHole = std::chrono::seconds(1);  // a silence of all sensors: no heartbeats inside
 constexpr Duration kImuBeforeFirst = std::chrono::seconds(20);
+constexpr Duration kFramesGivenUp = std::chrono::seconds(5);          // longer than any status takes to become Lost
 constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // slower frames are not waited for
 constexpr std::size_t kMaxWaitingPackets = 256;
 
@@ -40,7 +41,8 @@ void PacketizerConfig::visit(ConfigFields& fields) {
              {"events", 1000, 1e9, "events kept while the IMU is late; beyond, the oldest packets are dropped"});
 }
 
-Packetizer::Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config) : mode_(mode), config_(config) {
+Packetizer::Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config, const PacketizerCounters& so_far)
+    : mode_(mode), config_(config), counters_(so_far) {
   if (config_.min_interval_s > config_.max_interval_s) {
     throw InputError::format("packets.min_interval_s = {} is above packets.max_interval_s = {}: lower it",
                              config_.min_interval_s, config_.max_interval_s);
@@ -141,11 +143,14 @@ void Packetizer::make_packets(Timestamp complete_until) {
 
 std::optional<Packetizer::Cut> Packetizer::next_cut(Timestamp complete_until) const {
   const bool frame_ready = !frames_.empty() && frames_.front().t <= complete_until;
-  const Timestamp by_events = mode_ == Mode::Frames ? Timestamp::max() : next_event_cut();
-  if (frame_ready && frames_.front().t <= by_events) return Cut{frames_.front().t, true};
-  if (by_events <= complete_until) return Cut{by_events, false};
+  const Timestamp by_time = mode_ == Mode::Frames ? frames_given_up() : next_event_cut();
+  if (frame_ready && frames_.front().t <= by_time) return Cut{frames_.front().t, true};
+  if (by_time <= complete_until) return Cut{by_time, false};
   return std::nullopt;
 }
+
+/// Frames mode: where a packet without a frame is cut.
+Timestamp Packetizer::frames_given_up() const { return heartbeat_from_ + kFramesGivenUp; }
 
 /// Where the count or the longest time cuts, unless a frame comes before.
 Timestamp Packetizer::next_event_cut() const {
@@ -164,7 +169,11 @@ Timestamp Packetizer::next_event_cut() const {
 void Packetizer::make_packet(const Cut& cut) {
   Packet packet;
   packet.t = cut.t;
-  if (mode_ != Mode::Frames) take_events(packet);
+  if (mode_ != Mode::Frames) {
+    take_events(packet);
+  } else if (!cut.by_frame) {
+    ++counters_.frames_missing;
+  }
   if (cut.by_frame) {
     if (last_frame_) {
       frame_period_ = cut.t - *last_frame_;

@@ -36,15 +36,16 @@ struct Packet {
 
 /// Frames cut packets always. Events cut one when there are enough of them, or after the longest time; these cuts keep
 /// min_interval_s from the last cut and give way to a frame that is there or, by the frame period, due within
-/// min_interval_s.
+/// min_interval_s. In Frames mode, when frames stay away, a packet without one is cut every 5 s: the IMU samples do not
+/// pile up, and whoever reads the steps learns that nothing is seen.
 ///
 /// Single-threaded and deterministic. Memory is bounded by the window, the delay of the IMU and, in Frames mode, the
-/// IMU samples of the longest gap between frames. Before the first packet at most 20 s of IMU are kept.
+/// IMU samples of 5 s. Before the first packet 20 to 40 s of IMU are kept.
 class Packetizer {
  public:
   /// Uses the rig's first event camera (Events, Fused) and first frame camera (Frames, Fused); InputError when it lacks
-  /// one or the intervals contradict each other.
-  Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config);
+  /// one or the intervals contradict each other. Counts on from so_far.
+  Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config, const PacketizerCounters& so_far = {});
 
   /// The next measurement of a Dataset: in the order of the recorded stamps, each on its own clock.
   void add(Measurement measurement);
@@ -70,6 +71,7 @@ class Packetizer {
   void make_packets(Timestamp complete_until);
   std::optional<Cut> next_cut(Timestamp complete_until) const;
   Timestamp next_event_cut() const;
+  Timestamp frames_given_up() const;
   void make_packet(const Cut& cut);
   void take_events(Packet& packet);
   void drop_overflow();

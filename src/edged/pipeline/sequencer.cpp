@@ -113,8 +113,4 @@ std::optional<Measurement> Sequencer::pop_events(Timestamp end) {
   return part;
 }
 
-bool Sequencer::ended() const {
-  return finished_ && events_.waiting.empty() && frames_.waiting.empty() && imu_.waiting.empty();
-}
-
 }  // namespace edged

@@ -35,7 +35,9 @@ class Sequencer {
   /// The next measurement, a batch of events up to the next other one; nothing as long as another may precede it.
   std::optional<Measurement> next();
   /// After finish(), and all has gone out.
-  bool ended() const;
+  bool ended() const { return finished_ && waiting() == 0; }
+  /// How many measurements have not gone out.
+  std::size_t waiting() const { return events_.waiting.size() + frames_.waiting.size() + imu_.waiting.size(); }
 
  private:
   template <typename T>

@@ -12,6 +12,7 @@ namespace edged {
 namespace {
 
 constexpr Duration kKept = std::chrono::seconds(20);
+constexpr Duration kBack = std::chrono::seconds(1);
 constexpr Duration kLongest = std::chrono::seconds(1);  // of a prediction: the IMU alone drifts by metres soon
 
 /// The last of what propagates from `start`, which is at the first sample.
@@ -24,7 +25,8 @@ NavState propagated(const NavState& start, std::span<const ImuSample> samples) {
 void StatePrediction::add(const ImuSample& sample) {
   const std::lock_guard lock(mutex_);
   if (!is_plausible(sample.t) || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
-  if (!imu_.empty() && std::chrono::abs(sample.t - imu_.back().t) > kKept) {  // another clock, or a damaged stamp
+  const Duration ahead = imu_.empty() ? Duration(0) : sample.t - imu_.back().t;
+  if (ahead > kKept || ahead < -kBack) {  // another clock, or a damaged stamp
     imu_.clear();
     states_.clear();
   }

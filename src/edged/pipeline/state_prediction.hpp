@@ -16,7 +16,7 @@ namespace edged {
 class StatePrediction {
  public:
   /// Samples in time order; one that is not, or holds what is no number, is passed over; after a jump of more than 20 s
-  /// either way it begins anew. Without an estimate for long, those of the last 20 to 40 s are kept.
+  /// ahead or 1 s back it begins anew. Without an estimate for long, those of the last 20 to 40 s are kept.
   void add(const ImuSample& sample);
 
   /// The newest estimate; nothing when there is none to go by.

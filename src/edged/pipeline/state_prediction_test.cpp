@@ -86,7 +86,7 @@ TEST(StatePrediction, PassesOverSamplesThatAreNoneOrOutOfOrder) {
 
 TEST(StatePrediction, GoesOnAfterAStampFarAheadOrAClockThatWasSetBack) {
   StatePrediction prediction;
-  for (const double jump_s : {3600.0, -100.0}) {
+  for (const double jump_s : {3600.0, -100.0, 5.0}) {
     prediction.add(sample(jump_s));
     for (int i = 0; i <= 100; ++i) prediction.add(sample(0.005 * i));
     prediction.correct(true_state(0.25));

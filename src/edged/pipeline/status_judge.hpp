@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "edged/estimator/estimator.hpp"
 #include "edged/options.hpp"
@@ -21,6 +22,8 @@ class StatusJudge {
 
   /// Of a packet at t; while the estimator has not started, Initializing before its first start and Lost after.
   TrackingStatus judge(const EstimatorResult& result, bool started, Timestamp t);
+  /// The estimate has been ended from outside.
+  void lose(std::string reason) { reason_ = std::move(reason); }
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
 

@@ -20,31 +20,22 @@ constexpr std::size_t kMostInBatch = 65536;
 
 template <typename T>
 void ArrivalQueue<T>::push(T item) {
-  if (suspect_) {
-    T suspect = std::move(*suspect_);
-    suspect_.reset();
-    if (item.t > suspect.t - kJump) {
-      insert(std::move(suspect));
-    } else {
-      repairs_.add(subject_ + ": stamp far ahead, dropped",
-                   fmt::format("{}: stamp {} s is followed by {} s", subject_, format_seconds(suspect.t),
-                               format_seconds(item.t)));
-    }
-  }
-  if (!last_ || item.t - newest_ > kJump) {
-    suspect_ = std::move(item);
-  } else {
-    insert(std::move(item));
-  }
+  gate_.push(
+      std::move(item), [this](T passed) { insert(std::move(passed)); },
+      [this](const T& dropped, Timestamp next) {
+        repairs_.add(subject_ + ": stamp far ahead, dropped",
+                     fmt::format("{}: stamp {} s is followed by {} s", subject_, format_seconds(dropped.t),
+                                 format_seconds(next)));
+      });
 }
 
 template <typename T>
 void ArrivalQueue<T>::push(std::span<const T> items) {
   while (!items.empty()) {
-    const std::size_t count = count_in_order(items);
+    const std::size_t count = gate_.push_first(items.first(count_in_order(items)));
     if (count > 0) {
       sorted_.insert(sorted_.end(), items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count));
-      last_ = newest_ = items[count - 1].t;
+      last_ = items[count - 1].t;
     } else {
       push(items.front());
     }
@@ -52,23 +43,21 @@ void ArrivalQueue<T>::push(std::span<const T> items) {
   }
 }
 
-/// How many of the first items continue the stream, so that nothing has to be judged.
+/// How many of the first items follow one another and what came before.
 template <typename T>
 std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items) const {
-  if (suspect_ || !last_ || !stamps_repeat_) return 0;
+  if (!stamps_repeat_) return 0;
   std::size_t count = 0;
-  for (Timestamp before = std::max(newest_, handed_out_); count < items.size(); ++count) {
-    const Timestamp t = items[count].t;
-    if (t < before || t - newest_ > kJump) break;
-    before = t;
+  for (Timestamp before = std::max(newest(), handed_out_); count < items.size(); ++count) {
+    if (items[count].t < before) break;
+    before = items[count].t;
   }
   return count;
 }
 
 template <typename T>
 void ArrivalQueue<T>::finish() {
-  if (suspect_) insert(std::move(*suspect_));
-  suspect_.reset();
+  gate_.finish([this](T passed) { insert(std::move(passed)); });
 }
 
 template <typename T>
@@ -97,14 +86,13 @@ void ArrivalQueue<T>::insert(T item) {
     repairs_.add(subject_ + ": " + kind, fmt::format("{}: stamp {} s: {}", subject_, format_seconds(t), kind));
   };
   if (t < handed_out_) return repair("out of order, dropped");
-  if (t > newest_ || (stamps_repeat_ && t == newest_)) {
-    newest_ = t;
+  if (t > newest() || (stamps_repeat_ && t == newest())) {
     sorted_.push_back(std::move(item));
     return;
   }
   const auto place =
       std::upper_bound(sorted_.begin(), sorted_.end(), t, [](Timestamp a, const T& b) { return a < b.t; });
-  const bool repeated = t == newest_ || (place != sorted_.begin() && std::prev(place)->t == t);
+  const bool repeated = t == newest() || (place != sorted_.begin() && std::prev(place)->t == t);
   if (repeated && !stamps_repeat_) return repair("duplicate stamp");
   repair("out of order, sorted in");
   sorted_.insert(place, std::move(item));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/jump_gate.hpp"
 #include "edged/core/stream_order.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/measurement.hpp"
@@ -47,8 +48,8 @@ class ArrivalQueue {
   }
 
  private:
-  static constexpr Duration kJump = std::chrono::seconds(10);
   void insert(T item);
+  Timestamp newest() const { return gate_.newest().value_or(Timestamp::min()); }
   std::size_t count_in_order(std::span<const T> items) const;
 
   std::string subject_;
@@ -56,9 +57,8 @@ class ArrivalQueue {
   std::size_t max_held_;
   Repairs& repairs_;
   std::deque<T> sorted_;
-  std::optional<T> suspect_;  ///< far ahead of those before, or the first of all
+  JumpGate<T> gate_{true};
   std::optional<Timestamp> last_;
-  Timestamp newest_ = Timestamp::min();
   Timestamp handed_out_ = Timestamp::min();  ///< what is before comes too late
 };
 

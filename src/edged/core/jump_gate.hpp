@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Keeps one damaged stamp from making all that follows it late.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "edged/core/time.hpp"
+
+namespace edged {
+
+/// Items of one stream, T with a member `Timestamp t`, within 146 years of zero, go through it one by one. One far
+/// ahead of all before waits until another confirms it; when the next contradicts it, it is dropped.
+template <typename T>
+class JumpGate {
+ public:
+  static constexpr Duration kJump = std::chrono::seconds(10);
+
+  /// first_waits: the first of all has to be confirmed as well.
+  explicit JumpGate(bool first_waits) : first_waits_(first_waits) {}
+
+  /// pass(T) is given what goes on, drop(T, Timestamp) what is dropped and the stamp that contradicts it.
+  template <typename Pass, typename Drop>
+  void push(T item, Pass pass, Drop drop) {
+    if (waiting_) {
+      T before = *std::exchange(waiting_, std::nullopt);
+      if (item.t > before.t - kJump) {
+        let_through(std::move(before), pass);
+      } else {
+        drop(std::move(before), item.t);
+      }
+    }
+    if (is_far_ahead(item.t)) {
+      waiting_ = std::move(item);
+    } else {
+      let_through(std::move(item), pass);
+    }
+  }
+
+  /// Many at once: how many of the first go on as they are.
+  std::size_t push_first(std::span<const T> items) {
+    std::size_t count = 0;
+    for (; count < items.size() && !waiting_ && !is_far_ahead(items[count].t); ++count) {
+      newest_ = std::max(newest_.value_or(items[count].t), items[count].t);
+    }
+    return count;
+  }
+
+  /// Another stream, on the same clock as far as it is known, has come to t: what waits near it is confirmed, and what
+  /// comes near it is not far ahead.
+  template <typename Pass>
+  void confirm(Timestamp t, Pass pass) {
+    heard_ = std::max(heard_, t);
+    if (waiting_ && std::chrono::abs(waiting_->t - t) <= kJump) finish(pass);
+  }
+
+  /// Nothing more will come.
+  template <typename Pass>
+  void finish(Pass pass) {
+    if (waiting_) let_through(*std::exchange(waiting_, std::nullopt), pass);
+  }
+
+  bool waits() const { return waiting_.has_value(); }
+  /// Of what went on.
+  std::optional<Timestamp> newest() const { return newest_; }
+
+ private:
+  bool is_far_ahead(Timestamp t) const { return newest_ ? t - std::max(*newest_, heard_) > kJump : first_waits_; }
+  template <typename Pass>
+  void let_through(T item, Pass& pass) {
+    const Timestamp t = item.t;
+    pass(std::move(item));
+    newest_ = std::max(newest_.value_or(t), t);
+  }
+
+  bool first_waits_;
+  std::optional<T> waiting_;
+  std::optional<Timestamp> newest_;
+  Timestamp heard_ = Timestamp::min();
+};
+
+}  // namespace edged

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/core/jump_gate.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <string>
+#include <vector>
+
+namespace edged {
+namespace {
+
+struct Item {
+  Timestamp t;
+};
+
+Item item(int s) { return {timestamp_from_seconds(s)}; }
+
+/// A gate, and what became of what it was given: "1 2 -3600 3", dropped ones with a minus.
+struct Gate {
+  JumpGate<Item> gate;
+  std::string told = {};
+
+  void tell(const char* sign, const Item& i) { told += fmt::format("{}{} ", sign, to_seconds(i.t)); }
+  auto pass() {
+    return [this](const Item& i) { tell("", i); };
+  }
+  Gate& push(std::initializer_list<int> stamps) {
+    for (const int s : stamps) gate.push(item(s), pass(), [this](const Item& i, Timestamp) { tell("-", i); });
+    return *this;
+  }
+};
+
+TEST(JumpGate, DropsOneStampFarAheadAndKeepsAGapThatIsConfirmed) {
+  EXPECT_EQ(Gate{JumpGate<Item>(false)}.push({1, 2, 3600, 3, 4}).told, "1 2 -3600 3 4 ");
+  EXPECT_EQ(Gate{JumpGate<Item>(false)}.push({1, 2, 3600, 3601}).told, "1 2 3600 3601 ");
+  EXPECT_EQ(Gate{JumpGate<Item>(false)}.push({1, 2, 3600, 7200, 3}).told, "1 2 3600 -7200 3 ");
+}
+
+TEST(JumpGate, TheFirstOfAllWaitsOnlyWhereItIsTold) {
+  EXPECT_EQ(Gate{JumpGate<Item>(true)}.push({3600, 1, 2}).told, "-3600 1 2 ");
+  EXPECT_EQ(Gate{JumpGate<Item>(false)}.push({3600}).told, "3600 ");
+}
+
+TEST(JumpGate, GivesWhatWaitsAtTheEnd) {
+  Gate gate{JumpGate<Item>(false)};
+  gate.push({1, 3600});
+  EXPECT_TRUE(gate.gate.waits());
+  gate.gate.finish(gate.pass());
+  EXPECT_EQ(gate.told, "1 3600 ");
+}
+
+TEST(JumpGate, AnotherStreamConfirmsWhatIsNearIt) {
+  Gate gate{JumpGate<Item>(false)};
+  gate.push({1, 100});
+  gate.gate.confirm(timestamp_from_seconds(2), gate.pass());
+  EXPECT_EQ(gate.told, "1 ");
+  gate.gate.confirm(timestamp_from_seconds(99), gate.pass());
+  EXPECT_EQ(gate.told, "1 100 ");
+  gate.gate.confirm(timestamp_from_seconds(200), gate.pass());
+  gate.push({201});
+  EXPECT_EQ(gate.told, "1 100 201 ");
+}
+
+TEST(JumpGate, TakesManyAtOnceUpToTheFirstThatIsFarAhead) {
+  JumpGate<Item> gate(false);
+  const std::vector<Item> items{item(1), item(2), item(3600), item(3)};
+  EXPECT_EQ(gate.push_first(items), 2U);
+  EXPECT_EQ(gate.newest(), timestamp_from_seconds(2));
+}
+
+}  // namespace
+}  // namespace edged
