@@ -7,6 +7,7 @@ Environment: EDGED_BUILD, the build folder that is installed; CMAKE, CXX, PYTHON
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -14,6 +15,7 @@ import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 CONSUMER = SOURCE / "tests" / "consumer"
+TUTORIAL = SOURCE / "docs" / "tutorial.md"
 
 
 def call(*command, **options):
@@ -68,6 +70,21 @@ class Installed(unittest.TestCase):
         told = call(build / "fly", env=rigs)
         self.assertIn("Good, ", told)
         self.assertNotIn(" 0 rigs", told)
+
+    def test_the_tutorial_builds_and_runs_as_it_stands(self):
+        text, project = TUTORIAL.read_text(), self.folder / "tutorial"
+        project.mkdir()
+        for language, file in (("cmake", "CMakeLists.txt"), ("cpp", "my_robot.cpp"), ("yaml", "my_head.yaml")):
+            listings = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+            self.assertTrue(listings, language)
+            (project / file).write_text("\n".join(listings))
+        build = project / "build"
+        call(os.environ["CMAKE"], "-S", project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-G", "Ninja",
+             f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror", env=self.environment)
+        call(os.environ["CMAKE"], "--build", build, env=self.environment)
+        told = call(build / "my_robot", env=self.environment, cwd=project)
+        self.assertRegex(told, r"no pose: \w+")
+        self.assertRegex(told, r" m/s  Good\nlens at .*, 0 events came too late\n$")
 
     def test_a_project_takes_it_in_as_sources(self):
         # Configured only: to build the whole method once more would take minutes.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The examples, and the listing of docs/python.md, run."""
+"""The examples, and the listings of docs/python.md and docs/tutorial.md, run."""
 import pathlib
 import re
 import subprocess
@@ -32,9 +32,22 @@ def test_a_run_is_drawn(tmp_path):
     assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
 
 
+def listings_of(page, language):
+    found = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
+    assert found
+    return found
+
+
+def test_the_tutorial_runs_as_it_stands(tmp_path):
+    (tmp_path / "my_head.yaml").write_text("\n".join(listings_of("tutorial.md", "yaml")))
+    (tmp_path / "tutorial.py").write_text("\n".join(listings_of("tutorial.md", "python")))
+    told = run(tmp_path / "tutorial.py", cwd=tmp_path).splitlines()
+    assert "no pose: " in told[0]
+    assert told[1].endswith(", GOOD")
+    assert re.fullmatch(r"\d{2,} landmarks; left out: {}", told[-1])
+
+
 def test_the_listing_of_the_documentation_runs(tmp_path):
-    listings = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
-    assert listings
-    for number, listing in enumerate(listings):
+    for number, listing in enumerate(listings_of("python.md", "python")):
         (tmp_path / f"listing{number}.py").write_text(listing)
         assert "Good" in run(tmp_path / f"listing{number}.py", cwd=tmp_path)

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "edged/core/time.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 
