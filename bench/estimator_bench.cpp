@@ -34,7 +34,7 @@ Window full_window(TestWorld& world) {
     state.pose = to_block(world.T_W_B(t) * SE3(so3::exp({0.002, -0.001, 0.003}), {0.005, -0.003, 0.002}));
     Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
     state.keyframe = i < kKeyframes;
-    if (i > 0) state.imu = Preintegration(input.imu, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), world.noise());
+    if (i > 0) state.imu = input.motion;
     window.add_observations(window.add_state(std::move(state)), input.observations);
   }
   const auto first = window.states.begin();

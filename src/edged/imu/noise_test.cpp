@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/imu/noise.hpp"
+#include "edged/imu_noise.hpp"
 
 #include <gmock/gmock.h>
 
