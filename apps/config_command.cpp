@@ -9,6 +9,7 @@
 #include <string>
 
 #include "config_source.hpp"
+#include "edged/core/check.hpp"
 #include "exit_code.hpp"
 
 namespace edged {
@@ -35,17 +36,27 @@ int run_config(const ConfigOptions& options) {
     return kExitOk;
   }
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::size_t passed_over = 0;
   for (const ConfigField& field : fields.all()) {
     if (field.key.find(options.filter) == std::string::npos) continue;
-    if (!options.json) print_text(field);
+    const bool shown = !options.filter.empty() || !field.expert;
+    if (!options.json && shown) print_text(field);
+    passed_over += shown ? 0 : 1;
     list.push_back({{"key", field.key},
                     {"type", field.type},
                     {"unit", field.unit},
                     {"range", field.range},
                     {"default", field.default_value},
-                    {"effect", field.effect}});
+                    {"effect", field.effect},
+                    {"expert", field.expert}});
   }
-  if (options.json) fmt::print("{}\n", list.dump(2));
+  if (options.json) {
+    fmt::print("{}\n", list.dump(2));
+  } else if (list.empty()) {
+    throw InputError::format("no option's key contains '{}'; `edged config` without a word lists them", options.filter);
+  } else if (passed_over > 0) {
+    fmt::print("and {} for who works on the method: edged config expert\n", passed_over);
+  }
   return kExitOk;
 }
 
@@ -53,8 +64,9 @@ int run_config(const ConfigOptions& options) {
 
 void add_config_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ConfigOptions>();
-  CLI::App* config = app.add_subcommand("config", "List every option: key, default, type, range, unit and effect");
-  config->add_option("FILTER", options->filter, "Only options whose key contains this text");
+  CLI::App* config = app.add_subcommand("config", "List the options: key, default, type, range, unit and effect");
+  config->add_option("FILTER", options->filter,
+                     "All options whose key contains this text; `expert`: those for who works on the method");
   CLI::Option* yaml = config->add_flag("--yaml", options->yaml, "Print a complete file for --config instead");
   config->add_flag("--json", options->json, "Print json instead of text")->excludes(yaml);
   config->footer("Example:\n  edged config --yaml > mine.yaml   # edit, then: edged run RECORDING --config mine.yaml");

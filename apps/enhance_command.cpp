@@ -99,7 +99,7 @@ class RunUpTo {
   Moment moment(Step step) const {
     if (step.event_frame.empty()) {
       throw InputError::format(
-          "{}: no events to draw at {} s: {} in the last {} s, and a frame needs min_events_per_pixel = {} per pixel; "
+          "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per pixel; "
           "choose another --at",
           options_.source.recording, options_.at_s, step.events.size(), config_.packets.max_age_s,
           config_.min_events_per_pixel);
@@ -249,7 +249,7 @@ void add_enhance_command(CLI::App& app, std::function<int()>& chosen) {
   enhance->add_flag("--quiet", options->quiet, "No status line");
   enhance->footer(
       "Example:\n  edged enhance sim:room --at 5 --out /tmp/steps --set enhance.clahe_clip=4 --set "
-      "enhance.erosion_px=3");
+      "expert.enhance.erosion_px=3");
   enhance->callback([options, &chosen] { chosen = [options] { return run_enhance(*options); }; });
 }
 

@@ -97,7 +97,7 @@ class Run(WithFlight):
         self.assertIn("events.txt", (out / "run.log").read_text())
 
     def test_enhance_draws_every_step_and_a_sheet(self):
-        result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "enhance.erosion_px=3")
+        result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "expert.enhance.erosion_px=3")
         self.assertEqual(result.returncode, 0, result.stderr)
         names = sorted(file.name.partition("_")[2] for file in self.folder.iterdir())
         for step in ("events_without_compensation", "event_frame_motion_compensated", "gaussian_blur", "clahe",
@@ -116,7 +116,7 @@ class Run(WithFlight):
 
     def test_contradicting_options_are_refused_with_the_reason(self):
         self.assert_refused(edged("run", self.flight, "--out", self.folder / "run", "enhance.method=canny",
-                                  "enhance.erosion_px=3"), "enhance.erosion_px", "one pixel wide")
+                                  "expert.enhance.erosion_px=3"), "expert.enhance.erosion_px", "one pixel wide")
 
     def assert_readable(self, out):
         """What a run wrote until it ended anyhow: complete lines, times that increase. Returns the number of poses."""

@@ -224,6 +224,15 @@ class Config(WithFolder):
             self.assertTrue(option["effect"], option["key"])
             self.assertIn(option["key"], edged("config", option["key"]).stdout)
 
+    def test_options_for_experts_are_shown_when_asked_for(self):
+        few = edged("config").stdout
+        self.assertIn("estimator.keyframes = ", few)
+        self.assertNotIn("expert.", few)
+        self.assertIn("edged config expert", few)
+        self.assertIn("expert.estimator.recent_states = ", edged("config", "expert").stdout)
+        self.assert_refused(edged("config", "sonar"), "'sonar'")
+        self.assert_refused(edged("run", "sim:room", "--set", "estimator.recent_states=3"), "expert.estimator.recent_states")
+
     def test_the_printed_yaml_is_a_valid_config(self):
         file = self.folder / "all.yaml"
         file.write_text(edged("config", "--yaml").stdout)

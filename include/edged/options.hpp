@@ -81,6 +81,9 @@ struct OdometryConfig {
 
   /// Throws InputError with the reason when an option is out of its range or contradicts another.
   void validate() const;
+
+ private:
+  void declare(ConfigFields& fields);
 };
 
 /// By how much the measurements of a sensor may lag behind the newest of all, stamp against stamp [s]. A sensor that

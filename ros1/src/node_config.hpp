@@ -32,7 +32,7 @@ struct NodeConfig {
 };
 
 /// Sets what `parameters`, the tree of the private ones, holds; `~options/packets/max_age_s` is the option
-/// packets.max_age_s. Throws InputError that names the parameter, with the nearest known one for a typing error.
+/// expert.packets.max_age_s. Throws InputError that names the parameter, with the nearest known one for a typing error.
 void set_parameters(NodeConfig& config, XmlRpc::XmlRpcValue parameters);
 
 }  // namespace edged::ros1

@@ -150,10 +150,33 @@ std::string yaml_comment(const ConfigField& field) {
 
 }  // namespace
 
+void ConfigFields::expert_but(std::span<const std::string_view> names, const std::function<void()>& declare) {
+  audience_ = Audience{names, prefix_.size()};
+  declare();
+  audience_.reset();
+}
+
+bool ConfigFields::is_expert(std::string_view name) const {
+  if (!audience_) return false;
+  return std::ranges::find(audience_->everyone, prefix_.substr(audience_->prefix) + std::string(name)) ==
+         audience_->everyone.end();
+}
+
+std::string ConfigFields::key_of(std::string_view name) const {
+  std::string key = prefix_ + std::string(name);
+  if (is_expert(name)) key.insert(audience_->prefix, "expert.");
+  return key;
+}
+
+void ConfigFields::experts_last() {
+  std::ranges::stable_partition(fields_, [](const ConfigField& field) { return !field.expert; });
+}
+
 void ConfigFields::add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,
                              std::function<std::string()> get, std::function<void(const std::string&)> set) {
   const std::string default_value = get();
-  ConfigField field{.key = prefix_ + std::string(name),
+  ConfigField field{.key = key_of(name),
+                    .expert = is_expert(name),
                     .type = std::move(type),
                     .unit = std::string(doc.unit),
                     .range = numeric ? range_text(doc) : "any",
@@ -166,14 +189,14 @@ void ConfigFields::add_field(std::string_view name, std::string type, const Fiel
 }
 
 void ConfigFields::add(std::string_view name, bool& value, const FieldDoc& doc) {
-  const std::string key = prefix_ + std::string(name);
+  const std::string key = key_of(name);
   add_field(
       name, "bool", doc, false, [&value] { return value ? "true" : "false"; },
       [&value, key](const std::string& text) { value = parse_bool(key, text); });
 }
 
 void ConfigFields::add(std::string_view name, int& value, const FieldDoc& doc) {
-  const std::string key = prefix_ + std::string(name);
+  const std::string key = key_of(name);
   check_range(key, value, doc);
   add_field(
       name, "int", doc, true, [&value] { return fmt::format("{}", value); },
@@ -183,7 +206,7 @@ void ConfigFields::add(std::string_view name, int& value, const FieldDoc& doc) {
 }
 
 void ConfigFields::add(std::string_view name, double& value, const FieldDoc& doc) {
-  const std::string key = prefix_ + std::string(name);
+  const std::string key = key_of(name);
   check_range(key, value, doc);
   add_field(
       name, "number", doc, true,
@@ -201,7 +224,7 @@ void ConfigFields::add(std::string_view name, std::string& value, const FieldDoc
 void ConfigFields::add_choice(std::string_view name, const std::vector<std::string>& names,
                               std::function<std::size_t()> get, std::function<void(std::size_t)> set,
                               const FieldDoc& doc) {
-  const std::string key = prefix_ + std::string(name);
+  const std::string key = key_of(name);
   const std::string choices = fmt::format("{}", fmt::join(names, " | "));
   add_field(
       name, choices, doc, false, [get = std::move(get), names] { return names[get()]; },

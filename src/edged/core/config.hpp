@@ -8,6 +8,8 @@
 #include <functional>
 #include <initializer_list>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,7 +27,8 @@ struct FieldDoc {
 
 /// One option of a config struct, bound to its variable.
 struct ConfigField {
-  std::string key;            ///< dotted, e.g. "frontend.tracker.max_features"
+  std::string key;            ///< dotted, e.g. "estimator.keyframes"
+  bool expert = false;        ///< its key begins with "expert.": may change with any version
   std::string type;           ///< "bool", "int", "number", "text" or "a | b | c"
   std::string unit;           ///< "" where it has none
   std::string range;          ///< e.g. "0.1 .. 10"
@@ -43,8 +46,12 @@ class ConfigFields {
   static ConfigFields of(Config& config) {
     ConfigFields fields;
     config.visit(fields);
+    fields.experts_last();
     return fields;
   }
+
+  /// Makes `declare` declare options for experts, their keys prefixed with "expert.", but for those named.
+  void expert_but(std::span<const std::string_view> names, const std::function<void()>& declare);
 
   void add(std::string_view name, bool& value, const FieldDoc& doc);
   void add(std::string_view name, int& value, const FieldDoc& doc);
@@ -97,7 +104,17 @@ class ConfigFields {
   void add_choice(std::string_view name, const std::vector<std::string>& names, std::function<std::size_t()> get,
                   std::function<void(std::size_t)> set, const FieldDoc& doc);
 
+  /// What is declared within expert_but.
+  struct Audience {
+    std::span<const std::string_view> everyone;  ///< names of options that are not for experts
+    std::size_t prefix;                          ///< length of the prefix outside
+  };
+  bool is_expert(std::string_view name) const;
+  std::string key_of(std::string_view name) const;
+  void experts_last();
+
   std::string prefix_;
+  std::optional<Audience> audience_;
   std::vector<ConfigField> fields_;
 };
 

@@ -77,6 +77,38 @@ TEST_F(Config, SetsEveryKindOfOptionFromText) {
   EXPECT_EQ(config.inner.edge, Edge::Sobel);
 }
 
+struct ForFew {
+  Inner inner;
+  int depth = 3;
+  void visit(ConfigFields& fields) {
+    static constexpr std::string_view kForEveryone[] = {"inner.edge"};
+    fields.expert_but(kForEveryone, [&] {
+      fields.group("inner", inner);
+      fields.add("depth", depth, {.max = 5});
+    });
+  }
+};
+
+TEST_F(Config, OptionsForExpertsComeLastUnderKeysThatSaySo) {
+  struct {
+    ForFew few;
+    bool late = false;
+    void visit(ConfigFields& fields) {
+      fields.group("few", few);
+      fields.add("late", late, {});
+    }
+  } outer;
+  ConfigFields of_outer = ConfigFields::of(outer);
+  std::vector<std::string> keys;
+  for (const ConfigField& field : of_outer.all()) keys.push_back(field.key);
+  EXPECT_THAT(keys, testing::ElementsAre("few.inner.edge", "late", "few.expert.inner.count", "few.expert.depth"));
+  of_outer.set("few.expert.inner.count=9");
+  EXPECT_EQ(outer.few.inner.count, 9);
+  EXPECT_THAT(error_of([&] { of_outer.set("few.inner.count=9"); }),
+              HasSubstr("did you mean 'few.expert.inner.count'?"));
+  EXPECT_THAT(error_of([&] { of_outer.set("few.expert.depth=9"); }), HasSubstr("option 'few.expert.depth' is 9"));
+}
+
 TEST_F(Config, RefusesANumberOutsideItsRangeAndNamesTheRange) {
   EXPECT_THAT(error_of([&] { fields.set("inner.count=101"); }),
               AllOf(HasSubstr("inner.count"), HasSubstr("101"), HasSubstr("1 .. 100"), HasSubstr("px")));

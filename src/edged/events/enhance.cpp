@@ -138,30 +138,35 @@ void EnhanceConfig::visit(ConfigFields& fields) {
              {"", 0, 4, "beta of Algorithm 1: share of the edge map; sums above 1 saturate"});
 }
 
-void EnhanceConfig::validate(const std::string& group) const {
-  const auto refuse = [&group](bool contradiction, const char* text) {
-    if (contradiction) throw InputError(fmt::format(fmt::runtime(text), fmt::arg("g", group)));
+void EnhanceConfig::validate(const std::function<std::string(std::string_view)>& key) const {
+  const auto refuse = [&key](bool contradiction, std::string text) {
+    if (!contradiction) return;
+    for (std::size_t open; (open = text.find('{')) != std::string::npos;) {
+      const std::size_t close = text.find('}', open);
+      text.replace(open, close + 1 - open, key(std::string_view(text).substr(open + 1, close - open - 1)));
+    }
+    throw InputError(text);
   };
   refuse(erosion_px > 0 && erosion_px % 2 == 0,
-         "{g}.erosion_px is even, which would shift the edges by half a pixel: give an odd number, or 0 for none");
+         "{erosion_px} is even, which would shift the edges by half a pixel: give an odd number, or 0 for none");
   if (method == EdgeMethod::None) return;
   refuse(event_weight + edge_weight <= 0.0,
-         "{g}.event_weight and {g}.edge_weight are both 0, which leaves a black image: raise one of them");
+         "{event_weight} and {edge_weight} are both 0, which leaves a black image: raise one of them");
   refuse(method == EdgeMethod::Canny && erosion_px > 0,
-         "{g}.erosion_px with {g}.method = canny: Canny's edges are one pixel wide and erosion would delete them all; "
-         "set {g}.erosion_px = 0 or take sobel, scharr or laplacian");
+         "{erosion_px} with {method} = canny: Canny's edges are one pixel wide and erosion would delete them all; "
+         "set {erosion_px} = 0 or take sobel, scharr or laplacian");
   refuse(method == EdgeMethod::Clahe && erosion_px > 0,
-         "{g}.erosion_px with {g}.method = clahe: there is no edge map to thin; set {g}.erosion_px = 0 or take sobel, "
+         "{erosion_px} with {method} = clahe: there is no edge map to thin; set {erosion_px} = 0 or take sobel, "
          "scharr or laplacian");
   refuse(method == EdgeMethod::Canny && canny_low > canny_high,
-         "{g}.canny_low is above {g}.canny_high: every edge that starts must be one that can be followed; swap them");
+         "{canny_low} is above {canny_high}: every edge that starts must be one that can be followed; swap them");
   refuse(method == EdgeMethod::Clahe && clahe_clip <= 0.0,
-         "{g}.method = clahe with {g}.clahe_clip = 0: the equalisation is off; raise clahe_clip or set method = none");
+         "{method} = clahe with {clahe_clip} = 0: the equalisation is off; raise clahe_clip or set method = none");
   refuse(sharpening == Sharpening::Paper && clahe_clip <= 0.0,
-         "{g}.sharpening = paper with {g}.clahe_clip = 0: without equalisation clahe minus blur is zero; raise "
+         "{sharpening} = paper with {clahe_clip} = 0: without equalisation clahe minus blur is zero; raise "
          "clahe_clip or take sharpening = unsharp");
   refuse(sharpening != Sharpening::None && sharpen_lambda <= 0.0,
-         "{g}.sharpening with {g}.sharpen_lambda = 0 sharpens nothing: raise it, or set sharpening = none");
+         "{sharpening} with {sharpen_lambda} = 0 sharpens nothing: raise it, or set sharpening = none");
 }
 
 cv::Mat enhance(const cv::Mat& event_frame, const EnhanceConfig& config) {

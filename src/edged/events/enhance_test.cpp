@@ -213,15 +213,17 @@ struct Contradiction {
   std::function<void(EnhanceConfig&)> make;
 };
 
+std::string in_group(std::string_view key) { return "enhance." + std::string(key); }
+
 class RefusedEnhancement : public testing::TestWithParam<Contradiction> {};
 
 TEST_P(RefusedEnhancement, SaysWhy) {
   EnhanceConfig config;
   config.method = EdgeMethod::Sobel;
-  EXPECT_NO_THROW(config.validate());
+  EXPECT_NO_THROW(config.validate(in_group));
   GetParam().make(config);
   try {
-    config.validate("enhance");
+    config.validate(in_group);
     FAIL() << "accepted";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find(GetParam().says), std::string::npos) << e.what();
@@ -253,7 +255,7 @@ TEST(Enhance, AcceptsErosionOfThickEdges) {
     EnhanceConfig config;
     config.method = method;
     config.erosion_px = 3;
-    EXPECT_NO_THROW(config.validate());
+    EXPECT_NO_THROW(config.validate(in_group));
   }
 }
 

@@ -3,7 +3,9 @@
 // The options of event frames: how events are moved, drawn and enhanced.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "edged/core/config.hpp"
 
@@ -76,8 +78,8 @@ struct EnhanceConfig {
 
   void visit(ConfigFields& fields);
 
-  /// Throws InputError with the reason when options contradict each other. `group` is the prefix of the keys it names.
-  void validate(const std::string& group = "enhance") const;
+  /// Throws InputError with the reason when options contradict each other. key: of an option, by its name.
+  void validate(const std::function<std::string(std::string_view)>& key) const;
 };
 
 }  // namespace edged

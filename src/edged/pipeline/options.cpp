@@ -2,9 +2,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/options.hpp"
 
+#include <algorithm>
+
 #include "edged/core/check.hpp"
 
 namespace edged {
+namespace {
+
+/// What a user may have reason to change; all else is for who works on the method.
+constexpr std::string_view kForEveryone[] = {
+    "packets.events_per_pixel",
+    "packets.window_per_pixel",
+    "packets.max_interval_s",
+    "packets.min_interval_s",
+    "event_frame.interpolation",
+    "event_frame.depth",
+    "event_frame.blur_sigma_px",
+    "enhance.method",
+    "enhance.clahe_clip",
+    "enhance.sharpening",
+    "enhance.detect",
+    "enhance.track",
+    "alignment_gain",
+    "event_tracker.detector.max_features",
+    "event_tracker.klt.window_px",
+    "event_tracker.sigma_px",
+    "frame_tracker.detector.max_features",
+    "frame_tracker.klt.window_px",
+    "frame_tracker.sigma_px",
+    "keyframes.parallax_deg",
+    "keyframes.min_tracked_share",
+    "depth.source",
+    "depth.constant_m",
+    "depth.network.model",
+    "depth_factor.enabled",
+    "depth_factor.form",
+    "estimator.keyframes",
+    "estimator.iterations",
+    "estimator.noise_inflation",
+    "estimator.sigma_inflation",
+    "estimator.init_scale_sigma",
+    "estimator.calibration.rotation_sigma_deg",
+    "estimator.calibration.time_offset_sigma_ms",
+    "estimator.calibration.imu_sigma",
+    "estimator.landmarks.min_depth_m",
+    "estimator.landmarks.max_depth_m",
+    "estimator.landmarks.max_per_camera",
+    "status.degraded_after_s",
+    "status.lost_after_s",
+};
+
+}  // namespace
 
 OdometryConfig::OdometryConfig() {
   event_tracker.sigma_px = 1.5;      // the look of an event frame changes with the direction of motion,
@@ -12,6 +60,10 @@ OdometryConfig::OdometryConfig() {
 }
 
 void OdometryConfig::visit(ConfigFields& fields) {
+  fields.expert_but(kForEveryone, [&] { declare(fields); });
+}
+
+void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);
@@ -45,7 +97,10 @@ void OdometryConfig::visit(ConfigFields& fields) {
 void OdometryConfig::validate() const {
   OdometryConfig copy = *this;
   ConfigFields::of(copy);  // refuses what is out of its range
-  enhance.validate("enhance");
+  enhance.validate([](std::string_view name) {
+    const std::string key = "enhance." + std::string(name);
+    return std::ranges::find(kForEveryone, key) == std::end(kForEveryone) ? "expert." + key : key;
+  });
   if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
     throw InputError(
         "enhance.method with enhance.detect and enhance.track both off: nothing would use the enhanced frame; turn one "

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "edged/core/check.hpp"
@@ -12,6 +13,15 @@ namespace edged {
 namespace {
 
 TEST(OdometryConfig, ContradictsItselfInNoDefault) { EXPECT_NO_THROW(OdometryConfig().validate()); }
+
+TEST(OdometryConfig, MostOptionsAreForExpertsAndStandLast) {
+  OdometryConfig config;
+  const ConfigFields fields = ConfigFields::of(config);
+  const auto first_expert = std::ranges::find_if(fields.all(), &ConfigField::expert);
+  EXPECT_EQ(first_expert - fields.all().begin(), 39) << "a name in the list that is no option, or one declared anew";
+  EXPECT_TRUE(std::all_of(first_expert, fields.all().end(),
+                          [](const ConfigField& field) { return field.expert && field.key.starts_with("expert."); }));
+}
 
 TEST(OdometryConfig, RefusesAnEnhancementThatNothingUses) {
   OdometryConfig config;
@@ -32,7 +42,8 @@ TEST(OdometryConfig, NamesTheKeyOfAContradictionInsideAPart) {
     config.validate();
     FAIL() << "accepted";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("enhance.erosion_px"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("expert.enhance.erosion_px with enhance.method"), std::string::npos)
+        << e.what();
   }
 }
 
