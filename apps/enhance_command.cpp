@@ -99,7 +99,8 @@ class RunUpTo {
   Moment moment(Step step) const {
     if (step.event_frame.empty()) {
       throw InputError::format(
-          "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per pixel; "
+          "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per "
+          "pixel; "
           "choose another --at",
           options_.source.recording, options_.at_s, step.events.size(), config_.packets.max_age_s,
           config_.min_events_per_pixel);

@@ -47,10 +47,10 @@ Window full_window(TestWorld& world) {
   return window;
 }
 
-std::size_t count_sights(const Window& window) {
-  std::size_t sights = 0;
-  for (const auto& [id, feature] : window.features) sights += feature.anchor ? feature.seen.size() - 1 : 0;
-  return sights;
+std::size_t count_observations(const Window& window) {
+  std::size_t observations = 0;
+  for (const auto& [id, feature] : window.features) observations += feature.anchor ? feature.seen.size() - 1 : 0;
+  return observations;
 }
 
 struct Values {
@@ -72,19 +72,19 @@ void restore(Window& window, const Values& values) {
   for (auto& [id, feature] : window.features) feature.inverse_depth = *depth++;
 }
 
-/// range(0): solver iterations. Items are sights.
+/// range(0): solver iterations. Items are observations.
 void BM_SolveWindow(benchmark::State& state) {
   TestWorld world({.cameras = 2});
   Window window = full_window(world);
   const Values start = values_of(window);
-  const std::size_t sights = count_sights(window);
+  const std::size_t observations = count_observations(window);
   int iterations = 0;
   for (auto _ : state) {
     restore(window, start);
     iterations = solve(window, static_cast<int>(state.range(0))).iterations;
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * sights));
-  state.counters["sights"] = static_cast<double>(sights);
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * observations));
+  state.counters["observations"] = static_cast<double>(observations);
   state.counters["iterations"] = iterations;
 }
 
@@ -116,7 +116,7 @@ void BM_EstimatorAdd(benchmark::State& state) {
   for (int i = 1; i <= 300; ++i) packets.push_back(world.packet(i * kRecentStep_s, kRecentStep_s, i % 6 == 0));
   std::optional<Estimator> estimator;
   std::size_t next = packets.size();
-  double sights = 0.0;
+  double observations = 0.0;
   for (auto _ : state) {
     if (next == packets.size()) {
       state.PauseTiming();
@@ -125,10 +125,10 @@ void BM_EstimatorAdd(benchmark::State& state) {
       state.ResumeTiming();
     }
     benchmark::DoNotOptimize(estimator->add(packets[next++]).landmarks);
-    sights += static_cast<double>(count_sights(estimator->window()));
+    observations += static_cast<double>(count_observations(estimator->window()));
   }
   state.SetItemsProcessed(state.iterations());
-  state.counters["sights"] = sights / static_cast<double>(state.iterations());
+  state.counters["observations"] = observations / static_cast<double>(state.iterations());
 }
 
 BENCHMARK(BM_SolveWindow)->ArgName("iterations")->Arg(1)->Arg(4)->Arg(10)->Unit(benchmark::kMillisecond);

@@ -41,7 +41,7 @@ struct GrowingTrails {
     for (const Track& track : tracks) {
       const auto [place, is_new] = index.try_emplace(track.id, seen.trails.size());
       if (is_new) seen.trails.push_back({track.id, {}, {}, false});
-      seen.trails[place->second].sights.push_back({t, track.pixel, track.point, tracking});
+      seen.trails[place->second].observations.push_back({t, track.pixel, track.point, tracking});
     }
   }
 };
@@ -82,36 +82,37 @@ std::optional<Eigen::Vector2d> true_pixel(const TrackTruth& truth, const CameraT
   return T_W_C ? camera.image.project(T_W_C->inverse() * *trail.p_W) : std::nullopt;
 }
 
-std::string row(const TrackTruth& truth, const CameraTrails& camera, const Trail& trail, const Sight& sight) {
-  const Sight& first = trail.sights.front();
-  const auto pixel = true_pixel(truth, camera, trail, sight.t);
-  const auto before = true_pixel(truth, camera, trail, sight.t - kVelocityStep);
-  const auto after = true_pixel(truth, camera, trail, sight.t + kVelocityStep);
+std::string row(const TrackTruth& truth, const CameraTrails& camera, const Trail& trail,
+                const Observation& observation) {
+  const Observation& first = trail.observations.front();
+  const auto pixel = true_pixel(truth, camera, trail, observation.t);
+  const auto before = true_pixel(truth, camera, trail, observation.t - kVelocityStep);
+  const auto after = true_pixel(truth, camera, trail, observation.t + kVelocityStep);
   const auto T_W_C0 = truth.T_W_C(camera.camera, first.t);
   if (!pixel || !before || !after || !T_W_C0) return "";
-  const SE3 T_C_W = truth.T_W_C(camera.camera, sight.t)->inverse();
+  const SE3 T_C_W = truth.T_W_C(camera.camera, observation.t)->inverse();
   const Eigen::Vector3d p_C = T_C_W * *trail.p_W;
-  const Eigen::Vector2d error = sight.pixel - *pixel;
+  const Eigen::Vector2d error = observation.pixel - *pixel;
   const Eigen::Vector2d velocity = (*after - *before) / to_seconds(2 * kVelocityStep);
   const Eigen::Vector3d turned = so3::log(T_C_W.rotation() * T_W_C0->rotation());
   return fmt::format(
       "{},{},{},{:.6f},{:.4f},{:.4f},{:.3f},{:.3f},{:.2f},{:.2f},{:.5f},{:.5f},{:.4f},{:.3f},{:.6f},{:.6f},{:.6f},{:d},"
       "{:d}\n",
-      camera.camera.name, trail.id, to_ns(sight.t), to_seconds(sight.t - first.t), error.x(), error.y(), pixel->x(),
-      pixel->y(), velocity.x(), velocity.y(), p_C.x() / p_C.z(), p_C.y() / p_C.z(), p_C.z(), camera.image.mean_focal(),
-      turned.x(), turned.y(), turned.z(), trail.at_edge, sight.tracking);
+      camera.camera.name, trail.id, to_ns(observation.t), to_seconds(observation.t - first.t), error.x(), error.y(),
+      pixel->x(), pixel->y(), velocity.x(), velocity.y(), p_C.x() / p_C.z(), p_C.y() / p_C.z(), p_C.z(),
+      camera.image.mean_focal(), turned.x(), turned.y(), turned.z(), trail.at_edge, observation.tracking);
 }
 
 void write(const std::filesystem::path& file, const TrackTruth& truth, const std::vector<GrowingTrails>& cameras) {
   std::ofstream out(file);
   out << "# error: seen minus true pixel; x, y, velocity, bearing and depth are the true ones; turned: rotation vector "
-         "R_now_first of the camera since the first sight [rad]; edge: near the rim of what hides something\n"
+         "R_now_first of the camera since the first observation [rad]; edge: near the rim of what hides something\n"
          "camera,track,t_ns,age_s,error_x_px,error_y_px,x_px,y_px,velocity_x_px_s,velocity_y_px_s,bearing_x,bearing_y,"
          "depth_m,focal_px,turned_x,turned_y,turned_z,edge,tracking\n";
   for (const GrowingTrails& camera : cameras) {
     for (const Trail& trail : camera.seen.trails) {
       if (!trail.p_W) continue;
-      for (const Sight& sight : trail.sights) out << row(truth, camera.seen, trail, sight);
+      for (const Observation& observation : trail.observations) out << row(truth, camera.seen, trail, observation);
     }
   }
   out.close();
@@ -153,7 +154,7 @@ int run(const ErrorOptions& options) {
 
 int main(int argc, char** argv) {
   using namespace edged;
-  CLI::App app{"How far the tracker's corners are from their true places: one line a sight", "edged_tracks"};
+  CLI::App app{"How far the tracker's corners are from their true places: one line an observation", "edged_tracks"};
   ErrorOptions options;
   add_source_options(app, options.source);
   add_config_options(app, options.config);

@@ -16,7 +16,7 @@ namespace edged {
 namespace {
 
 constexpr double kMaxGap_s = 0.1;  // between poses that are interpolated
-constexpr std::size_t kFewestSights = 4;
+constexpr std::size_t kFewestObservations = 4;
 constexpr double kLeastParallax = 0.02;  // [rad]
 constexpr int kEdgeReach_px = 2;
 constexpr float kEdgeStep = 1.1F;  // ratio of depths
@@ -36,23 +36,23 @@ class SimulatedTruth final : public TrackTruth {
 
   void locate(CameraTrails& seen) const override {
     std::map<Timestamp, std::vector<Trail*>> born;
-    for (Trail& trail : seen.trails) born[trail.sights.front().t].push_back(&trail);
+    for (Trail& trail : seen.trails) born[trail.observations.front().t].push_back(&trail);
     Renderer renderer(seen.image, simulator_.scene());
     for (const auto& [t, trails] : born) {
       const SE3 T_W_C = *this->T_W_C(seen.camera, t);
       const Rendering& picture = renderer.render(T_W_C, to_seconds(t - offset_));
       for (Trail* trail : trails) {
         const double w = inverse_depth(picture, seen.image, *trail);
-        if (w > 0.0) trail->p_W = T_W_C * (trail->sights.front().point.homogeneous() / w);
+        if (w > 0.0) trail->p_W = T_W_C * (trail->observations.front().point.homogeneous() / w);
       }
     }
   }
 
  private:
-  /// At the first sight, between its four pixels: over a plane it is linear. At an edge that of the nearer side, which
-  /// owns it.
+  /// At the first observation, between its four pixels: over a plane it is linear. At an edge that of the nearer side,
+  /// which owns it.
   static double inverse_depth(const Rendering& picture, const CameraModel& image, Trail& trail) {
-    const Eigen::Vector2d pixel = trail.sights.front().pixel;
+    const Eigen::Vector2d pixel = trail.observations.front().pixel;
     const int x_0 = static_cast<int>(std::floor(pixel.x())), y_0 = static_cast<int>(std::floor(pixel.y()));
     const auto at = [&](int x, int y) {
       x = std::clamp(x, 0, image.width() - 1), y = std::clamp(y, 0, image.height() - 1);
@@ -94,10 +94,10 @@ class RecordedTruth final : public TrackTruth {
   void locate(CameraTrails& seen) const override {
     for (Trail& trail : seen.trails) {
       std::vector<View> views;
-      for (const Sight& sight : trail.sights) {
-        if (const auto pose = T_W_C(seen.camera, sight.t)) views.push_back({*pose, sight.point});
+      for (const Observation& observation : trail.observations) {
+        if (const auto pose = T_W_C(seen.camera, observation.t)) views.push_back({*pose, observation.point});
       }
-      if (views.size() < kFewestSights) continue;
+      if (views.size() < kFewestObservations) continue;
       if (const auto found = triangulate(views, kLeastParallax)) trail.p_W = found->p_W;
     }
   }

@@ -16,17 +16,17 @@
 namespace edged {
 
 /// A corner as it was seen in one image.
-struct Sight {
+struct Observation {
   Timestamp t;            ///< of the packet, on the IMU clock
   Eigen::Vector2d pixel;  ///< of the image that the tracker was given
   Eigen::Vector2d point;  ///< the same on the unit plane
   bool tracking;          ///< the odometry had an estimate
 };
 
-/// All sights of one corner, in time order.
+/// All observations of one corner, in time order.
 struct Trail {
   FeatureId id = 0;
-  std::vector<Sight> sights;
+  std::vector<Observation> observations;
   std::optional<Eigen::Vector3d> p_W;  ///< where it truly is, in the world of the true poses
   bool at_edge = false;                ///< near the rim of what hides something behind it: p_W may be either's
 };
@@ -54,12 +54,12 @@ class TrackTruth {
   }
 };
 
-/// The exact motion and scene: a corner is the scene's point that its first sight shows. Throws InputError where
+/// The exact motion and scene: a corner is the scene's point that its first observation shows. Throws InputError where
 /// something in the scene moves.
 std::unique_ptr<TrackTruth> simulated_truth(const SimulatorConfig& config);
 
-/// The poses that came with a recording: a corner is where the rays of all its sights meet; sights that are few, or
-/// hardly differ in direction, tell no place.
+/// The poses that came with a recording: a corner is where the rays of all its observations meet; observations that are
+/// few, or hardly differ in direction, tell no place.
 std::unique_ptr<TrackTruth> recorded_truth(const GroundTruth& truth, const Rig& rig);
 
 }  // namespace edged

@@ -3,7 +3,11 @@
 # What edged::edged needs, here and where it is installed. Every library comes from Debian 12; scripts/setup.sh installs
 # them.
 find_package(Eigen3 3.4 REQUIRED)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs video features2d calib3d dnn)
+set(edged_opencv core imgproc imgcodecs video features2d calib3d)
+if(EDGED_DEPTH_NETWORK)
+  list(APPEND edged_opencv dnn)
+endif()
+find_package(OpenCV 4.6 REQUIRED COMPONENTS ${edged_opencv})
 find_package(Ceres 2.1 REQUIRED)
 find_package(opengv REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)

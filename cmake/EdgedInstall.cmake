@@ -9,7 +9,10 @@ if(EDGED_APPS)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/edged COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/edged COMPONENT program)
+if(EDGED_DEPTH_NETWORK)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/depth DESTINATION ${CMAKE_INSTALL_DATADIR}/edged COMPONENT program)
+endif()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/edged)
 install(EXPORT edged_edged NAMESPACE edged:: FILE edgedTargets.cmake DESTINATION ${package_folder}

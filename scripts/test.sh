@@ -18,10 +18,10 @@ case "${1:-}" in
 esac
 
 scripts/setup.sh "${tools[@]}"
+if [ "${#tools[@]}" -gt 0 ]; then scripts/tidy.sh; fi
 for preset in "${presets[@]}"; do
   echo "== $preset"
   cmake --preset "$preset" >/dev/null
-  if [ "$preset" = sanitize ]; then scripts/tidy.sh build/sanitize; fi
   cmake --build --preset "$preset"
   ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}"
 done

@@ -221,9 +221,9 @@ class Bench(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         for camera in ("events", "frames"):
             self.assertIn(f"## poster, fused: {camera}", result.stdout)
-        sights = script("tracks").read_tracks(next(self.folder.glob("*.csv")))
-        # Errors are counted from a corner's first sight on, and a frame moves a corner by far less than a pixel.
-        steps = [abs(track[1].error - track[0].error) for track in sights["frames"]]
+        observations = script("tracks").read_tracks(next(self.folder.glob("*.csv")))
+        # Errors are counted from a corner's first observation on, and a frame moves a corner by far less than a pixel.
+        steps = [abs(track[1].error - track[0].error) for track in observations["frames"]]
         self.assertGreater(len(steps), 20)
         self.assertLess(statistics.median(steps), 0.2)
 
@@ -231,16 +231,16 @@ class Bench(unittest.TestCase):
         tracks = script("tracks")
         late_s, turn_z = 2e-3, 0.01
 
-        def sight(k, start):
+        def observation(k, start):
             t = 0.05 * k
             velocity = complex(60 * math.cos(3 * t + start), 40 * math.sin(2 * t))
             bearing, turned = (0.3 * math.sin(start), 0.2 * math.cos(start)), (0.2 * math.sin(t), 0.1 * t, 0.0)
             lag = -late_s * velocity
             then = tracks.rotated(turned, [0.0, 0.0, 1.0])
             off = tracks.turn(bearing, 200.0, [turn_z * (now - was) for now, was in zip((0.0, 0.0, 1.0), then)])
-            return tracks.Sight(t, t, lag + off, 0j, velocity, bearing, 200.0, turned)
+            return tracks.Observation(t, t, lag + off, 0j, velocity, bearing, 200.0, turned)
 
-        systems = [tracks.normal_equations([tracks.regressors([sight(k, start) for k in range(20)])], ["late", "turn_z"])[0]
+        systems = [tracks.normal_equations([tracks.regressors([observation(k, start) for k in range(20)])], ["late", "turn_z"])[0]
                    for start in range(30)]
         found, explained = tracks.fit(systems)
         self.assertAlmostEqual(found[0], late_s, 6)

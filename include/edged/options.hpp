@@ -41,7 +41,7 @@ struct AlignmentConfig {
 /// How what a camera gives is weighed by what becomes of its tracks.
 struct HealthConfig {
   double time_constant_s = 0.3;  ///< of the running mean of the share of tracks that survive an image
-  double min_survival = 0.4;     ///< below it the camera's sights are ignored
+  double min_survival = 0.4;     ///< below it the camera's observations are ignored
   int min_event_corners = 40;    ///< kept on event frames where the standard frames carry all of theirs
 
   void visit(ConfigFields& fields);

@@ -31,7 +31,7 @@ struct NavState {
 /// Names one corner for as long as it is tracked; never reused, unique over all cameras.
 using FeatureId = std::uint64_t;
 
-/// A point of the world that the estimator has placed by the sights of a corner.
+/// A point of the world that the estimator has placed by the observations of a corner.
 struct Landmark {
   FeatureId id = 0;  ///< of the corner
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();

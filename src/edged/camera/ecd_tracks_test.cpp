@@ -27,12 +27,12 @@ constexpr std::size_t kMinObservations = 50;
 constexpr double kMinParallax = 0.03;                            // [rad]
 constexpr Duration kLongestGap = std::chrono::milliseconds(50);  // of the motion capture
 
-struct Sighting {
+struct Observation {
   Timestamp t;
   Vector2d pixel;
 };
 
-using Tracks = std::map<int, std::vector<Sighting>>;
+using Tracks = std::map<int, std::vector<Observation>>;
 
 /// "1468940957.522871945" with all its digits.
 Timestamp exact_stamp(const std::string& text) {
@@ -73,7 +73,7 @@ Trajectory read_poses(const std::filesystem::path& file) {
   return poses;
 }
 
-/// Every fifth sighting: enough to compare delays, and much quicker.
+/// Every fifth observation: enough to compare delays, and much quicker.
 Tracks every_fifth(const Tracks& tracks) {
   Tracks thinned;
   for (const auto& [id, track] : tracks) {
@@ -115,11 +115,11 @@ Agreement agreement(const Tracks& tracks, const Trajectory& poses, const CameraM
     ++result.long_tracks;
     std::vector<View> views;
     std::vector<Vector2d> pixels;
-    for (const Sighting& sighting : track) {
-      const auto T_W_C = pose_at(poses, sighting.t + mocap_delay);
+    for (const Observation& observation : track) {
+      const auto T_W_C = pose_at(poses, observation.t + mocap_delay);
       if (!T_W_C) continue;
-      views.push_back({*T_W_C, camera.pixel_to_point(sighting.pixel)});
-      pixels.push_back(sighting.pixel);
+      views.push_back({*T_W_C, camera.pixel_to_point(observation.pixel)});
+      pixels.push_back(observation.pixel);
     }
     const auto point = triangulate(views, kMinParallax);
     if (!point) continue;

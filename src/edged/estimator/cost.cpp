@@ -33,7 +33,7 @@ void add_motion_factors(const Window& window, std::vector<Factor>& out) {
   }
 }
 
-void add_visual_factors(Window& window, Sights sights, std::vector<Factor>& out) {
+void add_visual_factors(Window& window, Observations observations, std::vector<Factor>& out) {
   for (const auto& [id, feature] : window.features) {
     if (!feature.anchor) continue;
     const auto view = [&](StateId state) {
@@ -44,11 +44,11 @@ void add_visual_factors(Window& window, Sights sights, std::vector<Factor>& out)
     const SE3& T_B_C = window.cameras[feature.camera].T_B_C;
     const StateId anchor = *feature.anchor;
     const LandmarkView from = view(anchor);
-    for (const TrackStep& step : track_steps(window, feature, sights)) {
-      Factor factor{FactorKind::Sight, nullptr, window.visual_loss(), {pose(anchor), pose(step.seen)}};
+    for (const TrackStep& step : track_steps(window, feature, observations)) {
+      Factor factor{FactorKind::Observation, nullptr, window.visual_loss(), {pose(anchor), pose(step.seen)}};
       factor.state = step.seen;
       factor.landmark = id;
-      // The anchor's sight is exact by the choice of the landmark: the first step has no error to start from.
+      // The anchor's observation is exact by the choice of the landmark: the first step has no error to start from.
       if (step.before == anchor || step.correlation == 0.0) {
         factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, from, view(step.seen), step.sigma);
       } else {
@@ -64,7 +64,7 @@ void add_visual_factors(Window& window, Sights sights, std::vector<Factor>& out)
 
 }  // namespace
 
-std::vector<Factor> factors_of(Window& window, Sights sights) {
+std::vector<Factor> factors_of(Window& window, Observations observations) {
   std::vector<Factor> out;
   if (!window.prior.empty())
     out.push_back({FactorKind::Prior, std::make_unique<LinearPriorFactor>(window.prior), nullptr, window.prior.blocks});
@@ -72,23 +72,23 @@ std::vector<Factor> factors_of(Window& window, Sights sights) {
     out.push_back({FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
   }
   add_motion_factors(window, out);
-  add_visual_factors(window, sights, out);
+  add_visual_factors(window, observations, out);
   add_depth_factors(window, out);
   return out;
 }
 
-std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Sights sights) {
+std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Observations observations) {
   std::vector<TrackStep> steps;
   const auto anchor = feature.seen.find(*feature.anchor);
   const auto follow = [&](auto first, auto last) {
     StateId before = anchor->first;
-    for (auto sight = first; sight != last; ++sight) {
-      if (sights == Sights::OfKeyframes && !window.states.at(sight->first).keyframe) continue;
-      const double dt = std::abs(to_seconds(window.states.at(sight->first).t - window.states.at(before).t));
+    for (auto observation = first; observation != last; ++observation) {
+      if (observations == Observations::OfKeyframes && !window.states.at(observation->first).keyframe) continue;
+      const double dt = std::abs(to_seconds(window.states.at(observation->first).t - window.states.at(before).t));
       const double correlation = window.track_noise.correlation * std::exp(-dt / window.track_noise.time_s);
       const double own = std::sqrt(1.0 - correlation * correlation);
-      steps.push_back({before, sight->first, correlation, sight->second.sigma * own});
-      before = sight->first;
+      steps.push_back({before, observation->first, correlation, observation->second.sigma * own});
+      before = observation->first;
     }
   };
   follow(std::next(anchor), feature.seen.end());

@@ -11,23 +11,25 @@
 
 namespace edged {
 
-/// Which sights count. What stays of a landmark when its anchor leaves may only hang on states that will be
+/// Which observations count. What stays of a landmark when its anchor leaves may only hang on states that will be
 /// marginalised, not dropped.
-enum class Sights { All, OfKeyframes };
+enum class Observations { All, OfKeyframes };
 
 /// The terms of the present window, each once. They borrow from the window: use them before it
 /// changes.
-std::vector<Factor> factors_of(Window& window, Sights sights = Sights::All);
+std::vector<Factor> factors_of(Window& window, Observations observations = Observations::All);
 
-/// A sight of a landmark and its neighbour towards the anchor.
+/// An observation of a landmark and its neighbour towards the anchor.
 struct TrackStep {
   StateId before, seen;
   double correlation;  ///< of the errors of the two
-  double sigma;        ///< of what the sight before does not tell, on the unit plane
+  double sigma;        ///< of what the observation before does not tell, on the unit plane
 };
 
-/// The sights of a landmark one after the other, from its anchor's on, then those before the anchor's, back in time.
-std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Sights sights = Sights::All);
+/// The observations of a landmark one after the other, from its anchor's on, then those before the anchor's, back in
+/// time.
+std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
+                                   Observations observations = Observations::All);
 
 /// The inverse depths that share a factor with another: they cannot be eliminated one by one.
 std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors);

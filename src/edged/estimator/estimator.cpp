@@ -146,7 +146,8 @@ void Estimator::append(const EstimatorInput& input) {
   Preintegration imu = since_newest(input);
   NavState state = propagate(before, imu);
   state.t = input.t;
-  const StateId id = window_.add_state(window_state(state, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe));
+  const StateId id =
+      window_.add_state(window_state(state, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe));
   window_.add_observations(id, input.observations);
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {
@@ -182,9 +183,9 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 }
 
 /// Each camera's noise follows its residuals. Where the window strains the IMU, the cameras agree among themselves on
-/// what is not so: something that moves, or errors they have in common. What each sight on an event frame adds tells
-/// less of the drift than on a frame: it goes on as it was, with the look of an edge under the motion. Beside frames,
-/// which do not drift like that, events count by so much less.
+/// what is not so: something that moves, or errors they have in common. What each observation on an event frame adds
+/// tells less of the drift than on a frame: it goes on as it was, with the look of an edge under the motion. Beside
+/// frames, which do not drift like that, events count by so much less.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
   const bool frames = std::ranges::count(window_.cameras, Modality::Frames, &RigCamera::modality) > 0;

@@ -30,7 +30,7 @@ void EstimatorConfig::visit(ConfigFields& fields) {
              {"", 0.01, 1, "knowing it only to this, a start is used, Degraded, and refined"});
   fields.add("noise_gain", noise_gain, {"", 0, 1, "speed of adapting each camera's noise to its residuals; 0: fixed"});
   fields.add("noise_inflation", noise_inflation,
-             {"", 0.5, 20, "assumed noise over the spread of what each sight adds to the one before"});
+             {"", 0.5, 20, "assumed noise over the spread of what each observation adds to the one before"});
   fields.add("event_noise_inflation", event_noise_inflation,
              {"", 0.5, 20, "the same for event cameras beside frames: times noise_inflation"});
   fields.add("min_noise_scale", min_noise_scale, {"", 0.001, 1, "least adapted noise over the configured one"});

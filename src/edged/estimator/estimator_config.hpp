@@ -19,8 +19,8 @@ struct CalibrationConfig {
 };
 
 /// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
-/// two sights dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov process, and
-/// on top of it what each image has of its own.
+/// two observations dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov
+/// process, and on top of it what each image has of its own.
 struct TrackNoise {
   double correlation = 0.95;
   double time_s = 2.0;
@@ -31,10 +31,10 @@ struct LandmarkConfig {
   double min_parallax_deg = 0.6;  ///< a corner becomes a landmark once its rays differ by this
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
-  double max_residual_sigma = 2.5;    ///< a sight that fits worse is taken out
+  double max_residual_sigma = 2.5;    ///< an observation that fits worse is taken out
   double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
-  double max_misfit = 2.5;            ///< so is a landmark whose sights together fit so much worse than the others'
-  int max_per_camera = 70;            ///< landmarks in the cost, longest seen first
+  double max_misfit = 2.5;  ///< so is a landmark whose observations together fit so much worse than the others'
+  int max_per_camera = 70;  ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
 
@@ -88,7 +88,7 @@ struct EstimatorConfig {
   double init_scale_sigma = 0.08;        ///< of ln scale; a wrong start of too large a scale passes more easily
   double provisional_scale_sigma = 0.2;  ///< a start that knows it to this is used, but not Good
   double noise_gain = 0.05;              ///< adaptation of each camera's noise to its residuals, a packet
-  double noise_inflation = 2.0;          ///< sigma over the spread of what each sight adds to the one before
+  double noise_inflation = 2.0;          ///< sigma over the spread of what each observation adds to the one before
   double event_noise_inflation = 2.5;    ///< times as much for events beside frames: their drift goes on as it was
   double min_noise_scale = 0.05;         ///< bounds of the adapted noise over the configured one
   double max_noise_scale = 4.0;

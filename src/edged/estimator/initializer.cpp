@@ -25,7 +25,7 @@ constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleratio
 constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: calm is not quite rest
 constexpr double kMaxFreeGravityError = 0.3;  // of a start in motion, when gravity's length is left free
 constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
-constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's sights: more is a wrong start
+constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's observations: more is a wrong start
 // The start-up window takes the errors of a track for independent: their noise over the spread of the residuals, and
 // the least of it over the configured one.
 constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
@@ -205,13 +205,13 @@ void Initializer::solve_start(Window& window) const {
   for (int round = 0; round < 3; ++round) {
     triangulate_features(window, config_.landmarks, Tracks::All);
     solve(window, round == 0 ? kStartIterations : kRefineIterations);
-    if (round == 1) weigh_sights(window);
+    if (round == 1) weigh_observations(window);
     remove_outliers(window, config_.landmarks);
   }
 }
 
-/// What a sight is worth is told by how well the solved window fits it.
-void Initializer::weigh_sights(Window& window) const {
+/// What an observation is worth is told by how well the solved window fits it.
+void Initializer::weigh_observations(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Newness::Any);
     if (!spread) continue;
@@ -219,7 +219,7 @@ void Initializer::weigh_sights(Window& window) const {
     window.noise_scale[camera] = scale;
     for (auto& [id, feature] : window.features) {
       if (feature.camera != camera) continue;
-      for (auto& [state, sight] : feature.seen) sight.sigma *= scale;
+      for (auto& [state, observation] : feature.seen) observation.sigma *= scale;
     }
   }
 }

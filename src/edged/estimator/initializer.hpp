@@ -56,7 +56,7 @@ class Initializer {
   StartResult start_from(const Alignment& alignment, double most_scale_sigma);
   Window aligned_window(const Alignment& alignment) const;
   void solve_start(Window& window) const;
-  void weigh_sights(Window& window) const;
+  void weigh_observations(Window& window) const;
   std::string doubt_about(Window& window, double most_tilt_deg) const;
 
   Rig rig_;

@@ -43,36 +43,36 @@ bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig&
 }
 
 /// Where a landmark is expected less where it was seen, on the unit plane; nothing when it is behind the camera.
-std::optional<Eigen::Vector2d> sight_error(const Window& window, const Feature& feature, StateId state) {
+std::optional<Eigen::Vector2d> observation_error(const Window& window, const Feature& feature, StateId state) {
   const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * window.position(feature);
   if (p_C.z() <= 0.0) return std::nullopt;
   return p_C.hnormalized() - feature.seen.at(state).point;
 }
 
-/// Of one sight of a landmark, in standard deviations; infinite when it is behind the camera.
+/// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
 double residual_sigmas(const Window& window, const Feature& feature, StateId state) {
-  const std::optional<Eigen::Vector2d> error = sight_error(window, feature, state);
+  const std::optional<Eigen::Vector2d> error = observation_error(window, feature, state);
   return error ? error->norm() / feature.seen.at(state).sigma : std::numeric_limits<double>::infinity();
 }
 
-/// Root mean square of a landmark's residuals [sigma]; nothing when it has too few sights to be judged by.
+/// Root mean square of a landmark's residuals [sigma]; nothing when it has too few observations to be judged by.
 std::optional<double> rms_sigmas(const Window& window, const Feature& feature) {
-  constexpr std::size_t kFewestSights = 4;
-  if (!feature.anchor || feature.seen.size() < kFewestSights) return std::nullopt;
+  constexpr std::size_t kFewestObservations = 4;
+  if (!feature.anchor || feature.seen.size() < kFewestObservations) return std::nullopt;
   double sum = 0.0;
-  for (const auto& [state, sight] : feature.seen) {
+  for (const auto& [state, observation] : feature.seen) {
     if (state != *feature.anchor) sum += std::pow(residual_sigmas(window, feature, state), 2);
   }
   return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
 }
 
-/// Takes out the sights beyond the limit. True when the track's newest is among them.
-bool take_out_sights(const Window& window, Feature& feature, double max_sigmas) {
+/// Takes out the observations beyond the limit. True when the track's newest is among them.
+bool take_out_observations(const Window& window, Feature& feature, double max_sigmas) {
   bool newest = false;
-  std::erase_if(feature.seen, [&](const auto& sight) {
-    if (sight.first == *feature.anchor) return false;
-    const bool bad = residual_sigmas(window, feature, sight.first) > max_sigmas;
-    newest = newest || (bad && sight.first == feature.last_seen);
+  std::erase_if(feature.seen, [&](const auto& observation) {
+    if (observation.first == *feature.anchor) return false;
+    const bool bad = residual_sigmas(window, feature, observation.first) > max_sigmas;
+    newest = newest || (bad && observation.first == feature.last_seen);
     return bad;
   });
   return newest;
@@ -102,12 +102,12 @@ void LandmarkConfig::visit(ConfigFields& fields) {
              {"deg", 0.05, 10, "rays of a corner must differ by this to place it"});
   fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
   fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
-  fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "sights that fit worse are taken out"});
+  fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "observations that fit worse are taken out"});
   fields.add("max_innovation_sigma", max_innovation_sigma,
              {"sigma", 1, 1000, "corners farther from where the IMU expects their landmark end"});
-  fields.add(
-      "max_misfit", max_misfit,
-      {"", 1, 1000, "landmarks whose sights fit so much worse than the median landmark's are taken out: they move"});
+  fields.add("max_misfit", max_misfit,
+             {"", 1, 1000,
+              "landmarks whose observations fit so much worse than the median landmark's are taken out: they move"});
   fields.add("max_per_camera", max_per_camera,
              {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
 }
@@ -164,11 +164,11 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
       ++it;
       continue;
     }
-    // Before its worst sights are taken out: that it has some says more about it than those that are left.
+    // Before its worst observations are taken out: that it has some says more about it than those that are left.
     bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
                    rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
-    const bool newest_wrong = !dropped && take_out_sights(window, feature, config.max_residual_sigma);
-    // Right after a change of anchor a landmark has one sight until its camera's next image.
+    const bool newest_wrong = !dropped && take_out_observations(window, feature, config.max_residual_sigma);
+    // Right after a change of anchor a landmark has one observation until its camera's next image.
     dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature));
     if (window.alive(feature) && (dropped || newest_wrong)) wrong.push_back(it->first);
     it = dropped ? window.features.erase(it) : std::next(it);
@@ -177,7 +177,7 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
 }
 
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {
-  constexpr std::size_t kFewestSights = 12;
+  constexpr std::size_t kFewestObservations = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.states.rbegin()->first;
   std::vector<double> residuals;
@@ -186,7 +186,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
     Eigen::Vector2d before = Eigen::Vector2d::Zero();
     for (const TrackStep& step : track_steps(window, feature)) {
       if (step.before == *feature.anchor) before.setZero();
-      const std::optional<Eigen::Vector2d> error = sight_error(window, feature, step.seen);
+      const std::optional<Eigen::Vector2d> error = observation_error(window, feature, step.seen);
       if (!error) break;
       if (newness == Newness::Any || step.seen == newest) {
         residuals.push_back((*error - step.correlation * before).norm() / step.sigma);
@@ -194,7 +194,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
       before = *error;
     }
   }
-  if (residuals.size() < kFewestSights) return std::nullopt;
+  if (residuals.size() < kFewestObservations) return std::nullopt;
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 

@@ -23,16 +23,16 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
 /// their tracks should end.
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
 
-/// Takes out sights that do not fit the solved window, and landmarks that over all their views fit worse than the rest
-/// of the scene: what moves by itself bends a little everywhere. Returns the features whose newest sight was taken out:
-/// their tracks are wrong and should end.
+/// Takes out observations that do not fit the solved window, and landmarks that over all their views fit worse than the
+/// rest of the scene: what moves by itself bends a little everywhere. Returns the features whose newest observation was
+/// taken out: their tracks are wrong and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
 enum class Newness { Newest, Any };
 
-/// Spread of what one camera's sights, in the newest state or in any, are off by beyond what the sight before tells
-/// (track_steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of
-/// them.
+/// Spread of what one camera's observations, in the newest state or in any, are off by beyond what the observation
+/// before tells (track_steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with
+/// too few of them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
 /// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and

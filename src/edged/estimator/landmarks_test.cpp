@@ -48,7 +48,7 @@ FeatureId seen_by_all(const Window& window) {
 constexpr LandmarkConfig kGenerous = [] {
   LandmarkConfig config;
   config.max_per_camera = 500;
-  config.max_misfit = 1000.0;  // sights are judged one by one
+  config.max_misfit = 1000.0;  // observations are judged one by one
   return config;
 }();
 
@@ -80,12 +80,12 @@ TEST(TriangulateFeatures, KeepsTheBudgetOfEachCameraAndPrefersTheLongestTracks) 
   triangulate_features(window, {.max_per_camera = 15});
   std::size_t landmarks[2] = {0, 0}, shortest_landmark[2] = {99, 99}, longest_track[2] = {0, 0};
   for (const auto& [id, feature] : window.features) {
-    const std::size_t sights = feature.seen.size(), c = feature.camera;
+    const std::size_t observations = feature.seen.size(), c = feature.camera;
     if (feature.anchor) {
       ++landmarks[c];
-      shortest_landmark[c] = std::min(shortest_landmark[c], sights);
+      shortest_landmark[c] = std::min(shortest_landmark[c], observations);
     } else if (window.alive(feature)) {
-      longest_track[c] = std::max(longest_track[c], sights);
+      longest_track[c] = std::max(longest_track[c], observations);
     }
   }
   for (std::size_t c = 0; c < 2; ++c) {
@@ -133,7 +133,7 @@ TEST(RemoveOutliers, KeepsWhatFits) {
   EXPECT_EQ(count_landmarks(window), landmarks);
 }
 
-TEST(RemoveOutliers, ReportsATrackWhoseNewestSightIsWrongAndKeepsTheLandmark) {
+TEST(RemoveOutliers, ReportsATrackWhoseNewestObservationIsWrongAndKeepsTheLandmark) {
   TestWorld world({.pixel_noise = 0.0});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
@@ -144,7 +144,7 @@ TEST(RemoveOutliers, ReportsATrackWhoseNewestSightIsWrongAndKeepsTheLandmark) {
   EXPECT_TRUE(window.features.at(id).anchor.has_value());
 }
 
-TEST(RemoveOutliers, TakesOutAnOldWrongSightWithoutEndingTheTrack) {
+TEST(RemoveOutliers, TakesOutAnOldWrongObservationWithoutEndingTheTrack) {
   TestWorld world({.pixel_noise = 0.0});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
@@ -154,16 +154,16 @@ TEST(RemoveOutliers, TakesOutAnOldWrongSightWithoutEndingTheTrack) {
   EXPECT_EQ(window.features.at(id).seen.size(), window.states.size() - 1);
 }
 
-TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoSightAlone) {
+TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoObservationAlone) {
   TestWorld world({});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   const int landmarks = count_landmarks(window);
   const FeatureId id = seen_by_all(window);
-  // It walks: to and fro by less than any one sight is taken out for.
+  // It walks: to and fro by less than any one observation is taken out for.
   double step = 1.5;
-  for (auto& [state, sight] : window.features.at(id).seen) {
-    sight.point.y() += step * sight.sigma;
+  for (auto& [state, observation] : window.features.at(id).seen) {
+    observation.point.y() += step * observation.sigma;
     step = -step;
   }
   LandmarkConfig strict = kGenerous;
@@ -193,7 +193,7 @@ TEST(RemoveOutliers, DropsALandmarkOutOfBoundsAndReportsItWhileItIsTracked) {
 }
 
 /// Moves what the newest state sees of the first `count` landmarks by 20 px.
-int move_newest_sights(Window& window, int count) {
+int move_newest_observations(Window& window, int count) {
   const StateId newest = window.states.rbegin()->first;
   int moved = 0;
   for (auto& [id, feature] : window.features) {
@@ -209,7 +209,7 @@ TEST(RejectUnexpected, EndsTracksFarFromWhereTheImuExpectsThem) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
-  ASSERT_EQ(move_newest_sights(window, 10), 10);
+  ASSERT_EQ(move_newest_observations(window, 10), 10);
   EXPECT_EQ(reject_unexpected(window, kGenerous).size(), 10U);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
 }
@@ -218,7 +218,7 @@ TEST(RejectUnexpected, DoubtsThePredictionWhenItFitsTheLesserPartOnly) {
   TestWorld world({});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
-  move_newest_sights(window, 1000);
+  move_newest_observations(window, 1000);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
 }
 
@@ -233,7 +233,7 @@ TEST(MoveAnchor, KeepsThePlaceInTheWorld) {
     const StateId to = feature.seen.rbegin()->first;
     ASSERT_TRUE(move_anchor(window, feature, to, kGenerous));
     EXPECT_EQ(*feature.anchor, to);
-    // The ray is the new anchor's own sight, half a pixel beside the old one's: the depth is kept.
+    // The ray is the new anchor's own observation, half a pixel beside the old one's: the depth is kept.
     const double depth = (window.T_W_C(to, feature.camera).inverse() * before).z();
     EXPECT_NEAR(1.0 / feature.inverse_depth, depth, 1e-9);
     EXPECT_LT((window.position(feature) - before).norm(), 8.0 * 0.5 / 200.0 * depth);

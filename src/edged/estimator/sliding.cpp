@@ -15,7 +15,7 @@ constexpr double kRestStretch = 10.0;
 
 /// The prior (always) and every other factor with a block that leaves.
 std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
-  std::vector<Factor> factors = factors_of(window, Sights::OfKeyframes);
+  std::vector<Factor> factors = factors_of(window, Observations::OfKeyframes);
   std::erase_if(factors, [&](const Factor& factor) {
     return factor.kind != FactorKind::Prior &&
            std::ranges::none_of(factor.blocks, [&](const BlockKey& key) { return leaving.contains(key); });
@@ -23,7 +23,7 @@ std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& l
   return factors;
 }
 
-/// The youngest keyframe takes over the landmarks that it still sees; its sight and later ones are kept for that.
+/// The youngest keyframe takes over the landmarks that it still sees; its observation and later ones are kept for that.
 StateId youngest_keyframe(const Window& window) {
   StateId youngest = window.states.begin()->first;
   for (const auto& [state, content] : window.states) {
@@ -39,9 +39,9 @@ bool stays_out(const Factor& factor, const Window& window, const std::map<Featur
     // It leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
     return factor.state != window.states.begin()->first || !factor.lasting;
   }
-  if (factor.kind != FactorKind::Sight) return false;
+  if (factor.kind != FactorKind::Observation) return false;
   const auto found = inherited.find(factor.landmark);
-  if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this sight goes
+  if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this observation goes
   // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
   return found->second && factor.state > heir;
 }
@@ -91,7 +91,7 @@ void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
     bool keep = true;
     if (found != inherited.end()) {
       keep = found->second && move_anchor(window, it->second, heir, config);
-      std::erase_if(it->second.seen, [&](const auto& sight) { return sight.first < heir; });
+      std::erase_if(it->second.seen, [&](const auto& observation) { return observation.first < heir; });
     }
     it->second.seen.erase(id);
     it = keep ? std::next(it) : window.features.erase(it);

@@ -14,7 +14,7 @@ namespace edged {
 void drop_or_promote(Window& window, StateId id, double max_interval_s);
 
 /// Marginalises the oldest state. Landmarks anchored there that are still in view go on in the youngest keyframe with
-/// the sights from there on, so that nothing is used twice.
+/// the observations from there on, so that nothing is used twice.
 void drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
 
 }  // namespace edged

@@ -15,16 +15,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kMinSights = 3;  // of a corner
-constexpr double kRayNoise = 5e-3;     // [rad]
-constexpr double kHuber = 1.5;         // [kRayNoise]
+constexpr std::size_t kMinObservations = 3;  // of a corner
+constexpr double kRayNoise = 5e-3;           // [rad]
+constexpr double kHuber = 1.5;               // [kRayNoise]
 
 /// Of a track: its point P, then the start.
 using PointAndStart = Eigen::Matrix<double, 12, 1>;
 using PointAndStartMatrix = Eigen::Matrix<double, 12, 12>;
 
 std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, const Rig& rig) {
-  std::map<FeatureId, std::vector<StartSight>> seen;
+  std::map<FeatureId, std::vector<StartObservation>> seen;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     for (const CameraObservations& view : frames[i].observations) {
       const auto camera = std::find_if(rig.cameras.begin(), rig.cameras.end(),
@@ -35,8 +35,8 @@ std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, cons
     }
   }
   std::vector<StartTrack> tracks;
-  for (auto& [id, sights] : seen) {
-    if (sights.size() >= kMinSights) tracks.push_back({id, std::move(sights)});
+  for (auto& [id, observations] : seen) {
+    if (observations.size() >= kMinObservations) tracks.push_back({id, std::move(observations)});
   }
   return tracks;
 }
@@ -128,11 +128,11 @@ StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, c
 void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equations) const {
   PointAndStartMatrix N = PointAndStartMatrix::Zero();
   PointAndStart c = PointAndStart::Zero();
-  for (const StartSight& sight : track.sights) {
-    const RelativeMotion& m = motion_[sight.frame];
-    const SE3& T_B_C = rig_->cameras[sight.camera].T_B_C;
+  for (const StartObservation& observation : track.observations) {
+    const RelativeMotion& m = motion_[observation.frame];
+    const SE3& T_B_C = rig_->cameras[observation.camera].T_B_C;
     Eigen::Matrix<double, 2, 3> pi;
-    pi << 1, 0, -sight.point.x(), 0, 1, -sight.point.y();
+    pi << 1, 0, -observation.point.x(), 0, 1, -observation.point.y();
     pi *= T_B_C.R().transpose() * m.R.transpose();
     Eigen::Matrix<double, 2, 12> A;
     A << pi, -pi * m.d_position();
@@ -145,9 +145,9 @@ void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equatio
 /// A track's cameras in the frame of the first body.
 std::vector<View> StartSolver::views(const StartTrack& track, const Start& x) const {
   std::vector<View> views;
-  for (const StartSight& sight : track.sights) {
-    const RelativeMotion& m = motion_[sight.frame];
-    views.push_back({SE3(m.R, m.position(x)) * rig_->cameras[sight.camera].T_B_C, sight.point});
+  for (const StartObservation& observation : track.observations) {
+    const RelativeMotion& m = motion_[observation.frame];
+    views.push_back({SE3(m.R, m.position(x)) * rig_->cameras[observation.camera].T_B_C, observation.point});
   }
   return views;
 }
@@ -164,7 +164,7 @@ void StartSolver::add_reprojection(const StartTrack& track, const Start& x, Star
     const Eigen::Vector2d r = (p_C.hnormalized() - seen_from[k].point) / kRayNoise;
     const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(seen_from[k].T_W_C.R(), p_C) / kRayNoise;
     Eigen::Matrix<double, 2, 12> J;
-    J << d_r_d_P, -d_r_d_P * motion_[track.sights[k].frame].d_position();
+    J << d_r_d_P, -d_r_d_P * motion_[track.observations[k].frame].d_position();
     const double weight = r.norm() < kHuber ? 1.0 : kHuber / r.norm();
     N += weight * J.transpose() * J;
     c -= weight * J.transpose() * r;
@@ -211,7 +211,7 @@ Start StartSolver::start_of(const NavState& last) const {
 double StartSolver::misfit(std::size_t track, const Start& x) const {
   const auto point = triangulate(views(tracks_[track], x), 0.0);
   if (!point) return std::numeric_limits<double>::infinity();
-  return point->rms_residual / tracks_[track].sights.front().sigma;
+  return point->rms_residual / tracks_[track].observations.front().sigma;
 }
 
 double StartSolver::relative_sigma(const RefinedStart& start) const {
@@ -224,9 +224,10 @@ double StartSolver::relative_sigma(const RefinedStart& start) const {
 }
 
 Vector3d StartSolver::direction(std::size_t track) const {
-  const std::vector<StartSight>& sights = tracks_[track].sights;
-  const StartSight& sight = sights[sights.size() / 2];
-  return motion_[sight.frame].R * (rig_->cameras[sight.camera].T_B_C.R() * sight.point.homogeneous().normalized());
+  const std::vector<StartObservation>& observations = tracks_[track].observations;
+  const StartObservation& observation = observations[observations.size() / 2];
+  return motion_[observation.frame].R *
+         (rig_->cameras[observation.camera].T_B_C.R() * observation.point.homogeneous().normalized());
 }
 
 }  // namespace edged

@@ -17,7 +17,7 @@ namespace edged {
 struct StartEquations;
 
 /// One view of a corner.
-struct StartSight {
+struct StartObservation {
   std::size_t frame, camera;
   Eigen::Vector2d point;
   double sigma;
@@ -26,7 +26,7 @@ struct StartSight {
 /// A corner over the views.
 struct StartTrack {
   FeatureId id;
-  std::vector<StartSight> sights;
+  std::vector<StartObservation> observations;
 };
 
 /// What is unknown once rotations are: first velocity, gravity, both in the first body frame, and accelerometer bias.

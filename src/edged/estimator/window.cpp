@@ -54,8 +54,9 @@ void CalibrationConfig::visit(ConfigFields& fields) {
 }
 
 void TrackNoise::visit(ConfigFields& fields) {
-  fields.add("correlation", correlation,
-             {"1", 0, 0.999, "of the errors of two sights of a track right after one another; 0: all independent"});
+  fields.add(
+      "correlation", correlation,
+      {"1", 0, 0.999, "of the errors of two observations of a track right after one another; 0: all independent"});
   fields.add("time_s", time_s, {"s", 0.01, 1000, "after this time the correlation has fallen to 1/e of that"});
 }
 
@@ -113,8 +114,8 @@ void Window::add_observations(StateId id, const std::vector<CameraObservations>&
       Feature& feature = features[observation.id];
       feature.camera = index;
       feature.last_seen = id;
-      FeatureObservation& sight = feature.seen.insert_or_assign(id, observation).first->second;
-      sight.sigma *= noise_scale[index];
+      FeatureObservation& kept = feature.seen.insert_or_assign(id, observation).first->second;
+      kept.sigma *= noise_scale[index];
     }
   }
 }

@@ -48,7 +48,7 @@ WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Pre
 struct Feature {
   std::size_t camera = 0;                      ///< index into Window::cameras
   std::map<StateId, FeatureObservation> seen;  ///< in the window
-  StateId last_seen = 0;                       ///< the newest sight, even if its state has been dropped since
+  StateId last_seen = 0;                       ///< the newest observation, even if its state has been dropped since
   std::optional<StateId> anchor;               ///< set when it is a landmark
   double inverse_depth = 0.0;                  ///< [1/m] along z of the anchor camera
 };
@@ -66,8 +66,8 @@ class Window {
   std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
   std::vector<CalibrationBlock> calibration;  ///< one a camera
   ImuIntrinsicsBlock imu_intrinsics{};
-  std::vector<double> noise_scale;   ///< one a camera: multiplies the sigma of its sights as they come in
-  TrackNoise track_noise{0.0, 1.0};  ///< of all cameras; independent sights until set
+  std::vector<double> noise_scale;   ///< one a camera: multiplies the sigma of its observations as they come in
+  TrackNoise track_noise{0.0, 1.0};  ///< of all cameras; independent observations until set
   DepthFactorConfig depth_config;
   /// The present piece of ln s (Eq. 5), and the next while one is left behind.
   std::map<std::uint64_t, double> ln_scale;

@@ -50,12 +50,12 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   Window window = window_at_truth(world, options);
   EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
-  std::size_t sights = 0;
+  std::size_t observations = 0;
   for (const auto& [id, feature] : window.features) {
-    if (feature.anchor) sights += feature.seen.size() - 1;
+    if (feature.anchor) observations += feature.seen.size() - 1;
   }
-  EXPECT_GT(sights, 100U);
-  EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U + sights);
+  EXPECT_GT(observations, 100U);
+  EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U + observations);
 }
 
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {

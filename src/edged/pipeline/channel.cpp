@@ -9,7 +9,7 @@ namespace edged {
 void HealthConfig::visit(ConfigFields& fields) {
   fields.add("time_constant_s", time_constant_s,
              {"s", 0.01, 100, "of the running mean of the share of tracks that survive an image"});
-  fields.add("min_survival", min_survival, {"", 0, 1, "with a smaller share a camera's sights are ignored"});
+  fields.add("min_survival", min_survival, {"", 0, 1, "with a smaller share a camera's observations are ignored"});
   fields.add("min_event_corners", min_event_corners,
              {"", 0, 1000, "corners kept on event frames where the standard frames carry all of theirs (fused mode)"});
 }
@@ -54,10 +54,10 @@ void Channel::weigh(const TrackSummary& summary, Timestamp t) {
 }
 
 CameraObservations Channel::observations() const {
-  CameraObservations sights = tracker.observations();
-  if (survival_ < health_.min_survival) sights.features.clear();
-  for (FeatureObservation& sight : sights.features) sight.sigma /= survival_;
-  return sights;
+  CameraObservations observations = tracker.observations();
+  if (survival_ < health_.min_survival) observations.features.clear();
+  for (FeatureObservation& observation : observations.features) observation.sigma /= survival_;
+  return observations;
 }
 
 void Channel::reject(const SE3& T_W_B, bool trust_gyro) {

@@ -38,7 +38,7 @@ class Channel {
   double survival() const { return survival_; }
   /// Tracks as they count: as many as are likely to be there in the next image.
   double carried() const { return survival_ * static_cast<double>(tracker.tracks().size()); }
-  /// The sights of the present image, less sure the fewer tracks survive; none when the camera is ignored.
+  /// The observations of the present image, less sure the fewer tracks survive; none when the camera is ignored.
   CameraObservations observations() const;
 
   /// The body at the present image (and keyframe), now better known.

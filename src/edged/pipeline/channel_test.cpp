@@ -40,7 +40,7 @@ class ChannelHealth : public testing::Test {
   cv::RNG random_{7};
 };
 
-TEST_F(ChannelHealth, SightsOfTracksThatSurviveKeepTheirSigma) {
+TEST_F(ChannelHealth, ObservationsOfTracksThatSurviveKeepTheirSigma) {
   Channel channel = start();
   for (int i = 1; i <= 10; ++i) show(channel, scene_.image({}), i);
   EXPECT_DOUBLE_EQ(channel.survival(), 1.0);

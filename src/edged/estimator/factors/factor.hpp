@@ -15,7 +15,7 @@
 namespace edged {
 
 /// What a term of the cost says. Prior: what has left the window; SoftPrior: set by hand.
-enum class FactorKind : std::uint8_t { Prior, SoftPrior, Imu, Standstill, Sight, SceneDepth };
+enum class FactorKind : std::uint8_t { Prior, SoftPrior, Imu, Standstill, Observation, SceneDepth };
 
 /// One term of the cost.
 struct Factor {
@@ -23,8 +23,8 @@ struct Factor {
   std::unique_ptr<ceres::CostFunction> cost = nullptr;
   ceres::LossFunction* loss = nullptr;  ///< owned by the window
   std::vector<BlockKey> blocks = {};
-  std::uint64_t state = 0;     ///< Sight, SceneDepth: the one whose image or events told it
-  std::uint64_t landmark = 0;  ///< Sight: of this one
+  std::uint64_t state = 0;     ///< Observation, SceneDepth: the one whose image or events told it
+  std::uint64_t landmark = 0;  ///< Observation: of this one
   bool lasting = true;         ///< SceneDepth: its landmarks are all anchored in its state, and leave with it
 };
 

@@ -21,7 +21,7 @@ SE3 moved_body(const SE3& T_W_B, const BodyRate& rate, double time) {
   return {T_W_B.rotation() * so3::exp(rate.omega_B * time), T_W_B.translation() + rate.v_W * time};
 }
 
-/// The landmark as its anchor has it: what all its sights share. Everything is scaled by rho, so that points at
+/// The landmark as its anchor has it: what all its observations share. Everything is scaled by rho, so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
   AnchoredLandmark(const SE3& T_B_C, const LandmarkView& anchor, const double* pose, const double* calibration,
@@ -49,7 +49,7 @@ struct AnchoredLandmark {
   Vector3d p_W_B;
 };
 
-/// Derivatives of what the landmark has in the world by its own blocks, shared by its sights.
+/// Derivatives of what the landmark has in the world by its own blocks, shared by its observations.
 struct LandmarkDerivatives {
   explicit LandmarkDerivatives(const AnchoredLandmark& l)
       // A turn of the state's body is one of the moved body seen along Exp(omega time).
@@ -63,8 +63,8 @@ struct LandmarkDerivatives {
   Matrix3d Jr;
 };
 
-/// Error of one sight on the unit plane and its derivatives.
-struct Sight {
+/// Error of one observation on the unit plane and its derivatives.
+struct Observation {
   Vector2d e;
   RowMajor26 by_anchor, by_seen;
   RowMajor24 by_calibration;
@@ -73,7 +73,7 @@ struct Sight {
 
 /// False when the landmark is not in front of the camera. shared: nothing when no derivatives are wanted.
 bool look(const AnchoredLandmark& l, const LandmarkDerivatives* shared, const LandmarkView& view, const double* pose,
-          Sight& sight) {
+          Observation& observation) {
   const SE3 T_W_B = moved_body(pose_of(pose), view.rate, l.time);
   const Matrix3d R_B_W = T_W_B.R().transpose(), R_C_B = l.R_B_C.transpose();
   const Vector3d x_W = l.R_W_B * l.x_B + l.rho * (l.p_W_B - T_W_B.translation());
@@ -82,19 +82,19 @@ bool look(const AnchoredLandmark& l, const LandmarkDerivatives* shared, const La
   if (x_C.z() < kMinDepthShare) return false;
   const double z_inv = 1.0 / x_C.z();
   const Vector2d predicted = x_C.head<2>() * z_inv;
-  sight.e = predicted - view.point;
+  observation.e = predicted - view.point;
   if (shared == nullptr) return true;
 
   Eigen::Matrix<double, 2, 3> by_xC;
   by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;
   const Eigen::Matrix<double, 2, 3> by_xB = by_xC * R_C_B, by_xW = by_xB * R_B_W;
   const Matrix3d back = so3::exp(view.rate.omega_B * -l.time).toRotationMatrix();
-  sight.by_anchor << l.rho * by_xW, by_xW * shared->by_turn;
-  sight.by_seen << -l.rho * by_xW, by_xB * skew(x_B) * back;
-  sight.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * shared->by_phi) * shared->Jr;
-  sight.by_calibration.col(3) =
+  observation.by_anchor << l.rho * by_xW, by_xW * shared->by_turn;
+  observation.by_seen << -l.rho * by_xW, by_xB * skew(x_B) * back;
+  observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * shared->by_phi) * shared->Jr;
+  observation.by_calibration.col(3) =
       by_xW * (shared->by_time - l.rho * view.rate.v_W) - by_xB * view.rate.omega_B.cross(x_B);
-  sight.by_rho = by_xW * (shared->by_rho - T_W_B.translation()) - by_xC * (R_C_B * l.t_B_C);
+  observation.by_rho = by_xW * (shared->by_rho - T_W_B.translation()) - by_xC * (R_C_B * l.t_B_C);
   return true;
 }
 
@@ -102,9 +102,9 @@ void write_pose(double* jacobian, const RowMajor26& by_pose) {
   if (jacobian != nullptr) Eigen::Map<RowMajor27>(jacobian) << by_pose, Vector2d::Zero();
 }
 
-void write_landmark(double* by_calibration, double* by_rho, const Sight& sight) {
-  if (by_calibration != nullptr) Eigen::Map<RowMajor24>{by_calibration} = sight.by_calibration;
-  if (by_rho != nullptr) Eigen::Map<Vector2d>{by_rho} = sight.by_rho;
+void write_landmark(double* by_calibration, double* by_rho, const Observation& observation) {
+  if (by_calibration != nullptr) Eigen::Map<RowMajor24>{by_calibration} = observation.by_calibration;
+  if (by_rho != nullptr) Eigen::Map<Vector2d>{by_rho} = observation.by_rho;
 }
 
 }  // namespace
@@ -118,15 +118,15 @@ bool ReprojectionFactor::Evaluate(double const* const* blocks, double* residuals
   const AnchoredLandmark landmark(T_B_C_, anchor_, blocks[0], blocks[2], blocks[3]);
   std::optional<LandmarkDerivatives> shared;
   if (jacobians != nullptr) shared.emplace(landmark);
-  Sight sight;
-  if (!look(landmark, shared ? &*shared : nullptr, seen_, blocks[1], sight)) return false;
-  Eigen::Map<Vector2d>{residuals} = weight_ * sight.e;
+  Observation observation;
+  if (!look(landmark, shared ? &*shared : nullptr, seen_, blocks[1], observation)) return false;
+  Eigen::Map<Vector2d>{residuals} = weight_ * observation.e;
   if (!shared) return true;
-  write_pose(jacobians[0], weight_ * sight.by_anchor);
-  write_pose(jacobians[1], weight_ * sight.by_seen);
-  sight.by_calibration *= weight_;
-  sight.by_rho *= weight_;
-  write_landmark(jacobians[2], jacobians[3], sight);
+  write_pose(jacobians[0], weight_ * observation.by_anchor);
+  write_pose(jacobians[1], weight_ * observation.by_seen);
+  observation.by_calibration *= weight_;
+  observation.by_rho *= weight_;
+  write_landmark(jacobians[2], jacobians[3], observation);
   return true;
 }
 
@@ -135,20 +135,20 @@ bool TrackStepFactor::Evaluate(double const* const* blocks, double* residuals, d
   std::optional<LandmarkDerivatives> shared;
   if (jacobians != nullptr) shared.emplace(landmark);
   const LandmarkDerivatives* derivatives = shared ? &*shared : nullptr;
-  Sight sight, before;
-  if (!look(landmark, derivatives, seen_, blocks[1], sight) ||
+  Observation observation, before;
+  if (!look(landmark, derivatives, seen_, blocks[1], observation) ||
       !look(landmark, derivatives, before_, blocks[2], before)) {
     return false;
   }
   const double weight_before = -correlation_ * weight_;
-  Eigen::Map<Vector2d>{residuals} = weight_ * sight.e + weight_before * before.e;
+  Eigen::Map<Vector2d>{residuals} = weight_ * observation.e + weight_before * before.e;
   if (!shared) return true;
-  write_pose(jacobians[0], weight_ * sight.by_anchor + weight_before * before.by_anchor);
-  write_pose(jacobians[1], weight_ * sight.by_seen);
+  write_pose(jacobians[0], weight_ * observation.by_anchor + weight_before * before.by_anchor);
+  write_pose(jacobians[1], weight_ * observation.by_seen);
   write_pose(jacobians[2], weight_before * before.by_seen);
-  sight.by_calibration = weight_ * sight.by_calibration + weight_before * before.by_calibration;
-  sight.by_rho = weight_ * sight.by_rho + weight_before * before.by_rho;
-  write_landmark(jacobians[3], jacobians[4], sight);
+  observation.by_calibration = weight_ * observation.by_calibration + weight_before * before.by_calibration;
+  observation.by_rho = weight_ * observation.by_rho + weight_before * before.by_rho;
+  write_landmark(jacobians[3], jacobians[4], observation);
   return true;
 }
 

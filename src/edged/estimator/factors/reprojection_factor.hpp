@@ -40,10 +40,10 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<2, 7, 7, 4, 1> 
   double weight_;
 };
 
-/// The same for a sight whose error is in part that of the sight before it: a track that has drifted stays where it is.
-/// Blocks: poses of the anchor, the observing state and the state of the sight before, then as above. Residual (2):
-/// (e - correlation * e_before) / sigma with e = predicted - seen of either; sigma: of what the sight before does not
-/// tell.
+/// The same for an observation whose error is in part that of the observation before it: a track that has drifted stays
+/// where it is. Blocks: poses of the anchor, the observing state and the state of the observation before, then as
+/// above. Residual (2): (e - correlation * e_before) / sigma with e = predicted - seen of either; sigma: of what the
+/// observation before does not tell.
 class TrackStepFactor final : public ceres::SizedCostFunction<2, 7, 7, 7, 4, 1> {
  public:
   TrackStepFactor(const SE3& T_B_C, const LandmarkView& anchor, const LandmarkView& seen, const LandmarkView& before,
