@@ -74,6 +74,7 @@ Step next_step_or_stop(PyOdometry& self) {
 std::map<std::string, std::size_t> counters(PyOdometry& self) {
   const auto [in, out] = guarded(self.mutex, [&] { return self.odometry.counters(); });
   return {{"unknown_camera", in.unknown_camera},
+          {"unused_camera", in.unused_camera},
           {"absurd_stamps", in.absurd_stamps},
           {"far_ahead", in.far_ahead},
           {"clocks_set_back", in.clocks_set_back},

@@ -30,9 +30,10 @@ std::uint8_t level_of(const NodeHealth& health) {
 
 std::size_t lost_measurements(const NodeHealth& health) {
   const auto& [intake, packets] = health.odometry;
-  std::size_t lost = intake.unknown_camera + intake.absurd_stamps + intake.events_outside + intake.frames_unfit +
-                     intake.no_room + packets.packets_overflow + packets.events_late + packets.frames_late +
-                     packets.imu_not_finite + packets.imu_late + health.left_out.events + health.left_out.frames;
+  std::size_t lost = intake.unknown_camera + intake.absurd_stamps + intake.far_ahead + intake.clocks_set_back +
+                     intake.events_outside + intake.frames_unfit + intake.no_room + packets.packets_overflow +
+                     packets.events_late + packets.frames_late + packets.imu_not_finite + packets.imu_late +
+                     health.left_out.events + health.left_out.frames;
   for (const auto& [topic, input] : health.inputs) lost += input.unreadable + input.missed;
   return lost;
 }
@@ -60,7 +61,10 @@ DiagnosticStatus diagnostics_message(const NodeHealth& health, const std::string
   count("frames left out, too slow", health.left_out.frames);
   const auto& [intake, packets] = health.odometry;
   count("of an unknown camera", intake.unknown_camera);
+  count("of a camera not used", intake.unused_camera);
   count("absurd stamps", intake.absurd_stamps);
+  count("stamps far ahead", intake.far_ahead);
+  count("clocks set back", intake.clocks_set_back);
   count("events outside the image", intake.events_outside);
   count("frames unfit", intake.frames_unfit);
   count("no room", intake.no_room);

@@ -53,6 +53,8 @@ struct Feature {
   double inverse_depth = 0.0;                  ///< [1/m] along z of the anchor camera
 };
 
+/// W is here the frame of this start (S of pipeline/world_frame): what is measured in the world must be moved there
+/// first.
 class Window {
  public:
   /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already. Calibrations are

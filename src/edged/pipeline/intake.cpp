@@ -141,15 +141,15 @@ IntakeCounters Intake::counters() const {
 const Intake::Camera* Intake::find(const std::string& name, Modality modality) {
   const auto found = std::ranges::find_if(
       cameras_, [&](const Camera& camera) { return camera.name == name && camera.modality == modality; });
-  if (found != cameras_.end()) return &*found;
-  ++counters_.unknown_camera;
+  if (found != cameras_.end() && found->used) return &*found;
+  ++(found == cameras_.end() ? counters_.unknown_camera : counters_.unused_camera);
   return nullptr;
 }
 
 /// Takes out events that cannot be.
 bool Intake::admit(EventBatch& batch) {
   const Camera* camera = find(batch.camera, Modality::Events);
-  if (camera == nullptr || !camera->used) return false;
+  if (camera == nullptr) return false;
   const int width = camera->width, height = camera->height;
   counters_.events_outside +=
       std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
@@ -159,7 +159,7 @@ bool Intake::admit(EventBatch& batch) {
 
 bool Intake::admit(Frame& frame) {
   const Camera* camera = find(frame.camera, Modality::Frames);
-  if (camera == nullptr || !camera->used) return false;
+  if (camera == nullptr) return false;
   cv::Mat& image = frame.image;
   const bool fits = image.type() == CV_8UC1 && image.cols == camera->width && image.rows == camera->height;
   counters_.frames_unfit += fits ? 0 : 1;

@@ -55,6 +55,19 @@ Received received(Intake& intake, int from_ms, int to_ms, const std::function<in
 
 int right(int ms) { return ms; }
 
+TEST(Intake, CountsWhatComesFromCamerasThatItDoesNotUse) {
+  Rig rig = two_cameras();
+  rig.cameras.push_back(rig.cameras.front());
+  rig.cameras.back().name = "dvs2";
+  Intake intake(rig, Mode::Fused, kInOrder);
+  intake.add(EventBatch{"dvs2", {{at_ms(1), 1, 1, true}}});
+  EXPECT_EQ(intake.counters().unused_camera, 1U);
+  EXPECT_EQ(intake.counters().unknown_camera, 0U);
+  Intake without_frames(rig, Mode::Events, kInOrder);
+  without_frames.add(Frame{at_ms(1), "cam", cv::Mat(10, 10, CV_8UC1)});
+  EXPECT_EQ(without_frames.counters().unused_camera, 1U) << "the mode does not use it";
+}
+
 TEST(Intake, ADamagedStampCostsOneMeasurement) {
   for (const SensorDelays& delays : {SensorDelays{}, kInOrder}) {
     Intake intake(two_cameras(), Mode::Fused, delays);

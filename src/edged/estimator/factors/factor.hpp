@@ -17,7 +17,10 @@ namespace edged {
 /// What a term of the cost says. Prior: what has left the window; SoftPrior: set by hand.
 enum class FactorKind : std::uint8_t { Prior, SoftPrior, Imu, Standstill, Observation, SceneDepth };
 
-/// One term of the cost.
+/// One term of the cost. When a keyframe leaves, all factors with a block of it go into the prior, but for what
+/// `stays_out` (sliding.cpp) holds back: a kind that ties a keyframe to a state that is none must be held back there,
+/// as that state is dropped later. What only a dropped state has measured is lost; IMU intervals and rest are joined
+/// on.
 struct Factor {
   FactorKind kind;
   std::unique_ptr<ceres::CostFunction> cost = nullptr;
