@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
-no components include one another in a cycle.
+no components include one another in a cycle, and that no two headers define a type of the same name.
 
 The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
@@ -18,6 +18,7 @@ import sys
 ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
 
 
@@ -101,6 +102,17 @@ def check_cycles(root, folders, public):
                 del uses[component][used]
 
 
+def check_names(root, folders, public):
+    """One namespace has one type of a name: a program that links two runs the code of either."""
+    defined = {}
+    for _, file, _ in code_files(root, folders, public):
+        for match in filter(None, map(TYPE.match, file.read_text().splitlines() if file.suffix != ".cpp" else ())):
+            defined.setdefault(match.group(1), []).append(str(file.relative_to(root)))
+    for name, files in defined.items():
+        if len(files) > 1:
+            yield f"{' and '.join(files)} define a type of the same name, {name}"
+
+
 def check_links(root, folders, allowed):
     """What CMake links: DEPENDS of a module; test programs link what they like."""
     for module, folder in folders.items():
@@ -130,6 +142,7 @@ def main():
     errors += [f"ARCHITECTURE.md: there is no include/edged/{name}.hpp" for name in sorted(public.keys() - headers)]
     errors += check_includes(root, folders, public, allowed)
     errors += check_cycles(root, folders, public)
+    errors += check_names(root, folders, public)
     errors += check_links(root, folders, allowed)
     print("\n".join(errors) or f"{len(allowed)} modules keep their layers, no components include one another in a cycle")
     return 1 if errors else 0

@@ -81,9 +81,9 @@ void Channel::move(const SE3& T_new_old) {
   T_W_Bkeyframe = T_new_old * T_W_Bkeyframe;
 }
 
-const Channel* leading_channel(std::span<const View> views) {
+const Channel* leading_channel(std::span<const ChannelView> views) {
   const Channel* leading = nullptr;
-  for (const View& view : views) {
+  for (const ChannelView& view : views) {
     if (leading == nullptr || view.channel->carried() >= leading->carried()) leading = view.channel;
   }
   return leading;

@@ -66,12 +66,12 @@ class Channel {
 };
 
 /// A camera with its image of a packet: corners are followed on `track` and found on `detect`.
-struct View {
+struct ChannelView {
   Channel* channel;
   cv::Mat track, detect;
 };
 
 /// The camera that carries the most tracks, the last of equals (frames); null without any.
-const Channel* leading_channel(std::span<const View> views);
+const Channel* leading_channel(std::span<const ChannelView> views);
 
 }  // namespace edged

@@ -91,7 +91,7 @@ TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
   for (Channel* channel : {&few, &many}) show(*channel, image, 0);
   few.mark_keyframe(image, {}, next_id_, 40);
   many.mark_keyframe(image, {}, next_id_, 1000);
-  const std::vector<View> views = {{&many, image, image}, {&few, image, image}};
+  const std::vector<ChannelView> views = {{&many, image, image}, {&few, image, image}};
   EXPECT_EQ(leading_channel({}), nullptr);
   EXPECT_EQ(leading_channel(views), &many);
   EXPECT_EQ(leading_channel(std::span(views).last(1)), &few) << "the other one has no image now";

@@ -84,9 +84,9 @@ Step PacketOdometry::process(Packet packet) {
   const Preintegration motion = predict(packet);
   const double scene_depth = measure_depth(packet);
   const EventImage drawn = draw(packet, scene_depth);
-  const std::vector<View> views = views_of(packet, drawn);
-  for (const View& view : views) track(view, packet.t, scene_depth);
-  for (const View& view : views) reject(view);
+  const std::vector<ChannelView> views = views_of(packet, drawn);
+  for (const ChannelView& view : views) track(view, packet.t, scene_depth);
+  for (const ChannelView& view : views) reject(view);
   const bool keyframe = is_keyframe(packet, views);
   if (keyframe) mark_keyframe(packet.t, views);
   const EstimatorResult result = estimate(packet, motion, views, keyframe);
@@ -181,8 +181,8 @@ std::optional<DepthGrid> PacketOdometry::event_depths(double scene_depth) const 
 }
 
 /// The cameras that the packet brought an image of.
-std::vector<View> PacketOdometry::views_of(const Packet& packet, const EventImage& drawn) {
-  std::vector<View> views;
+std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, const EventImage& drawn) {
+  std::vector<ChannelView> views;
   for (Channel& channel : channels_) {
     if (channel.camera.modality == Modality::Events) {
       if (!drawn.frame.empty()) views.push_back({&channel, drawn.track, drawn.detect});
@@ -195,19 +195,19 @@ std::vector<View> PacketOdometry::views_of(const Packet& packet, const EventImag
   return views;
 }
 
-void PacketOdometry::track(const View& view, Timestamp t, double scene_depth) {
+void PacketOdometry::track(const ChannelView& view, Timestamp t, double scene_depth) {
   Channel& channel = *view.channel;
   const auto timer = timings_.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
   channel.track(view.track, t, T_W_B_of(channel), scene_depth,
                 [this](FeatureId id) { return estimator_.initialized() ? estimator_.depth(id) : std::nullopt; });
 }
 
-void PacketOdometry::reject(const View& view) {
+void PacketOdometry::reject(const ChannelView& view) {
   const auto timer = timings_.measure("reject");
   view.channel->reject(T_W_B_of(*view.channel), !gyro_saturated_);
 }
 
-bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const View> views) const {
+bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const ChannelView> views) const {
   const Channel* leader = leading_channel(views);
   if (leader == nullptr) return false;
   // With both cameras at work a keyframe waits for the next frame, so that both see it.
@@ -236,9 +236,9 @@ int PacketOdometry::corners_wanted(const Channel& channel) const {
   return std::max(config_.health.min_event_corners, all - static_cast<int>(find_channel(Modality::Frames)->carried()));
 }
 
-void PacketOdometry::mark_keyframe(Timestamp t, std::span<const View> views) {
+void PacketOdometry::mark_keyframe(Timestamp t, std::span<const ChannelView> views) {
   const auto timer = timings_.measure("detect");
-  for (const View& view : views) {
+  for (const ChannelView& view : views) {
     Channel& channel = *view.channel;
     channel.mark_keyframe(view.detect, T_W_B_of(channel), next_feature_, corners_wanted(channel));
   }
@@ -247,11 +247,11 @@ void PacketOdometry::mark_keyframe(Timestamp t, std::span<const View> views) {
 }
 
 EstimatorResult PacketOdometry::estimate(const Packet& packet, const Preintegration& motion,
-                                         std::span<const View> views, bool keyframe) {
+                                         std::span<const ChannelView> views, bool keyframe) {
   const auto timer = timings_.measure("estimate");
   const bool quiet = event_view_ && event_view_->quiet(packet);
   EstimatorInput input{packet.t, motion, {}, keyframe, quiet, depth_.for_factor(packet.t)};
-  for (const View& view : views) {
+  for (const ChannelView& view : views) {
     view.channel->T_W_Blast = T_W_B_of(*view.channel);
     input.observations.push_back(view.channel->observations());
   }
@@ -264,7 +264,7 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, const Preintegrat
     for (Channel& channel : channels_) channel.move(T_new_old);
   }
   calibrate();
-  for (const View& view : views) view.channel->settle(T_W_B_of(*view.channel), keyframe);
+  for (const ChannelView& view : views) view.channel->settle(T_W_B_of(*view.channel), keyframe);
   depth_.add_landmarks(packet.t, landmarks_in_view());
   return result;
 }

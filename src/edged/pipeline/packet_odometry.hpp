@@ -51,13 +51,13 @@ class PacketOdometry {
   EventImage draw(const Packet& packet, double scene_depth);
   std::optional<DepthGrid> event_depths(double scene_depth) const;
   std::vector<SeenDepth> landmarks_in_view() const;
-  std::vector<View> views_of(const Packet& packet, const EventImage& drawn);
-  void track(const View& view, Timestamp t, double scene_depth);
-  void reject(const View& view);
-  bool is_keyframe(const Packet& packet, std::span<const View> views) const;
+  std::vector<ChannelView> views_of(const Packet& packet, const EventImage& drawn);
+  void track(const ChannelView& view, Timestamp t, double scene_depth);
+  void reject(const ChannelView& view);
+  bool is_keyframe(const Packet& packet, std::span<const ChannelView> views) const;
   int corners_wanted(const Channel& channel) const;
-  void mark_keyframe(Timestamp t, std::span<const View> views);
-  EstimatorResult estimate(const Packet& packet, const Preintegration& motion, std::span<const View> views,
+  void mark_keyframe(Timestamp t, std::span<const ChannelView> views);
+  EstimatorResult estimate(const Packet& packet, const Preintegration& motion, std::span<const ChannelView> views,
                            bool keyframe);
   void calibrate();
   void update_covariance(Timestamp t);
