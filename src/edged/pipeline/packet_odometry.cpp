@@ -154,7 +154,7 @@ const Channel* PacketOdometry::find_channel(Modality modality) const {
 std::vector<SeenDepth> PacketOdometry::landmarks_in_view() const {
   std::vector<SeenDepth> seen;
   const Channel* events = find_channel(Modality::Events);
-  const Channel& viewer = events ? *events : *find_channel(Modality::Frames);
+  const Channel& viewer = events ? *events : channels_.front();
   const SE3 T_C_W = viewer.T_W_C(T_W_B_of(viewer)).inverse();
   for (const Channel& channel : channels_) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
