@@ -8,11 +8,14 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "calib_check.hpp"
+#include "calib_template.hpp"
 #include "edged/camera/field_of_view.hpp"
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
 #include "exit_code.hpp"
@@ -23,10 +26,13 @@ namespace {
 using nlohmann::ordered_json;
 
 struct CalibOptions {
+  std::string camera_of_template;
   std::string file;
   std::filesystem::path imu, out;
   std::vector<std::string> cameras;  ///< NAME=events|frames|both
-  bool json = false;
+  SourceOptions recording;           ///< to check it against
+  std::string mode = "auto";
+  bool quiet = false, json = false;
 };
 
 std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts) {
@@ -58,7 +64,6 @@ ordered_json matrix_json(const SE3& T) {
 ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   const FieldOfView view = field_of_view(m);
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   ordered_json out = {{"name", camera.name},
                       {"modality", camera.modality == Modality::Events ? "events" : "frames"},
                       {"resolution_px", {m.width(), m.height()}},
@@ -66,9 +71,9 @@ ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
                       {"distortion", to_string(m.distortion())},
                       {"coefficients", m.coefficients()},
                       {"field_of_view_deg",
-                       {{"horizontal", view.horizontal * kDegrees},
-                        {"vertical", view.vertical * kDegrees},
-                        {"diagonal", view.diagonal * kDegrees}}}};
+                       {{"horizontal", view.horizontal * kDegreesPerRadian},
+                        {"vertical", view.vertical * kDegreesPerRadian},
+                        {"diagonal", view.diagonal * kDegreesPerRadian}}}};
   if (!has_extrinsics) return out;
   out["T_B_C"] = matrix_json(camera.T_B_C);
   out["T_C_B"] = matrix_json(camera.T_B_C.inverse());
@@ -91,13 +96,40 @@ ordered_json calibration_json(const Calibration& calibration) {
   return out;
 }
 
+void write_new_file(const std::filesystem::path& out, const std::string& text) {
+  if (std::filesystem::exists(out)) throw InputError::format("{}: exists; choose another name", out.string());
+  std::ofstream file(out);
+  file << text;
+  if (!file.flush()) throw InputError::format("{}: cannot be written", out.string());
+}
+
 void write_own(const Calibration& calibration, const std::filesystem::path& out) {
   if (!calibration.has_extrinsics)
     throw InputError::format("{}: not written: the calibration holds intrinsics only", out.string());
-  if (std::filesystem::exists(out)) throw InputError::format("{}: exists; choose another name", out.string());
-  std::ofstream file(out);
-  file << to_yaml(calibration);
-  if (!file.flush()) throw InputError::format("{}: cannot be written", out.string());
+  write_new_file(out, to_yaml(calibration));
+}
+
+int write_template(const CalibOptions& options) {
+  const std::string text = calibration_template(options.camera_of_template);
+  if (options.out.empty()) {
+    fmt::print("{}", text);
+  } else {
+    write_new_file(options.out, text);
+    fmt::print("{}: fill in what reads FILL_IN, then: edged calib {}\n", options.out.string(), options.out.string());
+  }
+  return kExitOk;
+}
+
+/// FILE is the calibration as --calib or --rig would name it; --imu holds samples.
+int run_check(const CalibOptions& options) {
+  CalibCheckOptions check{options.recording, options.mode, options.out, options.quiet, options.json};
+  check.source.imu = options.imu;
+  if (std::filesystem::exists(options.file)) {
+    check.source.calib = options.file;
+  } else if (!options.file.empty()) {
+    check.source.rig = options.file;
+  }
+  return check_calibration(std::move(check));
 }
 
 int run_calib(const CalibOptions& options) {
@@ -114,6 +146,25 @@ int run_calib(const CalibOptions& options) {
   return kExitOk;
 }
 
+/// --check and what only means something beside it.
+CLI::Option* add_check_options(CLI::App& calib, CalibOptions& options, CLI::Option* file) {
+  CLI::Option* check = calib.add_option(
+      "--check", options.recording.recording,
+      fmt::format("Whether FILE, or what the recording brings, fits this recording: a run over its first {:.0f} s "
+                  "[else --from, --duration, --to], whose own rotation and clock of each camera are held against it",
+                  kCheckedSeconds));
+  const std::size_t before = calib.get_options().size();
+  add_reading_options(calib, options.recording);
+  calib.add_option("--mode", options.mode, "Sensors beside the IMU; auto: all there are")
+      ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
+      ->capture_default_str();
+  calib.add_flag("--quiet", options.quiet, "No status line");
+  const std::vector<CLI::Option*> all = calib.get_options([](const CLI::Option*) { return true; });
+  for (std::size_t i = before; i < all.size(); ++i) all[i]->needs(check);
+  for (const char* name : {"--rig", "--calib"}) calib.get_option(name)->excludes(file);
+  return check;
+}
+
 }  // namespace
 
 void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
@@ -121,21 +172,43 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* calib = app.add_subcommand(
       "calib",
       "Show a calibration: both directions of each transform, field of view, clock, IMU noise, what looks wrong");
-  calib->add_option("FILE", options->file, "Calibration file or folder (format found by content), or the name of a rig")
-      ->required();
-  calib->add_option("--imu", options->imu, "Kalibr imu yaml: noise densities for a calibration without them");
-  calib
-      ->add_option("--camera", options->cameras,
-                   "What a camera sees, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
-                   "tell; may be repeated")
-      ->allow_extra_args(false);
-  calib->add_option("--out", options->out, "Write it as yaml of our own, for --rig and --calib");
-  calib->add_flag("--json", options->json, "Print json instead of text");
+  CLI::Option* file = calib->add_option("FILE", options->file,
+                                        "Calibration file or folder (format found by content), or the name of a rig");
+  calib->add_option("--imu", options->imu,
+                    "Kalibr imu yaml: noise densities for a calibration without them. With --check: IMU samples from a "
+                    "csv or txt, as of `edged run`");
+  CLI::Option* sees =
+      calib
+          ->add_option(
+              "--camera", options->cameras,
+              "What a camera sees, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
+              "tell; may be repeated")
+          ->allow_extra_args(false);
+  calib->add_option("--out", options->out,
+                    "Write it as yaml of our own, for --rig and --calib; with --check as the run found it");
+  CLI::Option* json = calib->add_flag("--json", options->json, "Print json instead of text");
+  CLI::Option* fresh =
+      calib->add_option("--new", options->camera_of_template, "Instead: a commented file to fill in for this camera")
+          ->check(CLI::IsMember(template_names()))
+          ->excludes(file)
+          ->excludes(json);
+  CLI::Option* check = add_check_options(*calib, *options, file);
+  check->excludes(fresh)->excludes(sees);
   calib->footer(
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"
-      "  edged calib camchain-imucam.yaml --imu imu.yaml --out head.yaml");
-  calib->callback([options, &chosen] { chosen = [options] { return run_calib(*options); }; });
+      "  edged calib camchain-imucam.yaml --imu imu.yaml --out head.yaml\n"
+      "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
+      "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
+      "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be told (too little motion, no start), 3 what cannot be "
+      "read.");
+  calib->callback([options, file, fresh, check, &chosen] {
+    if (file->count() + fresh->count() + check->count() == 0) throw CLI::RequiredError("FILE, --new or --check");
+    chosen = [options] {
+      if (!options->camera_of_template.empty()) return write_template(*options);
+      return options->recording.recording.empty() ? run_calib(*options) : run_check(*options);
+    };
+  });
 }
 
 }  // namespace edged

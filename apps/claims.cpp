@@ -7,7 +7,7 @@ namespace edged {
 void Claims::add(const Step& step) {
   const bool good = step.status == TrackingStatus::Good;
   // Packets after the first of a loss only skip a number.
-  if (step.status == TrackingStatus::Lost) ++start_;
+  if (step.status == TrackingStatus::Lost || step.found_again) ++start_;
   if (!step.covariance || !is_tracking(step.status)) return;
   const auto& [position, rotation] = *step.covariance;
   const auto old = [&](const ClaimedPose& last) {

@@ -10,7 +10,8 @@
 
 namespace edged {
 
-/// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start.
+/// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start,
+/// and so does being found again.
 class Claims {
  public:
   /// Every step, in time order.

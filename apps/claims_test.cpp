@@ -25,13 +25,17 @@ TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
   add_at(6, step);
   step.status = TrackingStatus::Degraded;
   add_at(7, step);
+  step.found_again = true;
+  add_at(8, step);
   const std::vector<ClaimedPose>& claims = gathered.all();
-  ASSERT_EQ(claims.size(), 4u);
-  const std::vector<double> stamps{2, 4, 6, 7};
+  ASSERT_EQ(claims.size(), 5u);
+  const std::vector<double> stamps{2, 4, 6, 7, 8};
   for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, timestamp_from_seconds(stamps[i]));
   EXPECT_FALSE(claims[3].good);
   EXPECT_EQ(claims[0].start, claims[1].start);
   EXPECT_NE(claims[1].start, claims[2].start);
+  EXPECT_EQ(claims[2].start, claims[3].start);
+  EXPECT_NE(claims[3].start, claims[4].start) << "it has gone to another place";
 }
 
 }  // namespace

@@ -4,13 +4,17 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "config_source.hpp"
 #include "edged/core/check.hpp"
 #include "exit_code.hpp"
+#include "suggestion.hpp"
 
 namespace edged {
 namespace {
@@ -26,6 +30,27 @@ void print_text(const ConfigField& field) {
   if (field.range != "any") kind += ", " + field.range;
   if (!field.unit.empty()) kind += " " + field.unit;
   fmt::print("{} = {}\n    {}\n    {}\n", field.key, field.default_value, kind, field.effect);
+}
+
+/// Words of the keys that begin, end or are parted by dots and underscores: what one looks for.
+std::vector<std::string> words_of_keys(const ConfigFields& fields) {
+  std::set<std::string> words;
+  for (const ConfigField& field : fields.all()) {
+    for (std::size_t begin = 0; begin < field.key.size();) {
+      const std::size_t end = std::min(field.key.find_first_of("._", begin), field.key.size());
+      words.insert(field.key.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    words.insert(field.key.substr(field.key.rfind('.') + 1));
+    words.insert(field.key);
+  }
+  return {words.begin(), words.end()};
+}
+
+[[noreturn]] void refuse_filter(const ConfigFields& fields, const std::string& filter) {
+  const std::string nearest = nearest_name(words_of_keys(fields), filter, typing_errors(filter));
+  throw InputError::format("no option's key contains '{}'{}; `edged config` without a word lists them", filter,
+                           did_you_mean(nearest));
 }
 
 int run_config(const ConfigOptions& options) {
@@ -50,10 +75,9 @@ int run_config(const ConfigOptions& options) {
                     {"effect", field.effect},
                     {"expert", field.expert}});
   }
+  if (list.empty()) refuse_filter(fields, options.filter);
   if (options.json) {
     fmt::print("{}\n", list.dump(2));
-  } else if (list.empty()) {
-    throw InputError::format("no option's key contains '{}'; `edged config` without a word lists them", options.filter);
   } else if (passed_over > 0) {
     fmt::print("and {} for who works on the method: edged config expert\n", passed_over);
   }

@@ -20,6 +20,7 @@
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
 #include "edged/events/warp.hpp"
+#include "edged/io/text.hpp"
 #include "edged/odometry.hpp"
 #include "exit_code.hpp"
 #include "run_mode.hpp"
@@ -174,11 +175,11 @@ std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& conf
 
 std::string file_name(int number, const std::string& caption) {
   std::string name = fmt::format("{:02d}_", number);
-  for (const char c : caption) {
+  for (const char c : lower_case(caption)) {
     if (c == ' ' || c == '-')
       name += '_';
     else if (c != ',')
-      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      name += c;
   }
   return name + ".png";
 }

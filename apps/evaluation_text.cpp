@@ -34,8 +34,10 @@ std::string local_error_text(const std::vector<LocalError>& local) {
 }
 
 std::string to_table(const Evaluation& e) {
-  std::string table = fmt::format("{} pairs over {:.2f} s and {:.3f} m; {} alignment on {}\n", e.pairs, e.duration_s,
-                                  e.path_length_m, to_string(e.protocol.alignment), window_text(e.protocol.window));
+  const bool timed = !std::isnan(e.duration_s);
+  std::string table = fmt::format("{} pairs over {}{:.3f} m; {} alignment on {}\n", e.pairs,
+                                  timed ? fmt::format("{:.2f} s and ", e.duration_s) : "", e.path_length_m,
+                                  to_string(e.protocol.alignment), window_text(e.protocol.window));
   if (e.outside + e.in_gaps > 0) {
     table +=
         fmt::format("without ground truth: {} poses outside its time span, {} in its gaps\n", e.outside, e.in_gaps);
@@ -50,7 +52,7 @@ std::string to_table(const Evaluation& e) {
     table += row(fmt::format("RPE position, {} s", relative.delta_s).c_str(), relative.translation_m, "m");
     table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
   }
-  table += fmt::format("  local error            {}\n", local_error_text(e.local));
+  if (timed) table += fmt::format("  local error            {}\n", local_error_text(e.local));
   table += fmt::format("  mean position error    {:.4f} % of the path\n", e.mpe_percent);
   table +=
       fmt::format("  mean rotation error    {:.4f} deg/m, yaw {:.4f} deg/m\n", e.rotation_deg_per_m, e.yaw_deg_per_m);

@@ -11,7 +11,7 @@ constexpr int kExitUsage = 2;       ///< the command line
 constexpr int kExitInput = 3;       ///< recording, calibration or configuration
 constexpr int kExitNeverGood = 4;   ///< ran to the end, but there never was a Good pose
 constexpr int kExitNotTrusted = 5;  ///< ran to the end, but recording, calibration or the estimate itself contradict it
-/// Plus the signal's number: 130 after Ctrl-C, 143 after SIGTERM; files are complete.
+/// Plus the signal's number: 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP; files are complete.
 constexpr int kExitSignalBase = 128;
 
 }  // namespace edged

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and SIGTERM as a flag that the main loop asks for.
+// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that the main loop asks for.
 #pragma once
 
 #include "edged/core/dataset.hpp"
 
 namespace edged {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag; a second one of its kind ends the program at once.
+/// From now on the first SIGINT, SIGTERM or SIGHUP only sets a flag; a second one of its kind ends the program at once.
 void catch_interrupts();
 
 /// The signal that came, or 0.

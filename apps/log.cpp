@@ -13,6 +13,7 @@
 #include <mutex>
 #include <utility>
 
+#include "edged/core/check.hpp"
 #include "status_line.hpp"
 
 namespace edged {
@@ -36,9 +37,15 @@ void start_logging() {
 }
 
 void attach_log_file(const std::filesystem::path& file) {
-  const auto to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string(), true);
-  to_file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
-  for (const auto& line : kept_lines()->last_raw()) to_file->log(line);
+  std::shared_ptr<spdlog::sinks::basic_file_sink_mt> to_file;
+  try {
+    to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string(), true);
+    to_file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
+    for (const auto& line : kept_lines()->last_raw()) to_file->log(line);
+  } catch (const spdlog::spdlog_ex&) {
+    throw InputError::format("{}: cannot be written; is the disk full?", file.string());
+  }
+  spdlog::set_error_handler([](const std::string&) {});  // a full disk: who writes the results tells the user
   auto& sinks = spdlog::default_logger()->sinks();
   std::erase(sinks, std::static_pointer_cast<spdlog::sinks::sink>(kept_lines()));
   sinks.push_back(to_file);

@@ -16,6 +16,7 @@
 #include "info_command.hpp"
 #include "manual_command.hpp"
 #include "program.hpp"
+#include "report_command.hpp"
 #include "run_command.hpp"
 #include "simulate_command.hpp"
 #include "version.hpp"
@@ -31,7 +32,9 @@ constexpr const char* kFooter =
     "\n"
     "Exit codes: 0 ok, 1 a bug of ours, 2 wrong command line, 3 bad recording, calibration or option,\n"
     "  4 ran, but never got a good pose, 5 ran, but the result is not to be trusted (it says why),\n"
-    "  130 interrupted by Ctrl-C (143 by SIGTERM) with complete files.\n"
+    "  130 interrupted by Ctrl-C (143 by SIGTERM, 129 by SIGHUP) with complete files.\n"
+    "With --json an error is {\"error\": {\"kind\", \"exit_code\", \"message\"}} on stdout, beside the line on "
+    "stderr.\n"
     "`edged COMMAND --help` tells more.";
 
 }  // namespace
@@ -50,6 +53,7 @@ int main(int argc, char** argv) {
   add_calib_command(app, chosen);
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
+  add_report_command(app, chosen);
   add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);

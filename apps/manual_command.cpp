@@ -83,9 +83,9 @@ std::string assignments() {
   return words;
 }
 
-/// What may stand behind an option, as bash has to be told it; "" where it is a file or anything.
-std::string choices(const CLI::App& command, const CLI::Option& option) {
-  if (option.check_name("--rig")) return "$(\"${COMP_WORDS[0]}\" manual rigs 2>/dev/null)";
+/// What may stand behind an option; "" where it is a file or anything. rigs: how the shell asks for their names.
+std::string choices(const CLI::App& command, const CLI::Option& option, const std::string& rigs) {
+  if (option.check_name("--rig")) return rigs;
   if (option.check_name("--set"))
     return command.get_name() == "simulate" ? assignments<SimulatorConfig>() : assignments<RunConfig>();
   // As CLI::IsMember names itself in the help: TEXT:{a,b,c}
@@ -97,25 +97,39 @@ std::string choices(const CLI::App& command, const CLI::Option& option) {
   return words;
 }
 
+/// How bash or zsh sets a variable to several words, and asks for the rigs.
+struct ShellWords {
+  const char *begin, *end, *rigs;
+};
+
 /// For `case "COMMAND OPTION" in`: what may follow each option, and what else.
-std::string completion_cases(const CLI::App& command) {
+std::string completion_cases(const CLI::App& command, const ShellWords& shell) {
   std::string cases;
   std::string names;
+  const auto add = [&](const std::string& pattern, const std::string& words) {
+    cases += fmt::format("    {}) {}{}{} ;;\n", pattern, shell.begin, words, shell.end);
+  };
   for (const CLI::App* inner : shown_commands(command)) names += inner->get_name() + " ";
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_lnames().empty()) continue;
-    const std::string name = "--" + option->get_lnames().front();
-    names += name + " ";
-    if (option->get_items_expected_max() > 0)
-      cases += fmt::format("    \"{} {}\") words=\"{}\" ;;\n", command.get_name(), name, choices(command, *option));
+    for (const std::string& long_name : option->get_lnames()) {
+      names += "--" + long_name + " ";
+      if (option->get_items_expected_max() > 0)
+        add(fmt::format("\"{} --{}\"", command.get_name(), long_name), choices(command, *option, shell.rigs));
+    }
   }
-  return cases + fmt::format("    \"{} \"*) words=\"{}\" ;;\n", command.get_name(), names);
+  add(fmt::format("\"{} \"*", command.get_name()), names);
+  return cases;
+}
+
+std::string all_cases(const CLI::App& app, const ShellWords& shell) {
+  std::string cases = completion_cases(app, shell);
+  for (const CLI::App* command : shown_commands(app)) cases += completion_cases(*command, shell);
+  return cases;
 }
 
 /// Where no word fits, bash offers files.
 std::string bash_completion(const CLI::App& app) {
-  std::string cases = completion_cases(app);
-  for (const CLI::App* command : shown_commands(app)) cases += completion_cases(*command);
+  const ShellWords bash{"words=\"", "\"", "$(\"${COMP_WORDS[0]}\" manual rigs 2>/dev/null)"};
   return fmt::format(R"(# Completion of bash for {0}, written by `{0} manual bash`.
 _{0}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} option=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}} words=
@@ -132,14 +146,79 @@ _{0}() {{
 }}
 complete -o default -F _{0} {0}
 )",
-                     app.get_name(), cases);
+                     app.get_name(), all_cases(app, bash));
+}
+
+std::string zsh_completion(const CLI::App& app) {
+  const ShellWords zsh{"choices=(", ")", "${(f)\"$(${words[1]} manual rigs 2>/dev/null)\"}"};
+  return fmt::format(R"(#compdef {0}
+# Completion of zsh for {0}, written by `{0} manual zsh`.
+_{0}() {{
+  local option=${{words[CURRENT-1]}} command=${{words[2]}}
+  local -a choices
+  # --option=word
+  [[ $PREFIX == --*=* ]] && option=${{PREFIX%%=*}} && compset -P '--*='
+  (( CURRENT == 2 )) && command={0} option=
+  case "$command $option" in
+{1}  esac
+  # files before options, until a dash asks for these
+  if [[ ${{choices[1]}} == --* && $PREFIX != -* ]] || (( $#choices == 0 )); then
+    _files
+    return
+  fi
+  compadd -S '' -- ${{(M)choices:#*=}}
+  compadd -- ${{choices:#*=}}
+}}
+_{0} "$@"
+)",
+                     app.get_name(), all_cases(app, zsh));
+}
+
+/// Within single quotes.
+std::string fish_quoted(const std::string& text) {
+  std::string safe;
+  for (const char c : text) safe += c == '\'' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  return "'" + safe + "'";
+}
+
+/// Files are offered beside positional words, and behind options that take anything.
+std::string fish_options(const CLI::App& command, const std::string& where) {
+  std::string text;
+  for (const CLI::Option* option : command.get_options()) {
+    std::string line;
+    for (const std::string& name : option->get_lnames()) line += " -l " + name;
+    if (line.empty()) continue;
+    for (const std::string& name : option->get_snames()) line += " -s " + name;
+    const std::string words = choices(command, *option, "(edged manual rigs 2>/dev/null)");
+    if (option->get_items_expected_max() > 0) line += words.empty() ? " -r" : " -x -a " + fish_quoted(words);
+    text += fmt::format("{}{} -d {}\n", where, line, fish_quoted(option->get_description()));
+  }
+  return text;
+}
+
+std::string fish_completion(const CLI::App& app) {
+  const std::string begin = "complete -c " + app.get_name();
+  std::string text = fmt::format("# Completion of fish for {0}, written by `{0} manual fish`.\n", app.get_name());
+  const std::string first = begin + " -n __fish_use_subcommand";
+  text += fish_options(app, first);
+  for (const CLI::App* command : shown_commands(app)) {
+    text += fmt::format("{} -f -a {} -d {}\n", first, command->get_name(), fish_quoted(command->get_description()));
+    const std::string where = fmt::format("{} -n '__fish_seen_subcommand_from {}'", begin, command->get_name());
+    for (const CLI::App* inner : shown_commands(*command))
+      text += fmt::format("{} -a {} -d {}\n", where, inner->get_name(), fish_quoted(inner->get_description()));
+    text += fish_options(*command, where);
+  }
+  return text;
 }
 
 int print_manual(const CLI::App& app, const std::string& kind) {
   if (kind == "rigs") {
     fmt::print("{}\n", fmt::join(known_rigs(), "\n"));
   } else {
-    fmt::print("{}", kind == "man" ? man_page(app) : bash_completion(app));
+    fmt::print("{}", kind == "man"    ? man_page(app)
+                     : kind == "bash" ? bash_completion(app)
+                     : kind == "zsh"  ? zsh_completion(app)
+                                      : fish_completion(app));
   }
   return kExitOk;
 }
@@ -148,9 +227,12 @@ int print_manual(const CLI::App& app, const std::string& kind) {
 
 void add_manual_command(CLI::App& app, std::function<int()>& chosen) {
   const auto kind = std::make_shared<std::string>();
-  CLI::App* manual = app.add_subcommand("manual", "Print the man page, the completion of bash, or the rigs there are");
+  CLI::App* manual =
+      app.add_subcommand("manual", "Print the man page, the completion of a shell, or the rigs there are");
   manual->group("");
-  manual->add_option("KIND", *kind, "What to print")->required()->check(CLI::IsMember({"man", "bash", "rigs"}));
+  manual->add_option("KIND", *kind, "What to print")
+      ->required()
+      ->check(CLI::IsMember({"man", "bash", "zsh", "fish", "rigs"}));
   manual->callback([&app, kind, &chosen] { chosen = [&app, kind] { return print_manual(app, *kind); }; });
 }
 

@@ -2,30 +2,114 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
+#include <span>
+#include <system_error>
+#include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/core/config.hpp"
 #include "exit_code.hpp"
+#include "json_text.hpp"
 #include "log.hpp"
+#include "suggestion.hpp"
 
 namespace edged {
+namespace {
+
+/// What ended the program.
+struct Failure {
+  int exit_code;
+  const char* kind;  ///< for who reads the json
+  std::string text;
+};
+
+/// One line for the user; with --json also the one document on stdout that is promised there.
+int tell(const CLI::App& app, const Failure& failure, bool json) {
+  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), failure.text.c_str());
+  if (json) {
+    const nlohmann::ordered_json error = {
+        {"kind", failure.kind}, {"exit_code", failure.exit_code}, {"message", failure.text}};
+    std::fprintf(stdout, "%s\n", json_text({{"error", error}}).c_str());
+  }
+  return failure.exit_code;
+}
+
+std::vector<std::string> commands_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* inner : command.get_subcommands([](const CLI::App*) { return true; }))
+    if (!inner->get_group().empty()) names.push_back(inner->get_name());
+  return names;
+}
+
+std::vector<std::string> flags_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// What is wrong with the command line, by the command that it stands in.
+Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = &app;
+  std::string called = app.get_name();
+  for (auto inner = app.get_subcommands(); !inner.empty(); inner = command->get_subcommands()) {
+    command = inner.front();
+    called += " " + command->get_name();
+  }
+  const std::string see = fmt::format("see `{} --help`", called);
+  for (const std::string& word : command->remaining()) {
+    const bool flag = word.starts_with('-');
+    const std::vector<std::string> known = flag ? flags_of(*command) : commands_of(*command);
+    if (known.empty()) continue;
+    const std::string name = word.substr(0, word.find('='));
+    return {kExitUsage, "usage",
+            fmt::format("unknown {} '{}'{}; {}", flag ? "flag" : "command", name,
+                        did_you_mean(nearest_name(known, name, typing_errors(name))), see)};
+  }
+  return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
+}
+
+/// A folder that may not be read, a name that is too long, a full disk: nothing that we did wrong.
+std::string text_of(const std::filesystem::filesystem_error& error) {
+  return fmt::format("{}: {}; check the path and your rights there", error.path1().string(), error.code().message());
+}
+
+/// stdout is written when its buffer is full, at the latest now.
+void end_output() {
+  if (std::fflush(stdout) != 0)
+    throw InputError::format("the output cannot be written: {}", std::generic_category().message(errno));
+}
+
+}  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+  const std::span<char*> words(argv, static_cast<std::size_t>(argc));
+  const bool json = std::ranges::count(words, std::string_view("--json")) > 0;
   try {
     cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
     start_logging();
     app.parse(argc, argv);
-    return run();
+    const int code = run();
+    end_output();
+    return code;
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kExitOk : kExitUsage;
+    if (e.get_exit_code() == 0) return app.exit(e);  // help, version
+    return tell(app, usage_failure(app, e), json);
   } catch (const InputError& e) {
-    std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), e.what());
-    return kExitInput;
+    return tell(app, {kExitInput, "input", e.what()}, json);
+  } catch (const std::filesystem::filesystem_error& e) {
+    return tell(app, {kExitInput, "input", text_of(e)}, json);
+  } catch (const std::system_error& e) {
+    return tell(app, {kExitInput, "input", fmt::format("the system refuses: {}", e.what())}, json);
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: a bug, please report it with this line: %s\n", app.get_name().c_str(), e.what());
-    return kExitBug;
+    return tell(app, {kExitBug, "bug", fmt::format("a bug, please report it with this line: {}", e.what())}, json);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/core/statistics.hpp"
 
@@ -61,7 +62,7 @@ Duration least_turning(const RigCamera& camera) {
 /// the recording scatter. (Mirror recordings, pieces of 8 s, calibrated right: events up to 14 deg off at a sigma of
 /// 1 deg and up to 100 ms, so that their time is left to the estimate; frames up to 12 deg at 0.8 deg in the dark.)
 GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
-  constexpr double kLess = 2.0, kDegree = std::numbers::pi / 180;
+  constexpr double kLess = 2.0;
   const bool events = given.modality == Modality::Events;
   const double common = (events ? 5.0 : 3.0) * kDegree;
   agreement.rotation_covariance *= kLess * kLess;
@@ -76,7 +77,7 @@ GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
 
 /// Nothing more to be found out.
 bool confirms(const GyroAgreement& found, const RigCamera& given) {
-  constexpr double kMostOff = 5.0 * std::numbers::pi / 180, kSureOf = 2.0 * std::numbers::pi / 180;  // [rad]
+  constexpr double kMostOff = 5.0 * kDegree, kSureOf = 2.0 * kDegree;  // [rad]
   return !found.mirrored && found.unexplained < kUnexplained && found.rotation_sigma < kSureOf &&
          Eigen::AngleAxisd(given.T_B_C.R().transpose() * found.R_B_C).angle() < kMostOff;
 }

@@ -20,11 +20,15 @@
 #include "json_text.hpp"
 #include "log.hpp"
 #include "overview.hpp"
+#include "report_page.hpp"
+#include "run_album.hpp"
 #include "run_check.hpp"
 #include "run_folder.hpp"
+#include "run_many.hpp"
 #include "run_mode.hpp"
 #include "run_summary.hpp"
 #include "source.hpp"
+#include "states_table.hpp"
 #include "status_line.hpp"
 #include "version.hpp"
 
@@ -37,6 +41,9 @@ struct RunOptions {
   std::string mode = "auto";
   std::string frame = "auto";
   std::filesystem::path out;
+  std::vector<std::string> more;  ///< recordings, and options as key=value
+  int jobs = 1;
+  bool force = false;
   bool quiet = false;
   bool json = false;
   bool live = false;
@@ -71,6 +78,7 @@ class Run {
   std::optional<RunWriter> writer_;
   RunStatistics statistics_;
   LiveliestMoment moment_;
+  RunAlbum album_;
   StatusLine status_line_;
   ResourceMeter meter_;
   std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
@@ -111,10 +119,13 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
-  make_run_folder(folder_);
+  const std::filesystem::path wanted = folder_;
+  folder_ = make_run_folder(wanted, options.force ? EarlierRun::Replace : EarlierRun::Keep);
   write_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
   write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
   attach_log_file(folder_ / "run.log");
+  if (folder_ != wanted)
+    spdlog::warn("{}: holds an earlier run; this one goes to {} (--force replaces)", wanted.string(), folder_.string());
   spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
   spdlog::info("{}", describe(source_.calibration));
   writer_.emplace(folder_, frame_,
@@ -137,6 +148,7 @@ void Run::observe(const Step& step) {
     statistics_.add(step);
     writer_->add(step);
     moment_.consider(step);
+    album_.add(step);
   }
   if (status_line_.due()) show_status(step);
 }
@@ -145,6 +157,7 @@ void Run::observe(const Step& step) {
 void Run::log_changes(const Step& step) const {
   const double t_s = to_seconds(step.t);
   if (!step.started.empty()) spdlog::info("{:.3f} s: started {}", t_s, step.started);
+  if (step.found_again) spdlog::info("{:.3f} s: found again in the map", t_s);
   if (step.status == statistics_.last_status()) return;
   if (step.status == TrackingStatus::Lost) {
     spdlog::warn("lost at {:.3f} s: {}; starting again", t_s, step.lost_because);
@@ -272,15 +285,18 @@ RunSummary Run::summarize() {
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
-  const WrittenStates written = read_states(folder_);
-  if (truth && !written.body.empty()) evaluate_run(summary, written, source_.calibration.rig, *truth);
+  const StatesTable states = read_states(folder_);
+  const Trajectory body = body_poses(states);
+  if (truth && !body.empty()) evaluate_run(summary, body, claims_of(states), source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");
-  write_overview(summary, written.body, truth);
+  write_overview(summary, body, truth);
+  album_.write(folder_, source_.calibration, odometry_.rig(), truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
+  write_run_report(folder_);  // the log is part of it
   return summary;
 }
 
@@ -318,6 +334,22 @@ int run(RunOptions options) {
   return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
 }
 
+bool is_assignment(const std::string& word) {
+  std::error_code ignored;
+  return word.find('=') != std::string::npos && !std::filesystem::exists(word, ignored);
+}
+
+int run_all(const RunOptions& given, const CLI::App& app) {
+  RunOptions options = given;
+  std::vector<std::string> recordings = {options.source.recording}, assignments;
+  for (const std::string& word : options.more) (is_assignment(word) ? assignments : recordings).push_back(word);
+  if (recordings.size() > 1)
+    return run_many({recordings, arguments_for_each(app, assignments), options.out, options.force, options.quiet,
+                     options.json, options.jobs});
+  options.config.assignments.insert(options.config.assignments.end(), assignments.begin(), assignments.end());
+  return run(std::move(options));
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app, std::function<int()>& chosen) {
@@ -325,7 +357,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
   add_source_options(*run_app, options->source);
   add_config_options(*run_app, options->config);
-  run_app->add_option("KEY=VALUE", options->config.assignments, "More options, as with --set");
+  run_app->add_option("MORE", options->more, "More recordings; options as KEY=VALUE, as with --set");
   run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
       ->capture_default_str();
@@ -334,7 +366,14 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
           "--frame", options->frame,
           "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
       ->capture_default_str();
-  run_app->add_option("--out", options->out, "Run folder; an earlier run there is replaced [runs/NAME-MODE]");
+  run_app->add_option(
+      "--out", options->out,
+      "Run folder; where it holds a run, one with a number [runs/NAME-MODE]; of several recordings the folder of "
+      "theirs");
+  run_app->add_option("--jobs", options->jobs, "Of several recordings so many at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  run_app->add_flag("--force", options->force, "Replace an earlier run in the folder");
   run_app->add_flag("--live", options->live,
                     "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
                     "events (live.*); the "
@@ -345,9 +384,12 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "Examples:\n"
       "  edged run data/boxes_6dof --rig davis240c_ecd\n"
       "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
+      "  edged run data/boxes_6dof data/poster_6dof --rig davis240c_ecd --jobs 2    # ends with a table\n"
       "  edged run data/boxes_6dof --live --set depth.source=fused\n"
-      "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet");
-  run_app->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+      "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
+      "Of several recordings the exit code is that of the first whose is not 0.");
+  run_app->callback(
+      [options, run_app, &chosen] { chosen = [options, run_app] { return run_all(*options, *run_app); }; });
 }
 
 }  // namespace edged

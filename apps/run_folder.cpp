@@ -3,25 +3,27 @@
 #include "run_folder.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "claims.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
 
 // The first is written before anything else and marks a folder as a run's.
-constexpr std::array kRunFiles = {"config_resolved.yaml", "calibration.yaml", "trajectory.tum",
-                                  "trajectory_euroc.csv", "states.csv",       "metrics.json",
-                                  "timing.json",          "overview.png",     "run.log"};
+constexpr std::array kRunFiles = {
+    "config_resolved.yaml",   "calibration.yaml", "trajectory.tum", "trajectory_euroc.csv",
+    "trajectory.kitti",       "states.csv",       "metrics.json",   "timing.json",
+    "overview.png",           "run.log",          "album.json",     "groundtruth.tum",
+    "calibration_found.yaml", "report.html"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
-    "baz_mps2,keyframe,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
+    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
     "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
 
@@ -56,8 +58,9 @@ std::string state_line(const Step& step) {
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
   }
-  line += fmt::format(",{},{},{},{},{},{}", step.keyframe ? 1 : 0, step.event_tracks.size(), step.frame_tracks.size(),
-                      step.landmarks.size(), step.event_rate_hz, step.scene_depth);
+  line +=
+      fmt::format(",{},{},{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, step.event_tracks.size(),
+                  step.frame_tracks.size(), step.landmarks.size(), step.event_rate_hz, step.scene_depth);
   const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
   if (step.covariance) {
@@ -69,38 +72,70 @@ std::string state_line(const Step& step) {
   return line + '\n';
 }
 
-std::optional<TrackingStatus> parse_status(std::string_view text) {
-  for (const auto status :
-       {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
-    if (text == to_string(status)) return status;
-  }
-  return std::nullopt;
+[[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::error_code& error) {
+  throw InputError::format("{}: cannot be used as a run folder: {}; give another --out", folder.string(),
+                           error.message());
 }
 
-/// The upper triangle, row by row.
-Eigen::Matrix3d symmetric(const double* v) {
-  Eigen::Matrix3d P;
-  P << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
-  return P;
+/// Whether it is not there yet, empty, or an earlier run's. Throws InputError where that cannot be told.
+bool may_hold_a_run(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (!fs::status_known(status)) refuse_folder(folder, error);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_directory(status))
+    throw InputError::format("{}: is a file, not a folder; give another --out", folder.string());
+  const bool empty = fs::is_empty(folder, error);
+  if (error) refuse_folder(folder, error);
+  return empty || fs::exists(folder / kRunFiles[0]);
+}
+
+/// All but its mark.
+void empty_of_run(const std::filesystem::path& folder) {
+  for (const char* name : kRunFiles) {
+    if (name == kRunFiles[0]) continue;
+    for (const std::filesystem::path& file : {folder / name, part_of(folder / name)}) {
+      std::error_code error;
+      std::filesystem::remove(file, error);
+      if (error) throw InputError::format("{}: cannot be replaced: {}", file.string(), error.message());
+    }
+  }
+}
+
+/// Makes the folder and its mark. False: an earlier run's mark is there.
+bool claim(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) refuse_folder(folder, error);
+  std::FILE* mark = std::fopen((folder / kRunFiles[0]).c_str(), "wx");  // one of several that try at once succeeds
+  if (mark != nullptr) return std::fclose(mark), true;
+  if (errno != EEXIST) refuse_folder(folder, {errno, std::generic_category()});
+  return false;
+}
+
+/// FOLDER-2, also where it is written as FOLDER/ or `.`.
+std::filesystem::path numbered(const std::filesystem::path& folder, int number) {
+  std::filesystem::path plain = folder.lexically_normal();
+  if (!plain.has_filename()) plain = plain.parent_path();
+  if (plain.empty() || plain.filename() == "." || plain.filename() == "..")
+    plain = std::filesystem::weakly_canonical(folder);
+  return plain += fmt::format("-{}", number);
 }
 
 }  // namespace
 
-void make_run_folder(const std::filesystem::path& folder) {
-  namespace fs = std::filesystem;
-  if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw InputError::format("{}: is a file, not a folder; give another --out", folder.string());
+std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier) {
+  if (!may_hold_a_run(wanted))
+    throw InputError::format("{}: holds files, but no earlier run; give another --out", wanted.string());
+  std::filesystem::path folder = wanted;
+  if (earlier == EarlierRun::Replace) {
+    empty_of_run(folder);
+    claim(folder);
+    return folder;
   }
-  if (fs::is_directory(folder) && !fs::is_empty(folder) && !fs::exists(folder / kRunFiles[0])) {
-    throw InputError::format("{}: holds files, but no earlier run; give another --out", folder.string());
-  }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError::format("{}: cannot be made: {}", folder.string(), error.message());
-  for (const char* file : kRunFiles) {
-    fs::remove(folder / file);
-    fs::remove(part_of(folder / file));
-  }
+  for (int number = 2; !may_hold_a_run(folder) || !claim(folder); ++number) folder = numbered(wanted, number);
+  return folder;
 }
 
 void write_file(const std::filesystem::path& file, const std::string& text) {
@@ -133,9 +168,12 @@ RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& fra
     : frame_(frame),
       tum_(folder / "trajectory.tum", TrajectoryFormat::Tum, comments),
       euroc_(folder / "trajectory_euroc.csv", TrajectoryFormat::EurocCsv, comments),
-      states_(open_for_writing(folder / "states.csv")) {
+      kitti_(folder / "trajectory.kitti", TrajectoryFormat::Kitti, {}),
+      states_file_(folder / "states.csv"),
+      states_(open_for_writing(states_file_)) {
   states_ << "# state of the body (IMU) in the world (z up), stamps on the IMU clock, whatever the trajectory's frame\n"
           << kStatesHeader;
+  flush();  // a run without a packet leaves files that can be read, too
 }
 
 void RunWriter::add(const Step& step) {
@@ -145,36 +183,17 @@ void RunWriter::add(const Step& step) {
     const StampedPose pose = frame_({step.t, step.state.T_W_B});
     tum_.add(pose);
     euroc_.add(pose);
+    kitti_.add(pose);
   }
   // Each line goes out by itself: a buffer that is left to fill up ends within one, and there a kill would leave it.
-  tum_.flush();
-  euroc_.flush();
-  states_.flush();
+  flush();
 }
 
-WrittenStates read_states(const std::filesystem::path& folder) {
-  constexpr int kFieldsBetween = 17;  // motion, biases, counts, depth
-  WrittenStates out;
-  Claims claims;
-  std::ifstream states(folder / "states.csv");
-  for (std::string line; std::getline(states, line);) {
-    FieldReader fields(line);
-    const auto t = parse_nanoseconds(fields.next());
-    const auto status = parse_status(fields.next());
-    std::array<double, 7> v;
-    if (!t || !status || !read_numbers(fields, v)) continue;
-    Step step;
-    step.t = *t;
-    step.status = *status;
-    step.state.T_W_B = SE3(Eigen::Quaterniond(v[6], v[3], v[4], v[5]), Eigen::Vector3d(v[0], v[1], v[2]));
-    for (int i = 0; i < kFieldsBetween; ++i) fields.next();
-    std::array<double, 12> P;
-    if (read_numbers(fields, P)) step.covariance = {symmetric(P.data()), symmetric(P.data() + 6)};
-    if (is_tracking(*status)) out.body.push_back({*t, step.state.T_W_B});
-    claims.add(step);
-  }
-  out.claims = claims.all();
-  return out;
+void RunWriter::flush() {
+  tum_.flush();
+  euroc_.flush();
+  kitti_.flush();
+  if (!states_.flush()) throw InputError::format("{}: cannot be written; is the disk full?", states_file_.string());
 }
 
 }  // namespace edged

@@ -10,15 +10,18 @@
 
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/timing.hpp"
-#include "edged/eval/consistency.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/odometry.hpp"
 
 namespace edged {
 
-/// Makes the folder, or empties an earlier run's folder of that run's files. Throws InputError when the path is
-/// something else: a file, or a folder that holds things but no run.
-void make_run_folder(const std::filesystem::path& folder);
+/// What becomes of an earlier run in the folder that is asked for.
+enum class EarlierRun { Keep, Replace };
+
+/// Makes the folder and returns it. Where it holds an earlier run, that run's files are replaced, or it is kept and the
+/// folder gets a number: FOLDER-2, FOLDER-3, the first that is free. Runs that begin at once never get the same. Throws
+/// InputError when the path is something else: a file, or a folder that holds things but no run.
+std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep);
 
 /// Replaces the file, at once: whoever reads it or ends the program meanwhile finds the old one or the new one. Throws
 /// InputError when it cannot be written.
@@ -27,8 +30,8 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 /// Count, mean, p50, p95, p99 and total of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
 
-/// trajectory.tum, trajectory_euroc.csv and states.csv: complete lines up to the last packet, whenever the program
-/// ends.
+/// trajectory.tum, trajectory_euroc.csv, trajectory.kitti and states.csv: complete lines up to the last packet,
+/// whenever the program ends.
 class RunWriter {
  public:
   /// comments head the trajectory files.
@@ -41,18 +44,16 @@ class RunWriter {
   std::size_t poses() const { return poses_; }
 
  private:
+  /// All that was given is in the files. Throws InputError when the disk is full.
+  void flush();
+
   OutputFrame frame_;
   TrajectoryWriter tum_;
   TrajectoryWriter euroc_;
+  TrajectoryWriter kitti_;  ///< line i is pose i of the others
+  std::filesystem::path states_file_;
   std::ofstream states_;
   std::size_t poses_ = 0;
 };
-
-/// What was written into the folder: a run need not hold it.
-struct WrittenStates {
-  Trajectory body;                  ///< T_W_B on the IMU clock
-  std::vector<ClaimedPose> claims;  ///< those of them whose covariance was worked out anew
-};
-WrittenStates read_states(const std::filesystem::path& folder);
 
 }  // namespace edged

@@ -11,6 +11,7 @@
 
 #include "claims.hpp"
 #include "edged/core/check.hpp"
+#include "states_table.hpp"
 
 namespace edged {
 namespace {
@@ -51,12 +52,26 @@ TEST_F(RunFolder, RefusesAFolderThatHoldsOtherThings) {
   EXPECT_TRUE(fs::exists(folder / "thesis.tex"));
 }
 
-TEST_F(RunFolder, ReplacesAnEarlierRunAndNothingElse) {
+TEST_F(RunFolder, KeepsEarlierRunsAndTakesTheFirstFreeNumber) {
+  EXPECT_EQ(make_run_folder(folder / "run"), folder / "run");
+  EXPECT_EQ(make_run_folder(folder / "run"), folder / "run-2");
+  fs::create_directories(folder / "run-3");
+  std::ofstream(folder / "run-3" / "thesis.tex") << "x";
+  EXPECT_EQ(make_run_folder(folder / "run/"), folder / "run-4");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "run-3"), {}), 1);
+}
+
+TEST_F(RunFolder, SaysWhyANameCannotBeUsed) {
+  EXPECT_THROW(make_run_folder(folder / std::string(300, 'x')), InputError);
+  EXPECT_THROW(make_run_folder("/dev/null/run"), InputError);
+}
+
+TEST_F(RunFolder, ReplacesAnEarlierRunAndNothingElseWhereAskedTo) {
   fs::create_directories(folder);
   touch("config_resolved.yaml");
   touch("metrics.json");
   touch("notes.txt");
-  make_run_folder(folder);
+  EXPECT_EQ(make_run_folder(folder, EarlierRun::Replace), folder);
   EXPECT_FALSE(fs::exists(folder / "metrics.json"));
   EXPECT_TRUE(fs::exists(folder / "notes.txt"));
 }
@@ -77,6 +92,7 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
   }
   EXPECT_EQ(read_tum(folder / "trajectory.tum").size(), 2u);
   EXPECT_EQ(read_euroc_csv(folder / "trajectory_euroc.csv").size(), 2u);
+  EXPECT_EQ(lines("trajectory.kitti"), std::vector<std::string>(2, "1 0 0 0 0 1 0 0 0 0 1 0"));
   EXPECT_EQ(lines("trajectory.tum")[0], "# first comment");
   const std::vector<std::string> states = lines("states.csv");
   ASSERT_EQ(states.size(), 6u);  // comment, names, four packets
@@ -98,13 +114,19 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
       if (step.status == TrackingStatus::Good) written.push_back({step.t, step.state.T_W_B});
     }
   }
-  const Trajectory read = read_states(folder).body;
+  const Trajectory read = body_poses(read_states(folder));
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, written[i].t);
     EXPECT_EQ(read[i].T.translation(), written[i].T.translation());
     EXPECT_LT(so3::log(read[i].T.rotation().conjugate() * written[i].T.rotation()).norm(), 1e-15);
   }
+}
+
+TEST_F(RunFolder, HasAHeadingThatReadsBeforeAnyPacketHasCome) {
+  make_run_folder(folder);
+  const RunWriter writer(folder, OutputFrame({}, "body"), {});
+  EXPECT_TRUE(read_states(folder).t.empty());
 }
 
 TEST_F(RunFolder, GivesTheCovariancesBack) {
@@ -125,7 +147,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
       claims.add(step);
     }
   }
-  const std::vector<ClaimedPose> read = read_states(folder).claims;
+  const std::vector<ClaimedPose> read = claims_of(read_states(folder));
   ASSERT_EQ(read.size(), 14u);
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, claims.all()[i].t);

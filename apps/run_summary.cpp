@@ -87,15 +87,6 @@ std::string calibration_line(const CalibrationFound& c) {
                           sigma(c.time_sigma_ms), c.given_offset_ms, c.camera));
 }
 
-nlohmann::ordered_json calibration_json(const CalibrationFound& c) {
-  return {{"camera", c.camera},
-          {"rotation_off_deg", c.rotation_deg},
-          {"rotation_sigma_deg", number_or_null(c.rotation_sigma_deg)},
-          {"time_offset_ms", c.time_offset_ms},
-          {"time_offset_sigma_ms", number_or_null(c.time_sigma_ms)},
-          {"given_time_offset_ms", c.given_offset_ms}};
-}
-
 std::string verdict_text(const RunSummary& s) {
   const Verdict& v = s.verdict;
   std::string text;
@@ -107,14 +98,15 @@ std::string verdict_text(const RunSummary& s) {
 
 }  // namespace
 
-void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& rig, const GroundTruth& truth) {
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
+                  const GroundTruth& truth) {
   try {
     const OutputFrame frame(rig, truth.frame);
-    const Association association = associate(truth.trajectory, frame(written.body));
+    const Association association = associate(truth.trajectory, frame(body));
     summary.evaluation = evaluate(association, protocol("P3"));
     Trajectory true_body;
     for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
-    summary.consistency = check_consistency(true_body, written.claims);
+    summary.consistency = check_consistency(true_body, claims);
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
         summary.mpe_percent[name] = evaluate(association, protocol(name), {}, {}).mpe_percent;
@@ -127,11 +119,21 @@ void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& 
   }
 }
 
+nlohmann::ordered_json to_json(const CalibrationFound& c) {
+  return {{"camera", c.camera},
+          {"rotation_off_deg", c.rotation_deg},
+          {"rotation_sigma_deg", number_or_null(c.rotation_sigma_deg)},
+          {"time_offset_ms", c.time_offset_ms},
+          {"time_offset_sigma_ms", number_or_null(c.time_sigma_ms)},
+          {"given_time_offset_ms", c.given_offset_ms}};
+}
+
 nlohmann::ordered_json to_json(const RunSummary& s) {
   const double span = s.statistics.visual_span_s();
   nlohmann::ordered_json json = {{"recording", s.recording},
                                  {"format", s.format},
                                  {"mode", s.mode},
+                                 {"folder", s.folder},
                                  {"output_frame", s.frame},
                                  {"version", kVersion},
                                  {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
@@ -163,7 +165,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
   json["calibration"] = nlohmann::ordered_json::array();
-  for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(calibration_json(c));
+  for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
   json["repairs"] = s.repairs;

@@ -15,7 +15,6 @@
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "run_folder.hpp"
 #include "run_statistics.hpp"
 #include "verdict.hpp"
 
@@ -49,9 +48,11 @@ struct RunSummary {
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
 /// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
-void evaluate_run(RunSummary& summary, const WrittenStates& written, const Rig& rig, const GroundTruth& truth);
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
+                  const GroundTruth& truth);
 
 nlohmann::ordered_json to_json(const RunSummary& summary);
+nlohmann::ordered_json to_json(const CalibrationFound& found);
 std::string to_table(const RunSummary& summary);
 
 }  // namespace edged

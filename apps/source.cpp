@@ -11,8 +11,10 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/text/imu_text.hpp"
 #include "edged/sim/dimmed_frames.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 
 namespace edged {
 namespace {
@@ -75,12 +77,7 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
   return config;
 }
 
-void add_source_options(CLI::App& command, SourceOptions& options) {
-  command
-      .add_option("RECORDING", options.recording,
-                  "Folder or file (format found by content), tcp://HOST:PORT[,PORT...] of a DV server, or "
-                  "sim:PRESET[:SEED]")
-      ->required();
+void add_reading_options(CLI::App& command, SourceOptions& options) {
   CLI::Option* rig = command.add_option("--rig", options.rig, "Calibration that ships with the program, by name");
   command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
   command.add_option("--geometry", options.geometry,
@@ -94,20 +91,40 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
                   "it out; may be repeated "
                   "[the only topic of a fitting type]")
       ->allow_extra_args(false);
-  command.add_option("--from", options.piece.from_s, "Leave out what comes before [s since the recording's begin]")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--to", options.piece.to_s, "Leave out what comes from then on [s since the recording's begin]")
-      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--from,--start", options.piece.from_s, "Leave out what comes before [s since the recording's begin]")
+      ->check(non_negative_number());
+  CLI::Option* to = command.add_option("--to", options.piece.to_s,
+                                       "Leave out what comes from then on [s since the recording's begin]");
+  to->check(non_negative_number());
+  command.add_option("--duration", options.duration_s, "Leave out what comes so many seconds after --from")
+      ->check(positive_number())
+      ->excludes(to);
   command
       .add_option("--dim-frames", options.dim_frames,
                   "Frames as their camera would give them in so much less light: 0.06 leaves some 20 grey levels")
       ->check(CLI::Range(1e-3, 1.0));
 }
 
+void add_source_options(CLI::App& command, SourceOptions& options) {
+  command
+      .add_option("RECORDING", options.recording,
+                  "Folder or file (format found by content), tcp://HOST:PORT[,PORT...] of a DV server, or "
+                  "sim:PRESET[:SEED]")
+      ->required();
+  command.add_option("--imu", options.imu,
+                     "IMU samples from a csv or txt on the recording's clock, instead of its own; columns and units by "
+                     "the names in its first line, else found");
+  add_reading_options(command, options);
+}
+
 Recording open_uncalibrated(const SourceOptions& options) {
   Recording recording = open_whole(options);
-  if (options.piece.from_s > 0.0 || options.piece.to_s)
-    recording.dataset = std::make_unique<RecordingPiece>(std::move(recording.dataset), options.piece);
+  if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  PieceBounds piece = options.piece;
+  if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;
+  if (piece.from_s > 0.0 || piece.to_s)
+    recording.dataset = std::make_unique<RecordingPiece>(std::move(recording.dataset), piece);
   if (options.dim_frames)
     recording.dataset = std::make_unique<DimmedFrames>(std::move(recording.dataset), *options.dim_frames);
   return recording;

@@ -22,10 +22,12 @@ struct SourceOptions {
   std::string recording;
   std::string rig;                  ///< name of a shipped rig; "" where not given
   std::filesystem::path calib;      ///< calibration file; "" where not given
+  std::filesystem::path imu;        ///< file with IMU samples; "" where not given
   std::string geometry;             ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
   std::string time_unit;            ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
   std::vector<std::string> topics;  ///< of bags: ROLE=NAME
   PieceBounds piece;
+  std::optional<double> duration_s;  ///< of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
 
@@ -38,7 +40,10 @@ struct Source {
 /// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for a preset that there is not.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
-/// Adds RECORDING, --rig, --calib, --geometry, --time-unit, --topic, --from, --to and --dim-frames.
+/// Adds --rig, --calib, --geometry, --time-unit, --topic, --from (also --start), --to, --duration and --dim-frames.
+void add_reading_options(CLI::App& command, SourceOptions& options);
+
+/// Adds RECORDING, --imu and these.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be

@@ -11,7 +11,9 @@
 namespace edged {
 namespace {
 
-std::string line(std::string_view name, const std::string& value) { return fmt::format("{:<15} {}\n", name, value); }
+std::string survey_line(std::string_view name, const std::string& value) {
+  return fmt::format("{:<15} {}\n", name, value);
+}
 
 std::string size_text(cv::Size size) {
   return size.empty() ? "size unknown" : fmt::format("{} x {} px", size.width, size.height);
@@ -41,45 +43,47 @@ std::string histogram(const EventSurvey& events) {
                                  ? fmt::format("above {}", si_number(bands.back()))
                                  : fmt::format("{} to {}", si_number(bands[i - 1]), si_number(bands[i]));
     const auto columns = static_cast<std::size_t>(kBarColumns * events.rate_shares[i] + 0.5);
-    text +=
-        line("", fmt::format("{:>22} ev/s {:5.1f} % {}", name, 100 * events.rate_shares[i], std::string(columns, '#')));
+    text += survey_line(
+        "", fmt::format("{:>22} ev/s {:5.1f} % {}", name, 100 * events.rate_shares[i], std::string(columns, '#')));
   }
   return text;
 }
 
 std::string events_text(const Survey& s) {
   const EventSurvey& e = s.event_details;
-  std::string text = line("events", stream_text(s.events, "ev/s"));
-  text += line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
-                               size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
-                               100 * e.positive_share, 100 * e.active_share));
-  text += line("", s.events.gaps == 0 ? "never silent for 0.1 s" : "silences of 0.1 s: " + gap_text(s.events));
-  text +=
-      line("", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
+  std::string text = survey_line("events", stream_text(s.events, "ev/s"));
+  text += survey_line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
+                                      size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
+                                      100 * e.positive_share, 100 * e.active_share));
+  text += survey_line("", s.events.gaps == 0 ? "never silent for 0.1 s" : "silences of 0.1 s: " + gap_text(s.events));
+  text += survey_line(
+      "", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
-  if (!e.hot_known) return text + line("", "too short to tell hot pixels");
+  if (!e.hot_known) return text + survey_line("", "too short to tell hot pixels");
   std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
   for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
     hot +=
         fmt::format("{} ({}, {}) {:.0f} Hz", i == 0 ? ":" : ",", e.hottest[i].x, e.hottest[i].y, e.hottest[i].rate_hz);
-  return text + line("", hot);
+  return text + survey_line("", hot);
 }
 
 std::string imu_text(const Survey& s) {
   const ImuSurvey& imu = s.imu_details;
-  std::string text = line("IMU", stream_text(s.imu)) + line("", gap_text(s.imu));
-  text += line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
-                               imu.mean_accel, imu.mean_gyro, imu.max_gyro));
-  if (!imu.rest) return text + line("", "never at rest for half a second: no figure for its noise");
+  std::string text = survey_line("IMU", stream_text(s.imu)) + survey_line("", gap_text(s.imu));
+  text +=
+      survey_line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
+                                  imu.mean_accel, imu.mean_gyro, imu.max_gyro));
+  if (!imu.rest) return text + survey_line("", "never at rest for half a second: no figure for its noise");
   const ImuRest& rest = *imu.rest;
-  text += line(
+  text += survey_line(
       "", fmt::format(
               "noise at rest ({:.1f} s at {:.1f} s): gyro {:.2g} rad/s/sqrt(Hz), accelerometer {:.2g} m/s^2/sqrt(Hz)",
               to_seconds(rest.length), to_seconds(rest.begin), rest.gyro_noise, rest.accel_noise));
   return text +
-         line("",
-              fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
-                          rest.gyro.x(), rest.gyro.y(), rest.gyro.z(), rest.accel.x(), rest.accel.y(), rest.accel.z()));
+         survey_line(
+             "",
+             fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
+                         rest.gyro.x(), rest.gyro.y(), rest.gyro.z(), rest.accel.x(), rest.accel.y(), rest.accel.z()));
 }
 
 nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
@@ -111,22 +115,23 @@ const char* name_of(Severity severity) {
 }  // namespace
 
 std::string to_text(const Survey& s) {
-  std::string text = line("recording", fmt::format("{} ({})", s.info.name, s.info.format));
+  std::string text = survey_line("recording", fmt::format("{} ({})", s.info.name, s.info.format));
   for (const StreamInfo& stream : s.info.streams)
-    text += line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
-                                         stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
-                                         stream.role.empty() ? "" : " -> " + stream.role));
-  text += line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
+    text += survey_line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
+                                                stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
+                                                stream.role.empty() ? "" : " -> " + stream.role));
+  text += survey_line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
   if (s.events.count > 0) text += events_text(s);
   if (s.frames.count > 0) {
-    text += line("frames", stream_text(s.frames)) + line("", gap_text(s.frames));
-    text += line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
+    text += survey_line("frames", stream_text(s.frames)) + survey_line("", gap_text(s.frames));
+    text +=
+        survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
   }
   if (s.imu.count > 0) text += imu_text(s);
   if (s.truth && s.truth->stream.count > 0)
-    text += line("ground truth", fmt::format("{}, path {:.2f} m, of {}", stream_text(s.truth->stream), s.truth->path_m,
-                                             s.truth->frame));
-  for (const auto& [kind, count] : s.repairs) text += line("repaired", fmt::format("{} ({})", kind, count));
+    text += survey_line("ground truth", fmt::format("{}, path {:.2f} m, of {}", stream_text(s.truth->stream),
+                                                    s.truth->path_m, s.truth->frame));
+  for (const auto& [kind, count] : s.repairs) text += survey_line("repaired", fmt::format("{} ({})", kind, count));
   return text;
 }
 

@@ -7,12 +7,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "edged/core/angles.hpp"
 
 namespace edged {
 namespace {
-
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
 /// One word of a command line.
 std::string shell_word(const std::string& text) {
@@ -32,11 +31,13 @@ std::string doctor_command(const SourceOptions& source) {
   };
   add("--rig", source.rig);
   add("--calib", source.calib.string());
+  add("--imu", source.imu.string());
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);
   for (const std::string& topic : source.topics) add("--topic", topic);
   if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
   if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
+  if (source.duration_s) add("--duration", fmt::format("{}", *source.duration_s));
   if (source.dim_frames) add("--dim-frames", fmt::format("{}", *source.dim_frames));
   return command;
 }
@@ -97,7 +98,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
     const RigCamera& before = given.camera(camera.name);
     const Eigen::Vector3d turned = so3::log((before.T_B_C.inverse() * camera.T_B_C).rotation());
     CalibrationFound found{camera.name,
-                           kDegreesPerRad * turned.norm(),
+                           kDegreesPerRadian * turned.norm(),
                            1e3 * to_seconds(camera.time_offset),
                            1e3 * to_seconds(before.time_offset),
                            false,
@@ -112,12 +113,22 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
       const double variance = turned.norm() > 0.0
                                   ? axis.dot(rotation * axis)
                                   : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation).eigenvalues()[2];
-      found.rotation_sigma_deg = kDegreesPerRad * std::sqrt(variance);
+      found.rotation_sigma_deg = kDegreesPerRadian * std::sqrt(variance);
       found.time_sigma_ms = 1e3 * std::sqrt((*P)(3, 3));
     }
     out.push_back(found);
   }
   return out;
+}
+
+Calibration with_found(Calibration given, const Rig& found) {
+  for (RigCamera& camera : given.rig.cameras) {
+    const auto same = std::ranges::find(found.cameras, camera.name, &RigCamera::name);
+    if (same == found.cameras.end()) continue;
+    camera.T_B_C = same->T_B_C;
+    camera.time_offset = same->time_offset;
+  }
+  return given;
 }
 
 Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics,

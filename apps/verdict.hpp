@@ -26,6 +26,9 @@ struct CalibrationFound {
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config);
 
+/// The given one with rotation and clock of the cameras that were found.
+Calibration with_found(Calibration given, const Rig& found);
+
 struct Verdict {
   std::vector<Finding> findings;  ///< warnings and errors
   bool contradicted = false;      ///< by recording, calibration or the estimate itself

@@ -151,7 +151,9 @@ def build_id(edged, *options):
 
 
 def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
-    """Runs the odometry, with extra arguments; the content of metrics.json."""
+    """Runs the odometry, with extra arguments; the content of metrics.json. An earlier run in out is replaced."""
+    if (out / "config_resolved.yaml").exists():  # not by --force: `sweep --against` runs builds that do not know it
+        shutil.rmtree(out)
     command = [edged, "run", recording, "--mode", mode, "--out", out, "--json", "--quiet", *extra]
     if rig:
         command += ["--rig", rig]

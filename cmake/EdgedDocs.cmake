@@ -26,5 +26,5 @@ set(documented core/config.hpp core/timing.hpp depth/depth_config.hpp estimator/
 list(TRANSFORM documented PREPEND ${PROJECT_SOURCE_DIR}/src/edged/)
 doxygen_add_docs(docs ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include ${documented})
 if(EDGED_TESTS)
-  add_test(NAME docs COMMAND Doxygen::doxygen ${CMAKE_CURRENT_BINARY_DIR}/Doxyfile.docs)
+  add_test(NAME reference COMMAND Doxygen::doxygen ${CMAKE_CURRENT_BINARY_DIR}/Doxyfile.docs)
 endif()

@@ -22,4 +22,4 @@ if [ ! -f "$flight/complete" ] || [ "$edged" -nt "$flight/complete" ]; then
   touch "$flight/complete"
 fi
 echo "estimating it from events, frames and IMU ..."
-"$edged" run "$flight" --out "build/demo/run_${preset}_$seed"
+"$edged" run "$flight" --force --out "build/demo/run_${preset}_$seed"

@@ -26,6 +26,7 @@ inside() {
   step="edged: man page and completion are there"; echo "== $step"
   man edged >page.txt
   grep -q "edged simulate" page.txt
+  test -f /usr/share/zsh/vendor-completions/_edged && test -f /usr/share/fish/vendor_completions.d/edged.fish
   bash -c 'source /usr/share/bash-completion/completions/edged && complete -p edged' >/dev/null
   step="edged: the demo ends good"; echo "== $step"
   edged simulate --preset room --seed 1 --quiet --out flight

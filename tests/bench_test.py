@@ -42,8 +42,8 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "figures", "flights", "mirrors", "reading", "sim_suite", "starts", "tracks",
-                     "../tests/stress"):
+        for name in ("ablation", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "speed", "starts",
+                     "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
@@ -205,6 +205,12 @@ class Bench(unittest.TestCase):
                                ("edged 0.1.0 (00000000)", "not in")):
             self.assertIn(words, figures.what_differs(version))
         self.assertIn("--out", bench("figures", "--quick").stderr)
+
+    def test_speed_prints_a_row_a_sensor_and_mode(self):
+        result = bench("speed", "--no-data", "--sensors", "240x180", "--duration", 2.5, "--modes", "frames", "--repeats", 1,
+                       "--cache", self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"\n\| room 240x180 +\| frames +\| [\d.]+ +\| [\d.]+ +(\| *[\d.]+ +){10}\|\n")
 
     def test_reading_prints_the_fastest_format_first(self):
         found = {"context": {"num_cpus": 2}, "benchmarks": [

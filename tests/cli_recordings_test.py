@@ -4,7 +4,9 @@
 """info, doctor and convert on one generated recording. Usage: EDGED=path/to/edged cli_recordings_test.py"""
 import json
 import re
+import shutil
 import unittest
+import zipfile
 
 from program import WithFlight, edged
 
@@ -39,6 +41,11 @@ class Recordings(WithFlight):
         converted = self.folder / "piece"
         self.assertEqual(edged("convert", self.flight, converted, "--from", 1, "--to", 1.5, "--quiet").returncode, 0)
         self.assertEqual(json.loads(edged("info", converted, "--json").stdout)["events"]["count"], piece["events"]["count"])
+
+    def test_a_piece_is_given_by_its_end_or_by_its_duration(self):
+        by_end = edged("info", self.flight, "--from", 1, "--to", 1.5, "--json").stdout
+        self.assertEqual(edged("info", self.flight, "--start", 1, "--duration", 0.5, "--json").stdout, by_end)
+        self.assertEqual(edged("info", self.flight, "--to", 2, "--duration", 1).returncode, 2)
 
     def test_bounds_that_hold_nothing_are_refused(self):
         self.assert_refused(edged("info", self.flight, "--from", 2, "--to", 1), "--from 2", "--to")
@@ -147,6 +154,53 @@ class Recordings(WithFlight):
             states[name] = (run / "states.csv").read_text()
         self.assertEqual(states["flight.bag"], states["flight"])
         self.assertEqual(states["flight.mcap"], states["flight"])
+
+    def test_an_imu_in_a_file_of_its_own_gives_the_same_run_to_the_last_bit(self):
+        alone = self.folder / "alone"
+        alone.mkdir()
+        for name in ("events.txt", "images.txt", "images"):
+            (alone / name).symlink_to(self.flight / name)
+        named = self.folder / "imu.csv"
+        rows = [line.split() for line in (self.flight / "imu.txt").read_text().splitlines()]
+        named.write_text("time [s],gyro_x (rad/s),gyro_y,gyro_z,acc_x [m/s^2],acc_y,acc_z\n" +
+                         "".join(",".join([r[0], *r[4:7], *r[1:4]]) + "\n" for r in rows))
+        states = []
+        for recording, imu in ((self.flight, ()), (alone, ("--imu", self.flight / "imu.txt")), (alone, ("--imu", named))):
+            run = self.folder / f"run{len(states)}"
+            result = edged("run", recording, *imu, "--calib", self.flight / "calibration.yaml", "--out", run, "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            states.append((run / "states.csv").read_bytes())
+        self.assertEqual(states[1], states[0])
+        self.assertEqual(states[2], states[0])
+        self.assertIn("gyro 2,3,4 [rad/s]", edged("info", alone, "--imu", named).stdout)
+        self.assert_refused(edged("info", alone, "--imu", alone / "events.txt"), "events.txt", "gx[rad/s]")
+
+    def test_a_zip_of_csv_files_is_read_like_their_folder(self):
+        loose = self.folder / "loose"
+        loose.mkdir()
+        self.assertEqual(edged("convert", self.flight, loose / "events.csv", "--quiet").returncode, 0)
+        shutil.copy(self.flight / "imu.txt", loose)
+        shutil.copy(self.flight / "calibration.yaml", loose)
+        (loose / "notes.csv").write_text("who,when\nme,now\n")
+        alike = []
+        for recording, top in ((loose, ""), (self.folder / "top.zip", ""), (self.folder / "below.zip", "head/")):
+            if recording != loose:
+                with zipfile.ZipFile(recording, "w", zipfile.ZIP_DEFLATED) as archive:
+                    for file in loose.iterdir():
+                        archive.write(file, top + file.name)
+            result = edged("info", recording, "--json", "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("not read: notes.csv", result.stderr)
+            shown = json.loads(result.stdout)
+            self.assertEqual([s["role"] for s in shown["streams"] if s["role"]], ["imu"])
+            alike.append((shown["events"], shown["imu"]["count"], edged("doctor", recording, "--quiet").returncode))
+        self.assertEqual(alike[1], alike[0])
+        self.assertEqual(alike[2], alike[0])
+        raw = self.folder / "raw.zip"
+        self.assertEqual(edged("convert", self.flight, self.folder / "events.raw", "--round", "--quiet").returncode, 0)
+        with zipfile.ZipFile(raw, "w") as archive:
+            archive.write(self.folder / "events.raw", "events.raw")
+        self.assert_refused(edged("info", raw), "raw.zip/events.raw", "unpack it")
 
     def test_convert_lists_the_formats_where_it_does_not_know_one(self):
         self.assert_refused(edged("convert", self.flight, self.folder / "a.xyz"), "`.xyz`", "raw (.raw)")

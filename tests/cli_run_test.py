@@ -5,6 +5,7 @@
 Usage: EDGED=path/to/edged cli_run_test.py"""
 import json
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -74,6 +75,44 @@ class Run(WithFlight):
         edged("run", self.flight, "--out", out, "--frame", "body", "--quiet")
         self.assertIn("body (IMU)", (out / "trajectory.tum").read_text().splitlines()[0])
         self.assert_refused(edged("run", self.flight, "--frame", "left", "--out", out), "left")
+
+    def test_an_earlier_run_stays_unless_it_may_be_replaced(self):
+        out = self.folder / "run"
+        piece = ("run", self.flight, "--out", out, "--quiet", "--duration", 0.5)
+        edged(*piece)
+        before = {file: file.read_bytes() for file in out.iterdir()}
+        again = edged(*piece, "--json")
+        self.assertEqual(json.loads(again.stdout)["folder"], f"{out}-2")
+        self.assertIn(f"{out}-2 (--force replaces)", again.stderr)
+        self.assertEqual({file: file.read_bytes() for file in out.iterdir()}, before)
+        self.assertEqual(json.loads(edged(*piece, "--json", "--force").stdout)["folder"], str(out))
+        self.assertNotEqual((out / "run.log").read_bytes(), before[out / "run.log"])
+
+    def test_several_recordings_run_side_by_side_and_end_with_a_table(self):
+        damaged = self.changed("events.txt", lambda text: text + "x" * 2_000_000)
+        call = ("run", self.flight, damaged, "sim:room:2", "--duration", 6, "--jobs", 2, "--out", self.folder / "runs", "--mode",
+                "events", "estimator.keyframes=6")
+        result = edged(*call)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        lines = result.stdout.splitlines()
+        self.assertEqual([line.split()[0] for line in lines], ["recording", "flight", "changed", "sim_room_2"])
+        self.assertLessEqual(max(map(len, lines)), 80)
+        self.assertRegex(lines[1], r"^flight +\S.* \d+\.\d +\d+\.\d +\d+\.\d\d$")
+        self.assertRegex(lines[2], r"^changed +error +- +- +-$")
+        self.assertIn("changed: edged: ", result.stderr)
+        for name in ("flight", "sim_room_2"):
+            self.assertIn("keyframes: 6 ", (self.folder / "runs" / name / "config_resolved.yaml").read_text())
+        alone = self.folder / "alone"
+        edged("run", self.flight, "--duration", 6, "--mode", "events", "estimator.keyframes=6", "--out", alone, "--quiet")
+        self.assertEqual((alone / "states.csv").read_bytes(), (self.folder / "runs" / "flight" / "states.csv").read_bytes())
+
+    def test_several_recordings_are_json_and_a_word_that_is_none_is_refused_before(self):
+        call = ("run", self.flight, self.flight, "--duration", 0.3, "--out", self.folder / "runs")
+        runs = json.loads(edged(*call, "--json").stdout)["runs"]
+        self.assertEqual(sorted(run["folder"] for run in runs), [str(self.folder / "runs" / name) for name in ("flight", "flight-2")])
+        self.assert_refused(edged(*call, "--force"), "two recordings", "flight")
+        self.assert_refused(edged("run", self.flight, "fused", "--out", self.folder / "new"), "fused", "nothing has been run")
+        self.assertFalse((self.folder / "new").exists())
 
     def test_without_a_good_pose_the_code_is_4(self):
         flight = self.folder / "short"
@@ -157,19 +196,27 @@ class Run(WithFlight):
             poses.append(self.assert_readable(out))
         self.assertGreater(max(poses), 50)
         # The last one's folder takes the next run.
-        self.assertEqual(edged("run", self.flight, "--out", out, "--quiet").returncode, 0)
+        self.assertEqual(edged("run", self.flight, "--out", out, "--force", "--quiet").returncode, 0)
         self.assertTrue((out / "metrics.json").is_file())
 
-    def test_ctrl_c_leaves_complete_files(self):
-        out = self.folder / "run"
-        process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
-        while not (out / "run.log").exists() and process.poll() is None:
-            time.sleep(0.02)
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=60), 130)
-        self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")
-        self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+    def test_ctrl_c_and_a_terminal_that_is_closed_leave_complete_files(self):
+        for ending, code in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
+            out = self.folder / f"run_{code}"
+            process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
+            while not (out / "run.log").exists() and process.poll() is None:
+                time.sleep(0.02)
+            time.sleep(0.5)
+            process.send_signal(ending)
+            self.assertEqual(process.wait(timeout=60), code)
+            self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")
+            self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+
+    def test_a_full_disk_is_told_in_one_line(self):
+        # Files of at most 20 kB stand for it.
+        limit = (resource.RLIMIT_FSIZE, (20_000, 20_000))
+        result = subprocess.run([EDGED, "run", self.flight, "--out", self.folder / "run", "--quiet"], capture_output=True,
+                                text=True, check=False, restore_signals=False, preexec_fn=lambda: resource.setrlimit(*limit))
+        self.assert_refused(result, str(self.folder), "is the disk full?")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import unittest
 
@@ -22,6 +23,41 @@ class CommandLine(WithFolder):
     def test_a_wrong_command_line_is_code_2(self):
         for args in ([], ["fly"], ["run"], ["run", "x", "--mode", "sonar"], ["eval", "a"], ["config", "--what"]):
             self.assertEqual(edged(*args).returncode, 2, args)
+
+    def test_a_mistyped_command_or_flag_is_told_the_nearest_in_one_line(self):
+        self.assert_refused(edged("rnu", "x"), "unknown command 'rnu'", "did you mean 'run'?", "`edged --help`", code=2)
+        self.assert_refused(edged("run", "x", "--mdoe", "fused"), "unknown flag '--mdoe'", "'--mode'", "`edged run --help`", code=2)
+        self.assert_refused(edged("run", "x", "--mdoe=fused"), "unknown flag '--mdoe'", "'--mode'", code=2)
+        self.assertNotIn("did you mean", edged("fly").stderr)
+        self.assertNotIn("did you mean", edged("config", "--what").stderr)
+
+    def test_with_json_an_error_is_json_too(self):
+        for args, code, kind in ((("run", self.folder / "nothing", "--json"), 3, "input"),
+                                 (("run", "x", "--mdoe", "--json"), 2, "usage"), (("config", "sonar", "--json"), 3, "input")):
+            result = edged(*args)
+            error = json.loads(result.stdout)["error"]
+            self.assertEqual((result.returncode, error["exit_code"], error["kind"]), (code, code, kind))
+            self.assert_refused(result, error["message"], code=code)
+        self.assertEqual(edged("run", self.folder / "nothing").stdout, "")
+
+    def test_what_the_system_refuses_is_no_bug(self):
+        self.assert_refused(edged("run", "x" * 5000), "File name too long")
+        self.assert_refused(edged("run", "sim:room", "--out", "/tmp/" + "x" * 300), "File name too long", "--out")
+        self.assert_refused(edged("run", "sim:room", "--out", "/dev/null/run"), "Not a directory")
+        self.assert_refused(edged("run", "sim:room", "--config", self.folder), str(self.folder))
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run([os.environ["EDGED"], "config"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("No space left", done.stderr)
+
+    @unittest.skipIf(os.geteuid() == 0, "root may read everything")
+    def test_a_folder_that_may_not_be_read_is_no_bug(self):
+        closed = self.folder / "closed"
+        closed.mkdir(0)
+        self.addCleanup(closed.chmod, 0o700)
+        for args in (("run", closed), ("info", closed), ("run", closed / "x"), ("run", "sim:room", "--out", closed / "run"),
+                     ("simulate", "--duration", 0.1, "--out", closed / "x"), ("calib", closed)):
+            self.assert_refused(edged(*args), str(closed))
 
     def test_version_names_the_program(self):
         version = edged("--version").stdout
@@ -98,6 +134,38 @@ class Manual(WithFolder):
         self.assertIn("packets.max_interval_s=", self.complete("run", "--set", "packets."))
         self.assertEqual(self.complete("simulate", "--set", "disturbance.ki"), ["disturbance.kind="])
 
+    OFFERS = ((("d",), ["doctor", "depth"]), (("run", "sim:room", "--mo"), ["--mode"]), (("run", "--mode", "f"), ["frames", "fused"]),
+              (("run", "--rig", "davis2"), ["davis240c_ecd"]), (("simulate", "--set", "disturbance.ki"), ["disturbance.kind="]))
+
+    @unittest.skipUnless(shutil.which("zsh"), "no zsh")
+    def test_zsh_completes_the_same(self):
+        script = self.folder / "_edged"
+        script.write_text(edged("manual", "zsh").stdout)
+        # What zsh's completion system offers to its functions.
+        call = ("program=$1; shift; words=($program \"$@\"); CURRENT=$#words; PREFIX=$words[CURRENT]; _files() { print FILES }; "
+                "compset() { PREFIX=${PREFIX#--*=} }; "
+                "compadd() { while [[ $1 != -- ]] shift; shift; for w in $@; [[ $w == $PREFIX* ]] && print -r -- $w; true }; "
+                f"source {script}")
+        def offered(*words):
+            done = subprocess.run(["zsh", "-fc", call, "zsh", os.environ["EDGED"], *words], capture_output=True, text=True, check=True)
+            self.assertEqual(done.stderr, "")
+            return done.stdout.split()
+        for words, expected in (*self.OFFERS, (("run", "--mode=f"), ["frames", "fused"])):
+            self.assertEqual(sorted(offered(*words)), sorted(expected))
+        self.assertEqual(offered("run", ""), ["FILES"])
+        self.assertEqual(offered("run", "--calib", ""), ["FILES"])
+
+    @unittest.skipUnless(shutil.which("fish"), "no fish")
+    def test_fish_completes_the_same(self):
+        script = self.folder / "edged.fish"
+        script.write_text(edged("manual", "fish").stdout)
+        path = f"{pathlib.Path(os.environ['EDGED']).parent}:{os.environ['PATH']}"
+        for words, expected in self.OFFERS:
+            call = f"source {script}; complete -C 'edged {' '.join(words)}'"
+            done = subprocess.run(["fish", "-c", call], capture_output=True, text=True, check=True, cwd=self.folder,
+                                  env={**os.environ, "HOME": str(self.folder), "PATH": path})
+            self.assertEqual(sorted(line.split("\t")[0] for line in done.stdout.splitlines()), sorted(expected))
+
     def test_bash_offers_files_where_one_may_stand(self):
         self.assertEqual(self.complete("run", ""), [])
         self.assertEqual(self.complete("run", "--calib", ""), [])
@@ -129,6 +197,27 @@ class Eval(WithFolder):
         table = edged("eval", self.truth, self.truth).stdout
         self.assertIn("ATE position", table)
         self.assertIn("0.00 mm over 3 s, 0.00 mm over 10 s (18, 3 windows)", table)
+
+    def test_steps_separated_by_a_comma_are_refused_with_what_to_write(self):
+        self.assert_refused(edged("eval", self.truth, self.truth, "--delta", "1,5"), "'1,5'", "blanks", code=2)
+        self.assertEqual(len(json.loads(edged("eval", self.truth, self.truth, "--delta", 1, 5, "--json").stdout)["rpe"]), 2)
+
+    def test_kitti_is_compared_pose_by_pose_and_no_times_are_made_up(self):
+        kitti = self.folder / "poses.kitti"
+        rows = [line.split() for line in self.truth.read_text().splitlines()]
+        kitti.write_text("".join(f"1 0 0 {x} 0 1 0 {y} 0 0 1 {z}\n" for _, x, y, z, *_ in rows))
+        result = json.loads(edged("eval", kitti, kitti, "--json").stdout)
+        self.assertEqual((result["pairs"], result["duration_s"], result["start_scale"]), (200, None, None))
+        self.assertNotIn("rpe", result)
+        self.assertNotIn("local_error", result)
+        self.assertNotIn(" s", edged("eval", kitti, kitti).stdout.splitlines()[0].split(";")[0])
+        self.assertLess(json.loads(edged("eval", self.truth, kitti, "--json").stdout)["ate_rmse_m"], 1e-9)
+        for seconds in (("--delta", 1), ("--first", 5), ("--protocol", "P1")):
+            self.assert_refused(edged("eval", kitti, kitti, *seconds), seconds[0], "KITTI")
+        self.assertEqual(edged("eval", kitti, kitti, "--protocol", "P4").returncode, 0)
+        short = self.folder / "short.kitti"
+        short.write_text("".join(kitti.read_text().splitlines(keepends=True)[:100]))
+        self.assert_refused(edged("eval", kitti, short), "200 poses", "100", "TUM")
 
     def test_other_clocks_are_refused(self):
         later = self.folder / "later.txt"
@@ -170,6 +259,48 @@ class Calib(WithFolder):
         self.assertAlmostEqual(again["cameras"][0]["T_B_C"][0][3], 0.1)
         self.assertAlmostEqual(again["cameras"][0]["time_offset_s"], -0.003)
         self.assert_refused(edged("calib", self.chain, "--camera", "cam0=both", "--out", rig), "exists")
+
+    def test_a_rig_that_is_written_again_is_the_same_to_the_last_bit(self):
+        self.chain.write_text(self.KALIBR.replace("[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, -0.1]",
+                                                  "[0.36, 0.48, -0.8, 0], [-0.8, 0.6, 0, 0], [0.48, 0.64, 0.6, -0.1]"))
+        texts, source = [], [self.chain, "--camera", "cam0=events"]
+        for number in range(4):
+            rig = self.folder / f"head{number}.yaml"
+            self.assertEqual(edged("calib", *source, "--out", rig).returncode, 0)
+            texts.append(rig.read_text().replace(rig.stem, "head"))
+            source = [rig]
+        self.assertEqual(set(texts), {texts[0]})
+        rig.write_text(rig.read_text().replace("q_B_C: [", "q_B_C: [0.5, 0.5, 0.5, 0.5]  # ["))
+        shown = json.loads(edged("calib", rig, "--json").stdout)
+        self.assertAlmostEqual(shown["cameras"][0]["T_B_C"][0][0], 0.36, 12, "T_B_C counts")
+
+    def test_a_template_is_refused_until_it_is_filled_in(self):
+        numbers = {"coefficients": "[0, 0, 0, 0]", "gyro_saturation": "34.8",
+                   "accel_saturation": "78"}
+        for camera, names, imu, middle in (("davis346", ["events", "frames"], "MPU-6500", "172, 129"),
+                                           ("dvxplorer", ["events"], "BMI160", "319, 239"),
+                                           ("evk4", ["events"], "--imu", "639, 359")):
+            numbers["intrinsics"] = f"[800, 800, {middle}]"
+            head = self.folder / f"{camera}.yaml"
+            self.assertEqual(edged("calib", "--new", camera, "--out", head).returncode, 0)
+            self.assertEqual(edged("calib", "--new", camera).stdout, head.read_text())
+            self.assertIn(imu, head.read_text())
+            self.assert_refused(edged("calib", head), f"{head}:", "FILL_IN")
+            rows = iter(("[1, 0, 0, 0.01]", "[0, 1, 0, 0]", "[0, 0, 1, 0.03]"))
+            filled = []
+            for line in head.read_text().splitlines():
+                key, colon, rest = line.partition(":")
+                if "FILL_IN" in line and line.startswith("      - "):
+                    line = "      - " + next(rows)
+                elif "FILL_IN" in rest:
+                    line = f"{key}{colon} {numbers[key.strip()]}"
+                filled.append(line)
+            head.write_text("\n".join(filled) + "\n")
+            shown = json.loads(edged("calib", head, "--json").stdout)
+            self.assertEqual([c["name"] for c in shown["cameras"]], names)
+            self.assertEqual(shown["warnings"], [])
+        self.assert_refused(edged("calib", "--new", "evk4", "--out", head), "exists")
+        self.assert_refused(edged("calib"), "FILE, --new or --check", code=2)
 
     def test_what_looks_wrong_is_said(self):
         self.chain.write_text(self.KALIBR.replace("-0.1]", "-100]"))
@@ -231,6 +362,8 @@ class Config(WithFolder):
         self.assertIn("edged config expert", few)
         self.assertIn("expert.estimator.recent_states = ", edged("config", "expert").stdout)
         self.assert_refused(edged("config", "sonar"), "'sonar'")
+        self.assert_refused(edged("config", "intervall"), "'intervall'", "did you mean 'interval'?")
+        self.assert_refused(edged("config", "keyfames", "--json"), "did you mean 'keyframes'?")
         self.assert_refused(edged("run", "sim:room", "--set", "estimator.recent_states=3"), "expert.estimator.recent_states")
 
     def test_the_printed_yaml_is_a_valid_config(self):

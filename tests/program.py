@@ -4,12 +4,16 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
 import unittest
 
 EDGED = os.environ["EDGED"]
+
+# The transform of the first camera in our own format; the second is behind the same lens.
+TRANSFORM = re.compile(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]")
 
 
 def edged(*args, cwd=None):
@@ -49,3 +53,21 @@ class WithFlight(WithFolder):
         shutil.copytree(self.flight, copy)
         (copy / name).write_text(change((copy / name).read_text()))
         return copy
+
+
+def with_transform(change):
+    """Changes the rows of T_B_C in the text of a calibration."""
+    def replaced(match):
+        rows = [[float(v) for v in line[line.index("[") + 1:line.index("]")].split(",")]
+                for line in match.group(0).splitlines()]
+        return "\n".join(f"      - [{', '.join(map(str, row))}]" for row in change(rows))
+    return lambda text: TRANSFORM.sub(replaced, text)
+
+
+def with_imu(change):
+    """change(t, accel, gyro) of every line of imu.txt."""
+    def line(text):
+        t, *v = map(float, text.split())
+        t, accel, gyro = change(t, v[:3], v[3:])
+        return " ".join([f"{t:.9f}", *map(repr, accel + gyro)])
+    return lambda text: "\n".join(map(line, text.splitlines())) + "\n"

@@ -6,31 +6,11 @@ import json
 import re
 import unittest
 
-from program import WithFlight, edged
+from program import WithFlight, edged, with_imu, with_transform
 
 MODES = ("events", "frames", "fused")
 DEG = 57.29578
 G = 9.80665
-# The transform of the first camera in our own format; the second is behind the same lens.
-TRANSFORM = re.compile(r"(?: +- \[[^\]]*\]\n){3} +- \[0, 0, 0, 1\]")
-
-
-def with_transform(change):
-    """Changes the rows of T_B_C in the text of a calibration."""
-    def replaced(match):
-        rows = [[float(v) for v in line[line.index("[") + 1:line.index("]")].split(",")]
-                for line in match.group(0).splitlines()]
-        return "\n".join(f"      - [{', '.join(map(str, row))}]" for row in change(rows))
-    return lambda text: TRANSFORM.sub(replaced, text)
-
-
-def with_imu(change):
-    """change(t, accel, gyro) of every line of imu.txt."""
-    def line(text):
-        t, *v = map(float, text.split())
-        t, accel, gyro = change(t, v[:3], v[3:])
-        return " ".join([f"{t:.9f}", *map(repr, accel + gyro)])
-    return lambda text: "\n".join(map(line, text.splitlines())) + "\n"
 
 
 def scaled(factor, v):
@@ -40,7 +20,7 @@ def scaled(factor, v):
 class Verdict(WithFlight):
     def run_it(self, recording, mode, *args):
         out = self.folder / "run"
-        result = edged("run", recording, "--mode", mode, "--out", out, "--quiet", *args)
+        result = edged("run", recording, "--mode", mode, "--out", out, "--force", "--quiet", *args)
         self.assertTrue((out / "metrics.json").is_file(), result.stderr)
         return result, json.loads((out / "metrics.json").read_text())
 

@@ -10,6 +10,7 @@
 #include "edged/estimator/estimator_config.hpp"
 #include "edged/events/events_config.hpp"
 #include "edged/frontend/frontend_config.hpp"
+#include "edged/map/map_config.hpp"
 
 namespace edged {
 
@@ -72,6 +73,7 @@ struct OdometryConfig {
   KeyframeConfig keyframes;
   DepthConfig depth;
   EstimatorConfig estimator;
+  MapConfig map;
   double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which nothing moves in view
   double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
   double min_events_per_pixel = 0.1;  ///< a packet with fewer events draws no event frame

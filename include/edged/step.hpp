@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/frontend/track.hpp"
 #include "edged/measurement.hpp"
@@ -37,6 +38,9 @@ struct Step {
   NavState state;                            ///< at t; meaningful unless status is Initializing
   std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
   bool keyframe = false;                     ///< this packet became a keyframe
+  /// After a loss the body has been found in the map: the pose has gone to where it is there, and what covariance is
+  /// against has gone along.
+  bool found_again = false;
 
   std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers
   std::string started;       ///< the estimator has started with this packet: how, with numbers
@@ -45,7 +49,8 @@ struct Step {
   /// The live corners by id, undistorted pixels on the event frame, as given on the standard frame. Where the packet
   /// brought no image of a camera they are those of its last one.
   std::vector<Track> event_tracks, frame_tracks;
-  std::vector<Landmark> landmarks;  ///< in the window, where it was solved
+  std::vector<Landmark> landmarks;   ///< in the window, where it was solved
+  std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this packet
 
   cv::Mat event_frame;         ///< motion-compensated, CV_8UC1, undistorted; empty when there were too few events
   std::optional<Frame> frame;  ///< that came at t

@@ -104,6 +104,9 @@ class Step(_BodyState):
     @property
     def keyframe(self) -> bool: ...
     @property
+    def found_again(self) -> bool:
+        """After a loss, in the map: the pose has gone to where it is there."""
+    @property
     def waiting_for(self) -> str: ...
     @property
     def started(self) -> str: ...

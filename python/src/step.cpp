@@ -84,6 +84,7 @@ void bind_step(py::module_& module) {
       .def_property_readonly("rotation_covariance",
                              [](const Step& s) { return covariance(s, &PoseCovariance::rotation); })
       .def_readonly("keyframe", &Step::keyframe)
+      .def_readonly("found_again", &Step::found_again)
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)

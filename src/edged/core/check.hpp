@@ -5,6 +5,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -27,6 +28,11 @@ class CheckError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
+
+/// Of what a library says, for the one line of an InputError.
+inline std::string first_line(const std::string& text) {
+  return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
+}
 
 [[noreturn]] void fail_check(const char* condition, const char* file, int line, const std::string& message);
 

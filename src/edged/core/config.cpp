@@ -5,8 +5,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <ios>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <system_error>
@@ -79,21 +83,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view last_part(std::string_view key) { return key.substr(key.rfind('.') + 1); }
 
-/// The known key that the user most likely meant: like the whole key, or with a last part that is almost the same when
-/// the group was left out or mistaken.
-std::string nearest_key(const std::vector<ConfigField>& fields, const std::string& key) {
-  constexpr std::size_t kTypingErrors = 2;
-  const auto distance = [&](const ConfigField& field) {
-    const std::size_t whole = edit_distance(key, field.key);
-    const std::size_t last = edit_distance(last_part(key), last_part(field.key));
-    return last <= kTypingErrors ? std::min(whole, last + 1) : whole;
-  };
-  const auto nearest = std::min_element(fields.begin(), fields.end(), [&](const ConfigField& a, const ConfigField& b) {
-    return distance(a) < distance(b);
-  });
-  return nearest == fields.end() ? "" : nearest->key;
-}
-
 /// Calls use(key, value, line) for every scalar below node; line counts from 1.
 void for_each_scalar(const YAML::Node& node, const std::string& prefix, const std::string& file,
                      const std::function<void(const std::string&, const std::string&, int)>& use) {
@@ -148,7 +137,32 @@ std::string yaml_comment(const ConfigField& field) {
   return comment;
 }
 
+/// By itself: the yaml library leaks its buffer where the file turns out to be a folder.
+std::string read_text(const std::filesystem::path& file) try {
+  std::ifstream in(file);
+  if (!in) throw std::ios_base::failure("open", std::error_code(errno, std::generic_category()));
+  return {std::istreambuf_iterator<char>(in), {}};
+} catch (const std::ios_base::failure& e) {
+  throw InputError::format("{}: cannot be read: {}; check the path given to --config", file.string(),
+                           e.code().message());
+}
+
 }  // namespace
+
+std::string nearest_name(std::span<const std::string> known, const std::string& name, std::size_t most_edits) {
+  constexpr std::size_t kTypingErrors = 2;
+  std::string nearest;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const std::string& candidate : known) {
+    const std::size_t whole = edit_distance(name, candidate);
+    const std::size_t last = edit_distance(last_part(name), last_part(candidate));
+    const std::size_t edits = last <= kTypingErrors ? std::min(whole, last + 1) : whole;
+    if (edits >= fewest || edits > most_edits) continue;
+    nearest = candidate;
+    fewest = edits;
+  }
+  return nearest;
+}
 
 void ConfigFields::expert_but(std::span<const std::string_view> names, const std::function<void()>& declare) {
   audience_ = Audience{names, prefix_.size()};
@@ -239,8 +253,10 @@ void ConfigFields::set(const std::string& key, const std::string& value) {
   for (const ConfigField& field : fields_) {
     if (field.key == key) return field.set(value);
   }
+  std::vector<std::string> keys;
+  for (const ConfigField& field : fields_) keys.push_back(field.key);
   throw InputError::format("unknown option '{}'; did you mean '{}'? (`edged config` lists all)", key,
-                           nearest_key(fields_, key));
+                           nearest_name(keys, key));
 }
 
 void ConfigFields::set(const std::string& assignment) {
@@ -252,11 +268,10 @@ void ConfigFields::set(const std::string& assignment) {
 }
 
 void ConfigFields::load(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
   YAML::Node root;
   try {
-    root = YAML::LoadFile(file.string());
-  } catch (const YAML::BadFile&) {
-    throw InputError::format("{}: cannot be read; check the path given to --config", file.string());
+    root = YAML::Load(text);
   } catch (const YAML::Exception& e) {
     throw InputError::format("{}:{}: not valid yaml: {}", file.string(), e.mark.line + 1, e.msg);
   }

@@ -17,6 +17,11 @@
 
 namespace edged {
 
+/// The known name that the user most likely meant: like the whole, or with a last dotted part that is almost the same,
+/// where the group was left out or mistaken. "" where that takes more than so many edits of a letter.
+std::string nearest_name(std::span<const std::string> known, const std::string& name,
+                         std::size_t most_edits = std::numeric_limits<std::size_t>::max());
+
 /// What a user must know of an option. min and max bound numbers, both inclusive.
 struct FieldDoc {
   std::string_view unit = "";

@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string first_line_of(std::string text) { return text.substr(0, std::min<std::size_t>(text.find('\n'), 160)); }
-
 DepthModel parse_model(const nlohmann::json& json) {
   DepthModel model;
   model.name = json.at("name").get<std::string>();
@@ -76,7 +74,7 @@ DepthModel read_depth_model(const fs::path& onnx) {
     check_ranges(model, file);
     return model;
   } catch (const nlohmann::json::exception& e) {
-    throw InputError::format("{}: {}; docs/depth_model.md lists the keys", file.string(), first_line_of(e.what()));
+    throw InputError::format("{}: {}; docs/depth_model.md lists the keys", file.string(), first_line(e.what()));
   }
 }
 

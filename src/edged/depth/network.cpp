@@ -27,11 +27,6 @@ class QuietOpenCv {
   cv::utils::logging::LogLevel before_;
 };
 
-std::string first_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.substr(0, 160);
-}
-
 }  // namespace
 
 struct DepthNetwork::Runtime {

@@ -80,12 +80,13 @@ std::vector<Factor> factors_of(Window& window, Observations observations) {
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Observations observations) {
   std::vector<TrackStep> steps;
   const auto anchor = feature.seen.find(*feature.anchor);
+  const double at_once = window.track_noise.of(window.cameras[feature.camera].modality);
   const auto follow = [&](auto first, auto last) {
     StateId before = anchor->first;
     for (auto observation = first; observation != last; ++observation) {
       if (observations == Observations::OfKeyframes && !window.states.at(observation->first).keyframe) continue;
       const double dt = std::abs(to_seconds(window.states.at(observation->first).t - window.states.at(before).t));
-      const double correlation = window.track_noise.correlation * std::exp(-dt / window.track_noise.time_s);
+      const double correlation = at_once * std::exp(-dt / window.track_noise.time_s);
       const double own = std::sqrt(1.0 - correlation * correlation);
       steps.push_back({before, observation->first, correlation, observation->second.sigma * own});
       before = observation->first;

@@ -61,7 +61,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   optimize(result, config_.iterations);
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
-  slide();
+  result.left = slide();
   settle_scale(input);
   result.provisional = provisional();
   return result;
@@ -201,18 +201,20 @@ void Estimator::adapt_noise(double imu_strain) {
   }
 }
 
-void Estimator::slide() {
+std::vector<KeyframeRecord> Estimator::slide() {
+  std::vector<KeyframeRecord> left;
   // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
   if (window_.states.size() > static_cast<std::size_t>(config_.recent_states)) {
     const auto aged = std::prev(window_.states.end(), config_.recent_states + 1);
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) {
-    drop_oldest_keyframe(window_, config_.landmarks);
+    left.push_back(drop_oldest_keyframe(window_, config_.landmarks));
   }
   // Tracks that ended before they became landmarks.
   std::erase_if(window_.features,
                 [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
+  return left;
 }
 
 }  // namespace edged

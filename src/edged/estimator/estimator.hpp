@@ -17,12 +17,13 @@
 namespace edged {
 
 struct EstimatorResult {
-  std::string waiting_for;          ///< while not initialised: what is missing, with numbers
-  std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
-  std::string started;              ///< the estimator has started with this input: how, with numbers
-  std::vector<Landmark> landmarks;  ///< in the cost
-  int landmarks_seen = 0;           ///< of them, seen by the newest state
-  double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
+  std::string waiting_for;           ///< while not initialised: what is missing, with numbers
+  std::vector<FeatureId> outliers;   ///< tracks that are wrong and should end
+  std::string started;               ///< the estimator has started with this input: how, with numbers
+  std::vector<Landmark> landmarks;   ///< in the cost
+  int landmarks_seen = 0;            ///< of them, seen by the newest state
+  double imu_strain = 0.0;           ///< of the window: see imu_strain() [sigma]
+  std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this input, in its frame
   bool standstill = false;
   bool new_frame = false;    ///< the estimator has started (again) with this input, in a frame of its own
   bool provisional = false;  ///< the start does not know the scale well enough yet
@@ -68,7 +69,7 @@ class Estimator {
   bool take_depth();
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise(double imu_strain);
-  void slide();
+  std::vector<KeyframeRecord> slide();
 
   ImuNoise noise_;
   EstimatorConfig config_;

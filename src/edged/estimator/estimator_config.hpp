@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "edged/core/config.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 
@@ -20,10 +21,13 @@ struct CalibrationConfig {
 
 /// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
 /// two observations dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov
-/// process, and on top of it what each image has of its own.
+/// process, and on top of it what each image has of its own. An event frame has more of that: it is drawn anew each
+/// time. And the more is taken for drift, the more what moves slowly is believed.
 struct TrackNoise {
-  double correlation = 0.95;
+  double correlation = 0.95;  ///< on frames
+  double event_correlation = 0.8;
   double time_s = 2.0;
+  double of(Modality modality) const { return modality == Modality::Events ? event_correlation : correlation; }
   void visit(ConfigFields& fields);
 };
 

@@ -87,6 +87,39 @@ TEST(Estimator, StartsInMotionAndFindsScaleAndGravity) {
   }
 }
 
+TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
+  constexpr double kStep = 0.05;
+  TestWorld world({.rest_s = 1.0, .cameras = 2});
+  Estimator estimator(world.rig(), world.noise(), {});
+  std::size_t keyframes = 0, seen = 0, left = 0;
+  double depth_error = 0.0, depth_sigma = 0.0;
+  for (int i = 1; i * kStep <= 8.0; ++i) {
+    for (const KeyframeRecord& record : estimator.add(world.packet(i * kStep, kStep, i % 4 == 0)).left) {
+      const double t = to_seconds(record.t);
+      if (t < 3.0) continue;  // at rest no depth is known
+      ++keyframes;
+      ASSERT_EQ(record.views.size(), 2U);
+      for (std::size_t camera = 0; camera < 2; ++camera) {
+        const KeyframeView& view = record.views[camera];
+        EXPECT_EQ(view.camera, world.rig().cameras[camera].name);
+        seen += world.observe(t, camera).features.size();
+        left += view.points.size();
+        const SE3 T_C_W = (world.T_W_B(t) * view.T_B_C).inverse();
+        for (const KeyframePoint& point : view.points) {
+          const Eigen::Vector3d p_C = T_C_W * world.point_W(point.id);
+          EXPECT_LT((point.point - p_C.hnormalized()).norm(), 0.03);
+          depth_error += std::abs(point.inverse_depth * p_C.z() - 1.0);
+          depth_sigma += point.sigma / point.inverse_depth;
+        }
+      }
+    }
+  }
+  EXPECT_GT(keyframes, 12U);
+  EXPECT_GT(left, seen / 2) << "landmarks are fewer than corners";
+  EXPECT_LT(depth_error, 0.03 * static_cast<double>(left));
+  EXPECT_GT(depth_sigma, 0.5 * depth_error) << "as well known as it says";
+}
+
 TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
   const RunResult result = run({.speed = 0.0}, 5.0);
   EXPECT_FALSE(result.initialized);
@@ -179,7 +212,7 @@ TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   config.sigma_inflation = 1.0;
   config.calibration = {.rotation_sigma_deg = 0.0, .time_offset_sigma_ms = 0.0, .imu_sigma = 0.0};
   const VelocityErrors with = velocity_errors(drifting, config);
-  config.track_noise.correlation = 0.0;
+  config.track_noise.correlation = config.track_noise.event_correlation = 0.0;
   const VelocityErrors without = velocity_errors(drifting, config);
   EXPECT_LT(with.rms, 0.85 * without.rms);
   EXPECT_GT(with.nees, 0.3);  // noise_inflation squared is 4, where it counts for all

@@ -7,8 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/estimator/covariance.hpp"
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/landmarks.hpp"
@@ -17,7 +17,6 @@
 namespace edged {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
 constexpr int kStartIterations = 25, kRefineIterations = 8;
 constexpr std::ptrdiff_t kMinStartLandmarks = 15;
@@ -127,7 +126,7 @@ bool Initializer::buffer_view(const EstimatorInput& input) {
 /// In a fast turn a corner crosses the view within a tenth of a second: views must follow it.
 bool Initializer::view_due(const EstimatorInput& input) const {
   return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s) ||
-         turned_rad(pending_imu_) > config_.init_turn_deg * kDeg;
+         turned_rad(pending_imu_) > config_.init_turn_deg * kDegree;
 }
 
 /// Slow motion needs time to tell the scale, fast motion close views. Of a full buffer that view goes that is closest
@@ -233,7 +232,7 @@ std::string Initializer::doubt_about(Window& window, double most_tilt_deg) const
   if (!(rms <= kMaxStartRms)) {
     return fmt::format("motion that fits the IMU: corners {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
   }
-  const double tilt_deg = tilt_sigma(window) / kDeg;
+  const double tilt_deg = tilt_sigma(window) / kDegree;
   if (!(tilt_deg <= most_tilt_deg)) {
     return fmt::format("motion that tells gravity: known to {:.1f} deg, {:.1f} wanted", tilt_deg, most_tilt_deg);
   }

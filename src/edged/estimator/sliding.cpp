@@ -3,6 +3,7 @@
 #include "edged/estimator/sliding.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "edged/estimator/cost.hpp"
 #include "edged/estimator/depth_terms.hpp"
@@ -46,6 +47,46 @@ bool stays_out(const Factor& factor, const Window& window, const std::map<Featur
   return found->second && factor.state > heir;
 }
 
+/// A landmark as one of its views sees it. The errors of a track are a walk, so that of its depth the view that is
+/// farthest from the anchor's tells nearly all.
+KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, StateId state) {
+  const SE3 T_W_A = window.T_W_C(*feature.anchor, feature.camera);
+  const Eigen::Vector3d p_W = window.position(feature);
+  double share = std::numeric_limits<double>::infinity();  // of the inverse depth: its sigma
+  for (const auto& [other, observation] : feature.seen) {
+    if (other == *feature.anchor) continue;
+    const SE3 T_C_W = window.T_W_C(other, feature.camera).inverse();
+    const Eigen::Vector3d p_C = T_C_W * p_W, along_C = T_C_W.R() * (p_W - T_W_A.translation());
+    const Eigen::Vector2d by_share = (along_C.head<2>() - p_C.hnormalized() * along_C.z()) / p_C.z();
+    share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
+  }
+  const double inverse_depth = 1.0 / (window.T_W_C(state, feature.camera).inverse() * p_W).z();
+  return {id, feature.seen.at(state).point, inverse_depth, share * std::abs(inverse_depth)};
+}
+
+/// Keyframes that stay keep what they saw of a landmark whose observations there go.
+void keep_points(Window& window, FeatureId id, const Feature& feature, std::optional<StateId> heir) {
+  for (const auto& [state, observation] : feature.seen) {
+    if (state == *feature.anchor || (heir && state >= *heir)) continue;
+    WindowState& keyframe = window.states.at(state);
+    if (keyframe.keyframe) keyframe.kept[feature.camera].push_back(point_of(window, id, feature, state));
+  }
+}
+
+KeyframeRecord record_of(Window& window, StateId id) {
+  WindowState& state = window.states.at(id);
+  KeyframeRecord record{state.t, state.T_W_B(), {}};
+  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+    const SE3 T_B_C = record.T_W_B.inverse() * window.T_W_C(id, camera);
+    record.views.push_back({window.cameras[camera].name, T_B_C, std::move(state.kept[camera])});
+  }
+  for (const auto& [feature_id, feature] : window.features) {
+    if (!feature.anchor || !feature.seen.contains(id)) continue;
+    record.views[feature.camera].points.push_back(point_of(window, feature_id, feature, id));
+  }
+  return record;
+}
+
 }  // namespace
 
 void drop_or_promote(Window& window, StateId id, double max_interval_s) {
@@ -66,9 +107,10 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   window.drop_orphaned_priors();
 }
 
-void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
+KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
   const auto& [id, oldest] = *window.states.begin();
   const StateId heir = youngest_keyframe(window);
+  KeyframeRecord record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
   for (const auto& [piece, ln_s] : window.ln_scale) leaving.insert({BlockKind::LogScale, piece});
   std::map<FeatureId, bool> inherited;
@@ -76,6 +118,7 @@ void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
     if (feature.anchor != id) continue;
     leaving.insert({BlockKind::InverseDepth, feature_id});
     inherited[feature_id] = heir != id && feature.seen.contains(heir);
+    keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(heir) : std::nullopt);
   }
   std::vector<Factor> touching = factors_touching(window, leaving);
   std::erase_if(touching, [&](const Factor& factor) { return stays_out(factor, window, inherited, heir); });
@@ -101,6 +144,7 @@ void drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
     return leaving.contains({BlockKind::LogScale, piece.first});
   });
   window.drop_orphaned_priors();
+  return record;
 }
 
 }  // namespace edged

@@ -3,6 +3,7 @@
 // How the window moves on: states that leave, and what is kept of them.
 #pragma once
 
+#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/window.hpp"
 
@@ -13,8 +14,8 @@ namespace edged {
 /// push those with a baseline out of the window, and the body is held between them.
 void drop_or_promote(Window& window, StateId id, double max_interval_s);
 
-/// Marginalises the oldest state. Landmarks anchored there that are still in view go on in the youngest keyframe with
-/// the observations from there on, so that nothing is used twice.
-void drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
+/// Marginalises the oldest state and gives what is left of it. Landmarks anchored there that are still in view go on in
+/// the youngest keyframe with the observations from there on, so that nothing is used twice.
+KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
 
 }  // namespace edged

@@ -57,6 +57,10 @@ void TrackNoise::visit(ConfigFields& fields) {
   fields.add(
       "correlation", correlation,
       {"1", 0, 0.999, "of the errors of two observations of a track right after one another; 0: all independent"});
+  fields.add("event_correlation", event_correlation,
+             {"1", 0, 0.999,
+              "the same on event frames; higher: more accurate where all stands still, and what moves "
+              "slowly is believed"});
   fields.add("time_s", time_s, {"s", 0.01, 1000, "after this time the correlation has fallen to 1/e of that"});
 }
 

@@ -16,6 +16,7 @@
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/factors/reprojection_factor.hpp"
+#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
@@ -33,8 +34,9 @@ struct WindowState {
   bool keyframe = false;
   bool rested = false;  ///< the body did not move since the state before this one
   Preintegration imu;   ///< from the state before this one; of the window's first state unused
-  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();  ///< the reading at t [rad/s]
-  std::optional<RegionDepth> depth;                  ///< of a keyframe: what a depth source says
+  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();        ///< the reading at t [rad/s]
+  std::optional<RegionDepth> depth;                        ///< of a keyframe: what a depth source says
+  std::map<std::size_t, std::vector<KeyframePoint>> kept;  ///< by camera: what it saw of landmarks that have left
 
   SE3 T_W_B() const { return pose_of(pose.data()); }
   NavState nav() const;
@@ -68,8 +70,8 @@ class Window {
   std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
   std::vector<CalibrationBlock> calibration;  ///< one a camera
   ImuIntrinsicsBlock imu_intrinsics{};
-  std::vector<double> noise_scale;   ///< one a camera: multiplies the sigma of its observations as they come in
-  TrackNoise track_noise{0.0, 1.0};  ///< of all cameras; independent observations until set
+  std::vector<double> noise_scale;        ///< one a camera: multiplies the sigma of its observations as they come in
+  TrackNoise track_noise{0.0, 0.0, 1.0};  ///< independent observations until set
   DepthFactorConfig depth_config;
   /// The present piece of ln s (Eq. 5), and the next while one is left behind.
   std::map<std::uint64_t, double> ln_scale;

@@ -58,6 +58,22 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U + observations);
 }
 
+TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
+  const TestWorldOptions options{};
+  TestWorld world(options);
+  Window window = window_at_truth(world, options);
+  triangulate_features(window, {});
+  window.track_noise = {0.9, 0.6, 2.0};
+  const auto landmark =
+      std::ranges::find_if(window.features, [](const auto& f) { return f.second.anchor.has_value(); });
+  ASSERT_NE(landmark, window.features.end());
+  const double decay = std::exp(-kPeriod_s / 2.0);
+  window.cameras[0].modality = Modality::Frames;
+  EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, 0.9 * decay, 1e-9);
+  window.cameras[0].modality = Modality::Events;
+  EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, 0.6 * decay, 1e-9);
+}
+
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
   TestWorld world({.cameras = 2});
   Window window(world.rig(), 1.0);

@@ -139,34 +139,33 @@ void EnhanceConfig::visit(ConfigFields& fields) {
 }
 
 void EnhanceConfig::validate(const std::function<std::string(std::string_view)>& key) const {
-  const auto refuse = [&key](bool contradiction, std::string text) {
-    if (!contradiction) return;
-    for (std::size_t open; (open = text.find('{')) != std::string::npos;) {
-      const std::size_t close = text.find('}', open);
-      text.replace(open, close + 1 - open, key(std::string_view(text).substr(open + 1, close - open - 1)));
-    }
-    throw InputError(text);
+  const auto refuse = [&key](bool contradiction, std::string_view text, auto... names) {
+    if (contradiction) throw InputError(fmt::format(fmt::runtime(text), key(names)...));
   };
   refuse(erosion_px > 0 && erosion_px % 2 == 0,
-         "{erosion_px} is even, which would shift the edges by half a pixel: give an odd number, or 0 for none");
+         "{} is even, which would shift the edges by half a pixel: give an odd number, or 0 for none", "erosion_px");
   if (method == EdgeMethod::None) return;
-  refuse(event_weight + edge_weight <= 0.0,
-         "{event_weight} and {edge_weight} are both 0, which leaves a black image: raise one of them");
+  refuse(event_weight + edge_weight <= 0.0, "{} and {} are both 0, which leaves a black image: raise one of them",
+         "event_weight", "edge_weight");
   refuse(method == EdgeMethod::Canny && erosion_px > 0,
-         "{erosion_px} with {method} = canny: Canny's edges are one pixel wide and erosion would delete them all; "
-         "set {erosion_px} = 0 or take sobel, scharr or laplacian");
+         "{0} with {1} = canny: Canny's edges are one pixel wide and erosion would delete them all; set {0} = 0 or "
+         "take sobel, scharr or laplacian",
+         "erosion_px", "method");
   refuse(method == EdgeMethod::Clahe && erosion_px > 0,
-         "{erosion_px} with {method} = clahe: there is no edge map to thin; set {erosion_px} = 0 or take sobel, "
-         "scharr or laplacian");
+         "{0} with {1} = clahe: there is no edge map to thin; set {0} = 0 or take sobel, scharr or laplacian",
+         "erosion_px", "method");
   refuse(method == EdgeMethod::Canny && canny_low > canny_high,
-         "{canny_low} is above {canny_high}: every edge that starts must be one that can be followed; swap them");
+         "{} is above {}: every edge that starts must be one that can be followed; swap them", "canny_low",
+         "canny_high");
   refuse(method == EdgeMethod::Clahe && clahe_clip <= 0.0,
-         "{method} = clahe with {clahe_clip} = 0: the equalisation is off; raise clahe_clip or set method = none");
+         "{} = clahe with {} = 0: the equalisation is off; raise clahe_clip or set method = none", "method",
+         "clahe_clip");
   refuse(sharpening == Sharpening::Paper && clahe_clip <= 0.0,
-         "{sharpening} = paper with {clahe_clip} = 0: without equalisation clahe minus blur is zero; raise "
-         "clahe_clip or take sharpening = unsharp");
+         "{} = paper with {} = 0: without equalisation clahe minus blur is zero; raise clahe_clip or take sharpening = "
+         "unsharp",
+         "sharpening", "clahe_clip");
   refuse(sharpening != Sharpening::None && sharpen_lambda <= 0.0,
-         "{sharpening} with {sharpen_lambda} = 0 sharpens nothing: raise it, or set sharpening = none");
+         "{} with {} = 0 sharpens nothing: raise it, or set sharpening = none", "sharpening", "sharpen_lambda");
 }
 
 cv::Mat enhance(const cv::Mat& event_frame, const EnhanceConfig& config) {

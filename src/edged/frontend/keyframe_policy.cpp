@@ -3,8 +3,7 @@
 // When an instant becomes a keyframe.
 #include "edged/frontend/keyframe_policy.hpp"
 
-#include <numbers>
-
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
 
@@ -35,7 +34,6 @@ void KeyframeConfig::visit(ConfigFields& fields) {
 }
 
 KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   if (!since.any) return KeyframeReason::First;
   const double age_s = to_seconds(since.time);
   if (age_s < config.min_interval_s) return KeyframeReason::None;

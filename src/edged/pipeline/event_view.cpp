@@ -33,11 +33,9 @@ EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
 
 bool EventView::quiet(const Packet& packet) const { return packet.event_rate_hz < quiet_rate_per_pixel_ * pixels(); }
 
-/// The packet's window, shortened when the body moves fast: over a long way the warp smears what does not lie at the
-/// scene's one depth. Rotation does not count, its warp knows no depth. Empty when there are too few for a frame.
 std::span<const Event> EventView::drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const {
   const std::span<const Event> window = packet.window();
-  if (window.size() < least_events_) return {};
+  if (window.size() < least_events_ || body.poses().size() < 2) return {};
   if (!body.started()) return window;
   const double travel_px_per_s = ideal().mean_focal() * body.now().v_W.norm() / scene_depth;
   const double age_s = std::min(max_travel_px_ / std::max(travel_px_per_s, 1e-3), max_age_s_);
@@ -46,10 +44,8 @@ std::span<const Event> EventView::drawn_events(const Packet& packet, const BodyM
   return window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_));
 }
 
-EventImage EventView::draw(const Packet& packet, const RigCamera& camera, const BodyMotion& body, double scene_depth,
-                           const DepthGrid* depths) {
-  const std::span<const Event> events = drawn_events(packet, body, scene_depth);
-  if (events.empty() || body.poses().size() < 2) return {};
+EventImage EventView::draw(std::span<const Event> events, const RigCamera& camera, const BodyMotion& body,
+                           double scene_depth, const DepthGrid* depths) {
   const std::span<const StampedPose> poses = covering(body.poses(), events.front().t + camera.time_offset);
   const CameraMotion motion = camera_motion(poses, body.moved_on(camera.time_offset), camera.T_B_C, camera.time_offset);
   EventImage image;

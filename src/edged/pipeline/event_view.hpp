@@ -26,16 +26,19 @@ class EventView {
 
   /// Fewer events than anything that moves would make.
   bool quiet(const Packet& packet) const;
-  /// camera: as calibrated so far; body: predicted to the packet; scene_depth: z [m]; depths: that of every event in
-  /// its place, null: scene_depth for all.
-  EventImage draw(const Packet& packet, const RigCamera& camera, const BodyMotion& body, double scene_depth,
+  /// Those of the packet's window that make a frame: shortened when the body moves fast, as over a long way the warp
+  /// smears what does not lie at the scene's one depth (z, [m]). Rotation does not count, its warp knows no depth.
+  /// body: predicted to the packet. Empty when there are too few.
+  std::span<const Event> drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const;
+  /// events: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
+  /// all.
+  EventImage draw(std::span<const Event> events, const RigCamera& camera, const BodyMotion& body, double scene_depth,
                   const DepthGrid* depths);
 
   /// The undistorted camera of the images.
   const CameraModel& ideal() const { return renderer_.camera(); }
 
  private:
-  std::span<const Event> drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const;
   double pixels() const { return static_cast<double>(ideal().width()) * ideal().height(); }
 
   EventFrameRenderer renderer_;

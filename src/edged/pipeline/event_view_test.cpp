@@ -47,7 +47,11 @@ class EventViewTest : public testing::Test {
   }
 
   EventImage draw(std::size_t events, double speed) {
-    return EventView(camera_.model, config_).draw(packet_of(events), camera_, moving(speed), kDepth_m, nullptr);
+    EventView view(camera_.model, config_);
+    const Packet packet = packet_of(events);
+    const BodyMotion body = moving(speed);
+    const std::span<const Event> drawn = view.drawn_events(packet, body, kDepth_m);
+    return drawn.empty() ? EventImage{} : view.draw(drawn, camera_, body, kDepth_m, nullptr);
   }
 
   RigCamera camera_;

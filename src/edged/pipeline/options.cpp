@@ -48,6 +48,8 @@ constexpr std::string_view kForEveryone[] = {
     "estimator.landmarks.min_depth_m",
     "estimator.landmarks.max_depth_m",
     "estimator.landmarks.max_per_camera",
+    "map.enabled",
+    "map.keyframes.max_keyframes",
     "status.degraded_after_s",
     "status.lost_after_s",
 };
@@ -84,6 +86,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("depth", depth);
   fields.group("depth_factor", estimator.depth_factor);
   fields.group("estimator", estimator);
+  fields.group("map", map);
   fields.group("status", status);
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
              {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
@@ -96,10 +99,11 @@ void OdometryConfig::declare(ConfigFields& fields) {
 
 void OdometryConfig::validate() const {
   OdometryConfig copy = *this;
-  ConfigFields::of(copy);  // refuses what is out of its range
-  enhance.validate([](std::string_view name) {
+  const ConfigFields fields = ConfigFields::of(copy);  // refuses what is out of its range
+  enhance.validate([&fields](std::string_view name) {
     const std::string key = "enhance." + std::string(name);
-    return std::ranges::find(kForEveryone, key) == std::end(kForEveryone) ? "expert." + key : key;
+    return std::ranges::find_if(fields.all(), [&key](const ConfigField& field) { return field.key.ends_with(key); })
+        ->key;
   });
   if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
     throw InputError(

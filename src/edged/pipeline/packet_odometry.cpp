@@ -15,6 +15,9 @@ namespace {
 /// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
+/// Of fewer corners than that on frames there is no map, but of those on event frames beside them.
+constexpr double kCornersForMap = 20.0;
+
 /// Without a frame for so long, events no longer count on them.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
@@ -48,7 +51,8 @@ PacketOdometry::PacketOdometry(const Rig& rig, const ImuNoise& noise, Mode mode,
       noise_(noise),
       given_rig_(rig_of_mode(rig, mode)),
       rig_(without_offsets(given_rig_)),
-      estimator_(rig_, noise, config.estimator),
+      estimator_(fresh_estimator()),
+      mapper_(config.map),
       judge_(config.status),
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
       dim_frames_(config.dim_frames),
@@ -69,9 +73,10 @@ void PacketOdometry::make_channels() {
 }
 
 void PacketOdometry::begin_time() {
-  estimator_ = Estimator(rig_, noise_, config_.estimator);
+  estimator_ = fresh_estimator();
   make_channels();
   depth_ = SceneDepth(config_.depth, depth_camera(rig_), config_.estimator.depth_factor.enabled, inference_);
+  mapper_ = Mapper(config_.map);  // its keyframes are of the time before
   judge_.lose("a clock was set back");
   last_keyframe_.reset();
   last_frame_.reset();
@@ -81,7 +86,7 @@ void PacketOdometry::begin_time() {
 
 Step PacketOdometry::process(Packet packet) {
   EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
-  const Preintegration motion = predict(packet);
+  Preintegration motion = predict(packet);
   const double scene_depth = measure_depth(packet);
   const EventImage drawn = draw(packet, scene_depth);
   const std::vector<ChannelView> views = views_of(packet, drawn);
@@ -89,14 +94,16 @@ Step PacketOdometry::process(Packet packet) {
   for (const ChannelView& view : views) reject(view);
   const bool keyframe = is_keyframe(packet, views);
   if (keyframe) mark_keyframe(packet.t, views);
-  const EstimatorResult result = estimate(packet, motion, views, keyframe);
+  const EstimatorResult result = estimate(packet, std::move(motion), views, keyframe);
   const TrackingStatus status = judge_.judge(result, estimator_.initialized(), packet.t);
+  const bool found_again = follow_map(packet.t, views, result, keyframe);
   update_covariance(packet.t);
   Step step = describe(std::move(packet), drawn, result, status);
   step.keyframe = keyframe;
+  step.found_again = found_again;
   step.scene_depth = scene_depth;
   if (status == TrackingStatus::Lost && estimator_.initialized()) {
-    estimator_ = Estimator(rig_, noise_, config_.estimator);  // it starts again
+    estimator_ = fresh_estimator();
   }
   return step;
 }
@@ -115,6 +122,7 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
     (channel.camera.modality == Modality::Events ? step.event_tracks : step.frame_tracks) = channel.tracker.tracks();
   }
   step.landmarks = world_.of(result.landmarks);
+  step.left = world_.of(result.left);
   step.event_frame = drawn.frame;
   step.frame = std::move(packet.frame);
   step.events = std::move(packet.events);
@@ -139,8 +147,10 @@ double PacketOdometry::measure_depth(const Packet& packet) {
 EventImage PacketOdometry::draw(const Packet& packet, double scene_depth) {
   if (!event_view_) return {};
   const auto timer = timings_.measure("event_frame");
+  const std::span<const Event> events = event_view_->drawn_events(packet, body_, scene_depth);
+  if (events.empty()) return {};
   const std::optional<DepthGrid> depths = event_depths(scene_depth);
-  return event_view_->draw(packet, find_channel(Modality::Events)->camera, body_, scene_depth,
+  return event_view_->draw(events, find_channel(Modality::Events)->camera, body_, scene_depth,
                            depths ? &*depths : nullptr);
 }
 
@@ -246,11 +256,11 @@ void PacketOdometry::mark_keyframe(Timestamp t, std::span<const ChannelView> vie
   gyro_saturated_ = false;
 }
 
-EstimatorResult PacketOdometry::estimate(const Packet& packet, const Preintegration& motion,
+EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration motion,
                                          std::span<const ChannelView> views, bool keyframe) {
   const auto timer = timings_.measure("estimate");
   const bool quiet = event_view_ && event_view_->quiet(packet);
-  EstimatorInput input{packet.t, motion, {}, keyframe, quiet, depth_.for_factor(packet.t)};
+  EstimatorInput input{packet.t, std::move(motion), {}, keyframe, quiet, depth_.for_factor(packet.t)};
   for (const ChannelView& view : views) {
     view.channel->T_W_Blast = T_W_B_of(*view.channel);
     input.observations.push_back(view.channel->observations());
@@ -267,6 +277,28 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, const Preintegrat
   for (const ChannelView& view : views) view.channel->settle(T_W_B_of(*view.channel), keyframe);
   depth_.add_landmarks(packet.t, landmarks_in_view());
   return result;
+}
+
+/// Frames are what the map is of, where they see enough: the look of an event frame changes with the motion. True when
+/// the body has been found in it after a loss.
+bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result,
+                                bool keyframe) {
+  if (!config_.map.enabled || !estimator_.initialized()) return false;
+  const auto timer = timings_.measure("map");
+  bool found_again = false;
+  if (result.new_frame) mapper_.restart(world_.T_W_S(), body_.now());
+  mapper_.predict(body_.now());
+  const Channel* frames = find_channel(Modality::Frames);
+  const bool by_frames = mode_ == Mode::Frames || (frames && frames->carried() >= kCornersForMap);
+  const Modality modality = by_frames ? Modality::Frames : Modality::Events;
+  const auto view = std::ranges::find(views, modality, [](const ChannelView& v) { return v.channel->camera.modality; });
+  if (view != views.end()) {
+    found_again = mapper_.localize(t, *view, T_W_B_of(*view->channel));
+    if (keyframe) mapper_.keyframe(t, *view, T_W_B_of(*view->channel));
+  }
+  for (const KeyframeRecord& record : result.left) mapper_.take(record);
+  world_.move(mapper_.T_M_O());
+  return found_again;
 }
 
 void PacketOdometry::calibrate() {

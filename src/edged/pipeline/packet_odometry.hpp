@@ -16,6 +16,7 @@
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/channel.hpp"
 #include "edged/pipeline/event_view.hpp"
+#include "edged/pipeline/mapper.hpp"
 #include "edged/pipeline/packetizer.hpp"
 #include "edged/pipeline/scene_depth.hpp"
 #include "edged/pipeline/status_judge.hpp"
@@ -45,6 +46,7 @@ class PacketOdometry {
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
  private:
+  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
   void make_channels();
   Preintegration predict(const Packet& packet);
   double measure_depth(const Packet& packet);
@@ -57,8 +59,9 @@ class PacketOdometry {
   bool is_keyframe(const Packet& packet, std::span<const ChannelView> views) const;
   int corners_wanted(const Channel& channel) const;
   void mark_keyframe(Timestamp t, std::span<const ChannelView> views);
-  EstimatorResult estimate(const Packet& packet, const Preintegration& motion, std::span<const ChannelView> views,
+  EstimatorResult estimate(const Packet& packet, Preintegration motion, std::span<const ChannelView> views,
                            bool keyframe);
+  bool follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result, bool keyframe);
   void calibrate();
   void update_covariance(Timestamp t);
   Step describe(Packet packet, const EventImage& drawn, const EstimatorResult& result, TrackingStatus status) const;
@@ -80,6 +83,7 @@ class PacketOdometry {
   StageTimings timings_;
 
   WorldFrame world_;
+  Mapper mapper_;
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised

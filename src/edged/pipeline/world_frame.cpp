@@ -29,4 +29,9 @@ std::vector<Landmark> WorldFrame::of(std::vector<Landmark> in_S) const {
   return in_S;
 }
 
+std::vector<KeyframeRecord> WorldFrame::of(std::vector<KeyframeRecord> in_S) const {
+  for (KeyframeRecord& record : in_S) record.T_W_B = T_W_S_ * record.T_W_B;
+  return in_S;
+}
+
 }  // namespace edged

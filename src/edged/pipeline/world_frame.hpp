@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "edged/estimator/keyframe_record.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
@@ -16,8 +17,12 @@ class WorldFrame {
   /// the new one. Position and yaw go on; tilt is the estimator's, which knows gravity.
   void restart(const SE3& T_new_old, const NavState& now);
 
+  /// The map says where S lies.
+  void move(const SE3& T_W_S) { T_W_S_ = T_W_S; }
+
   NavState of(NavState in_S) const;
   std::vector<Landmark> of(std::vector<Landmark> in_S) const;
+  std::vector<KeyframeRecord> of(std::vector<KeyframeRecord> in_S) const;
   const SE3& T_W_S() const { return T_W_S_; }
 
  private:

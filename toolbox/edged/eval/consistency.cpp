@@ -127,9 +127,10 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<Claimed
     }
     const SE3 T_W_B = anchor->T_Wtrue_W * pair.estimate;
     const Eigen::Matrix3d R = anchor->T_Wtrue_W.R();
-    const bool position_believable =
-        position.add(pair.truth.translation() - T_W_B.translation(),
-                     R * claim->position * R.transpose() + anchor->of_position(T_W_B.translation()));
+    const Eigen::Vector3d error = T_W_B.translation() - pair.truth.translation();
+    const Eigen::Matrix3d covariance = R * claim->position * R.transpose() + anchor->of_position(T_W_B.translation());
+    result.errors.push_back({pair.t, error, covariance.diagonal().cwiseSqrt()});
+    const bool position_believable = position.add(error, covariance);
     const bool rotation_believable = rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
                                                   claim->rotation + anchor->of_rotation(T_W_B));
     silent.add(pair.t, claim->good && !(position_believable && rotation_believable));

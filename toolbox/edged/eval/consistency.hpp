@@ -32,12 +32,19 @@ struct TimeSpan {
   Timestamp begin, end;
 };
 
+/// One position error, estimate less truth, laid on as below, and how large it may be.
+struct ClaimedError {
+  Timestamp t;
+  Eigen::Vector3d error, sigma;  ///< in the true W [m]
+};
+
 struct Consistency {
   std::size_t poses = 0, starts = 0;
   NormalizedErrors position, rotation;
   /// Where the estimate had diverged silently: all of the poses for more than 0.5 s are Good, but with the position or
   /// the rotation beyond the 99.73 %.
   std::vector<TimeSpan> silent;
+  std::vector<ClaimedError> errors;  ///< of each pose
 
   double silent_s() const;
 };

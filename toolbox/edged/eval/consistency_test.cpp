@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <random>
 
 #include "edged/eval/test_trajectories.hpp"
@@ -67,6 +68,19 @@ TEST(Consistency, ErrorsTwiceAsLargeAsClaimedAreFourTimesTheMean) {
   EXPECT_NEAR(found.rotation.mean_nees, 12.0, 0.4);
   EXPECT_LT(found.position.within, 0.75);
   EXPECT_LT(found.position.axes_within.maxCoeff(), 0.9);
+}
+
+TEST(Consistency, EveryErrorComesWithItsSizeAsClaimed) {
+  const Trajectory truth = winding_motion(200.0);
+  const Consistency found = check_consistency(truth, claims_of(truth));
+  ASSERT_EQ(found.errors.size(), truth.size());
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  for (const ClaimedError& e : found.errors) squares += e.error.array().square();
+  const Eigen::Array3d spread = (squares / static_cast<double>(truth.size())).sqrt();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(found.errors.back().sigma[i], std::sqrt(kPosition(i, i)), 1e-9);
+    EXPECT_NEAR(spread[i], std::sqrt(kPosition(i, i)), 0.03 * spread[i]);
+  }
 }
 
 /// Poses from from_s to to_s after the first, moved by d in the world.

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/path_length.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may come late
 constexpr double kStart_s = 5.0;
 constexpr TimeWindow kFirst = {0.0, 2.0}, kLater = {10.0, 12.0};
@@ -22,20 +22,12 @@ constexpr double kLocalAfter_s = 4.0;      // before, the start is judged, not t
 constexpr double kLocalSteps = 4.0;        // windows begin so often in the length of one
 constexpr std::size_t kLeastLocalPairs = 11;
 
-double path_length(const std::vector<PosePair>& pairs) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < pairs.size(); ++i) {
-    length += (pairs[i].truth.translation() - pairs[i - 1].truth.translation()).norm();
-  }
-  return length;
-}
-
-double angle_deg(const Eigen::Quaterniond& q) { return kDegrees * so3::log(q).norm(); }
+double angle_deg(const Eigen::Quaterniond& q) { return kDegreesPerRadian * so3::log(q).norm(); }
 
 /// Yaw of the rotation that turns the estimate into the truth, seen in the world.
 double yaw_error_deg(const SE3& truth, const SE3& estimate) {
   const Eigen::Matrix3d R = (truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix();
-  return kDegrees * std::abs(std::atan2(R(1, 0), R(0, 0)));
+  return kDegreesPerRadian * std::abs(std::atan2(R(1, 0), R(0, 0)));
 }
 
 std::vector<PosePair> aligned(std::vector<PosePair> pairs, const Similarity& alignment) {
@@ -54,12 +46,13 @@ double sim3_scale(const std::vector<PosePair>& pairs) {
 
 double start_scale(const std::vector<PosePair>& pairs) {
   const std::vector<PosePair> start = within(pairs, {0.0, kStart_s});
-  return path_length(start) < kLeastStartPath_m ? std::numeric_limits<double>::quiet_NaN() : sim3_scale(start);
+  return path_length(start, &PosePair::truth) < kLeastStartPath_m ? std::numeric_limits<double>::quiet_NaN()
+                                                                  : sim3_scale(start);
 }
 
 /// Of straight motion, too, as a moment's is: there Sim(3) is not fixed. NaN where too little moved.
 double extent_ratio(const std::vector<PosePair>& pairs) {
-  if (path_length(pairs) < kLeastStartPath_m) return std::numeric_limits<double>::quiet_NaN();
+  if (path_length(pairs, &PosePair::truth) < kLeastStartPath_m) return std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<double>(pairs.size());
   Eigen::Vector3d true_mean = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (const PosePair& pair : pairs) {
@@ -166,7 +159,7 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.outside = association.outside;
   result.in_gaps = association.in_gaps;
   result.duration_s = to_seconds(association.pairs.back().t - association.pairs.front().t);
-  result.path_length_m = path_length(association.pairs);
+  result.path_length_m = path_length(association.pairs, &PosePair::truth);
   result.alignment = align(within(association.pairs, protocol.window), protocol.alignment);
   result.scale = sim3_scale(association.pairs);
   result.start_scale = start_scale(association.pairs);

@@ -61,7 +61,7 @@ LocalError local_error(const Association& association, double window_s);
 struct Evaluation {
   Protocol protocol;
   std::size_t pairs = 0, outside = 0, in_gaps = 0;
-  double duration_s = 0.0;     ///< first to last pair
+  double duration_s = 0.0;     ///< first to last pair; NaN without times
   double path_length_m = 0.0;  ///< of the true poses at the pairs
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate

@@ -5,9 +5,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include <numbers>
-
 #include "edged/camera/field_of_view.hpp"
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/io/calib/formats.hpp"
@@ -16,8 +15,6 @@
 namespace edged {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr double kToDegrees = 180.0 / std::numbers::pi;
 
 /// The first imu*.yaml beside a file.
 std::optional<SourcePath> imu_file_beside(const SourcePath& file) {
@@ -81,7 +78,8 @@ std::string describe(const Calibration& calibration) {
                        m.fx(), m.fy(), m.cx(), m.cy(), to_string(m.distortion()));
     const FieldOfView view = field_of_view(m);
     out += fmt::format("  field of view {:.1f} deg across, {:.1f} deg down, {:.1f} deg corner to corner\n",
-                       view.horizontal * kToDegrees, view.vertical * kToDegrees, view.diagonal * kToDegrees);
+                       view.horizontal * kDegreesPerRadian, view.vertical * kDegreesPerRadian,
+                       view.diagonal * kDegreesPerRadian);
     if (!calibration.has_extrinsics) {
       out += "  pose on the body and time offset: unknown\n";
       continue;

@@ -3,56 +3,106 @@
 // Which format a folder or a file is.
 #include "edged/io/open_recording.hpp"
 
+#include <spdlog/spdlog.h>
+
+#include <set>
+
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/bytes.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
+#include "edged/io/loose_folder.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/imu_text.hpp"
 #include "edged/io/zip_archive.hpp"
 
 namespace edged {
 namespace {
 
-/// Nothing where the folder is no recording.
-std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig) {
-  if (is_ecd_folder(folder)) return open_ecd(folder, rig);
+Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
+
+/// On disk any, within an archive plain events only: other formats are read from more than one place at once.
+Recording open_main_file(const SourcePath& file, const Rig* rig, const RecordingOptions& options) {
+  if (const auto path = file.disk_path()) return open_file(*path, rig, options);
+  if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
+  throw InputError::format("{}: only csv and txt are read within an archive: unpack it", file.string());
+}
+
+/// The folder's one file, with an IMU in another and a calibration of ours, where it has these. Says what is not read.
+Recording open_loose_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
+                            const RecordingOptions& options) {
+  std::set<std::string> read = {file, "calibration.yaml"};
+  std::optional<Calibration> calibration;
+  try {
+    if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = load_calibration(own);
+  } catch (const InputError& e) {
+    spdlog::warn("{}; opened without this calibration", e.what());
+  }
+  if (!rig && calibration) rig = &calibration->rig;
+  Recording recording = open_main_file(folder / file, rig, options);
+  const auto imu = recording.dataset->info().has_imu ? std::nullopt : find_imu_beside(folder, read);
+  if (imu) {
+    try {
+      recording.dataset = with_imu_file(std::move(recording.dataset), *imu);
+      read.insert(imu->name());
+    } catch (const InputError& e) {
+      spdlog::warn("{}", e.what());
+      recording = open_main_file(folder / file, rig, options);
+    }
+  }
+  if (calibration) recording.calibration = std::move(calibration);
+  tell_unread(folder, read);
+  return recording;
+}
+
+/// Of the sets whose files have names of their own, or nothing.
+std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
+  const bool imu_alone =
+      is_ecd_folder(folder) && !(folder / "events.txt").is_file() && !(folder / "images.txt").is_file();
+  if (const auto file = imu_alone ? find_main_file(folder) : std::nullopt)
+    return open_loose_folder(folder, *file, rig, options);
+  if (is_ecd_folder(folder)) {
+    Recording recording = open_ecd(folder, rig);
+    tell_unread(folder, {"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "depthmaps.txt"});
+    return recording;
+  }
   if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);
   return std::nullopt;
 }
 
-Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
-  if (is_bag_folder(folder)) return open_bag(folder, rig, options);
-  if (auto recording = try_folder(folder, rig)) return std::move(*recording);
-  if (const auto file = find_hdf5_events(folder)) return open_hdf5(*file, rig, options.geometry);
-  throw InputError::format(
-      "{}: no recording found; looked for events.txt, images.txt or imu.txt (Event-Camera Dataset), for "
-      "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC), for .h5 or .hdf5 files, and for .db3 "
-      "or .mcap files (ROS 2)",
-      folder.string());
+/// Any folder of text files.
+std::optional<Recording> try_any_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  if (const auto file = find_main_file(folder)) return open_loose_folder(folder, *file, rig, options);
+  return std::nullopt;
 }
 
 /// The archive is the folder of the recording, or holds it.
-Recording open_archive(const std::filesystem::path& file, const Rig* rig) {
+Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const SourcePath top = SourcePath::in_archive(file);
-  if (auto recording = try_folder(top, rig)) return std::move(*recording);
-  std::optional<Recording> found;
-  for (const std::string& name : top.names()) {
-    auto recording = try_folder(top / name, rig);
-    if (recording && found)
-      throw InputError::format("{}: holds several recordings ({}, {}): unpack it and give one of them", file.string(),
-                               found->dataset->info().name, recording->dataset->info().name);
-    if (recording) found = std::move(recording);
+  for (const auto attempt : {try_folder, try_any_folder}) {
+    if (auto recording = attempt(top, rig, options)) return std::move(*recording);
+    std::optional<Recording> found;
+    for (const std::string& name : top.names()) {
+      if (!(top / name).is_folder()) continue;
+      auto recording = attempt(top / name, rig, options);
+      if (recording && found)
+        throw InputError::format("{}: holds several recordings ({}, {}): unpack it and give one of them", file.string(),
+                                 found->dataset->info().name, recording->dataset->info().name);
+      if (recording) found = std::move(recording);
+    }
+    if (found) return std::move(*found);
   }
-  if (found) return std::move(*found);
   throw InputError::format(
       "{}: no recording at the top of the archive or in one folder; looked for those of the Event-Camera Dataset "
-      "(events.txt, images.txt, imu.txt) and EuRoC (mav0); unpack any other",
+      "(events.txt, images.txt, imu.txt) and EuRoC (mav0), and for a csv or txt of events; unpack any other",
       file.string());
 }
 
@@ -61,24 +111,45 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   const Bytes head = BinaryFile(file).read(0, kHeadBytes);
   if (is_bag(head)) return open_bag(file, rig, options);
   if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
-  if (is_zip(head)) return open_archive(file, rig);
+  if (is_zip(head)) return open_archive(file, rig, options);
   if (is_hdf5(head)) return open_hdf5(file, rig, options.geometry);
   if (is_aedat4(head)) return open_aedat4(file, rig, options);
   if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
   throw InputError::format(
       "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5, zip "
-      "and text with an event in each line (`t x y p`, or columns named in the first line). Of a recording in several "
-      "files give the folder (unpack an archive other than zip first)",
+      "and text with an event in each line (`t x y p`, or columns named in the first line; also as .gz). Of a "
+      "recording in several "
+      "files give the folder (unpack an archive other than zip first, and what is no text out of .gz)",
       file.string());
+}
+
+Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
+  if (is_bag_folder(folder)) return open_bag(folder, rig, options);
+  if (auto recording = try_folder(folder, rig, options)) return std::move(*recording);
+  if (const auto file = find_hdf5_events(folder)) {
+    Recording recording = open_hdf5(*file, rig, options.geometry);
+    const DatasetInfo& info = recording.dataset->info();
+    const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == folder;  // of no set with side files
+    return bare ? open_loose_folder(folder, file->filename().string(), rig, options) : std::move(recording);
+  }
+  if (auto recording = try_any_folder(folder, rig, options)) return std::move(*recording);
+  throw InputError::format(
+      "{}: no recording found; looked for events.txt, images.txt or imu.txt (Event-Camera Dataset), for "
+      "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC), for .h5 or .hdf5 files, for .db3 or .mcap files (ROS 2), "
+      "and for one ROS 1 bag, Prophesee RAW or DAT, AEDAT4 or csv of events",
+      folder.string());
 }
 
 }  // namespace
 
 Recording open_recording(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
-  std::error_code ignored;
   if (path.string().starts_with(kTcpPrefix)) return open_aedat4_tcp(path.string(), rig, options);
-  if (!std::filesystem::exists(path, ignored)) throw InputError::format("{}: no such file or folder", path.string());
-  return std::filesystem::is_directory(path, ignored) ? open_folder(path, rig, options) : open_file(path, rig, options);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    throw InputError::format("{}: {}", path.string(),
+                             std::filesystem::status_known(status) ? "no such file or folder" : error.message());
+  return std::filesystem::is_directory(status) ? open_folder(path, rig, options) : open_file(path, rig, options);
 }
 
 }  // namespace edged

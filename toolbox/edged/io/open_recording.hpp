@@ -14,8 +14,10 @@ namespace edged {
 ///   Cameras "events" and "frames", ground truth of "events". A calibration.yaml of ours there counts.
 /// - EuRoC ASL and TUM-VI (mav0 or its parent): camera "cam0", ground truth of "body".
 /// - A zip archive of one of these.
+/// - A folder with one file of the kinds below, an IMU in a csv or txt beside it, a calibration.yaml of ours; what else
+///   lies there is logged as not read.
 /// - Prophesee RAW (EVT 2.0, 2.1, 3.0) and DAT: camera "events".
-/// - Plain text of events, csv or separated by blanks: camera "events".
+/// - Plain text of events, csv or separated by blanks, also as .gz: camera "events".
 /// - AEDAT4: cameras "events" and "frames".
 /// - HDF5 (DSEC, VECtor, TUM-VIE, M3ED, MVSEC, EDS, Metavision; folder or file): cameras "events" and "frames", ground
 ///   truth of "body", "events" or "frames", as the set has it.

@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <zlib.h>
+
 #include <random>
 
 #include "edged/io/calibration.hpp"
@@ -175,6 +177,60 @@ TEST(Recording, EmptyFilesAreCountedUntilNothingRemains) {
   folder.write("images.txt", "# nothing\n");
   EXPECT_THAT(input_error([&] { open_recording(folder.path()); }),
               HasSubstr("nothing to read: events.txt, images.txt, imu.txt"));
+}
+
+std::string gzipped(const TempFolder& folder, const std::string& text) {
+  const std::string file = (folder.path() / "packed").string();
+  gzFile out = gzopen(file.c_str(), "wb");
+  gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(out);
+  return read_text(file);
+}
+
+TEST(Recording, AFolderWithOneRecordingAndAnImuInACsvIsBoth) {
+  TempFolder folder;
+  write_small(folder);
+  const auto loose = folder.path() / "loose";
+  const std::string events = read_text(folder.path() / "events.txt");
+  const std::string imu = "t[s],ax[m/s^2],ay,az,gx[rad/s],gy,gz\n" + read_text(folder.path() / "imu.txt");
+  folder.write("loose/flight.csv", events);
+  folder.write("loose/sensor.csv", imu);
+  folder.write("loose/calibration.yaml", to_yaml(load_rig("davis240c_ecd")));
+  folder.write("loose/weather.csv", "warm\n");
+  Recording r = open_recording(loose);
+  EXPECT_TRUE(r.dataset->info().has_events && r.dataset->info().has_imu);
+  ASSERT_TRUE(r.calibration);
+  std::size_t samples = 0;
+  while (const auto m = r.dataset->next()) samples += std::holds_alternative<ImuSample>(*m) ? 1 : 0;
+  EXPECT_EQ(samples, 100u);
+
+  // An imu.txt without a heading does not make it a folder of the Event-Camera Dataset.
+  std::filesystem::remove(loose / "sensor.csv");
+  folder.write("loose/imu.txt", "0.0 0 0 9.81 0.1 0.2 0.3\n0.001 0 0 9.81 0.1 0.2 0.3\n0.002 0 0 9.81 0.1 0.2 0.3\n");
+  const Recording named = open_recording(loose);
+  EXPECT_EQ(named.dataset->info().format, "csv");
+  EXPECT_TRUE(named.dataset->info().has_imu);
+
+  // Packed text is the same; where it is cut, what came before is read.
+  std::filesystem::remove(loose / "flight.csv");
+  const std::string packed = gzipped(folder, events);
+  folder.write("loose/flight.csv.gz", packed);
+  EXPECT_TRUE(open_recording(loose).dataset->info().has_events);
+  const auto count = [&](const std::string& bytes) {
+    const auto file = folder.write("loose/flight.csv.gz", bytes);
+    const Rig rig = load_rig("davis240c_ecd").rig;
+    Recording alone = open_recording(file, &rig);
+    std::size_t found = 0;
+    while (const auto m = alone.dataset->next()) found += std::get<EventBatch>(*m).events.size();
+    return std::pair(found, alone.dataset->repairs().size());
+  };
+  EXPECT_EQ(count(packed), std::pair(std::size_t{1000}, std::size_t{0}));
+  const auto [cut, repairs] = count(packed.substr(0, packed.size() / 2));
+  EXPECT_LT(cut, 1000u);
+  EXPECT_GT(repairs, 0u);
+
+  folder.write("loose/second.csv", events);
+  EXPECT_THAT(input_error([&] { open_recording(loose); }), HasSubstr("flight.csv.gz, second.csv"));
 }
 
 TEST(Recording, UnknownFoldersAreRefusedWithWhatWasLookedFor) {

@@ -3,9 +3,12 @@
 // Files on disk; those of an archive are passed on to it.
 #include "edged/io/source_path.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 
 #include "edged/core/check.hpp"
 #include "edged/io/zip_archive.hpp"
@@ -36,6 +39,45 @@ class DiskSource final : public ByteSource {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
+/// A gzip file, of one part or several.
+class GzipSource final : public ByteSource {
+ public:
+  explicit GzipSource(const fs::path& file) : name_(file.string()), file_(gzopen(name_.c_str(), "rb")) {
+    if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
+  }
+
+  std::size_t read(std::span<char> to) override {
+    const int got = gzread(file_.get(), to.data(), static_cast<unsigned>(to.size()));
+    if (got > 0 || (got == 0 && ended_well())) return static_cast<std::size_t>(got);
+    int error = Z_OK;
+    const std::string text = gzerror(file_.get(), &error);
+    if (error == Z_ERRNO) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
+    throw Damage("damaged or cut: " + text);
+  }
+
+ private:
+  /// Whether the end is one that the file should have.
+  bool ended_well() const {
+    int error = Z_OK;
+    gzerror(file_.get(), &error);
+    return error == Z_OK;
+  }
+
+  struct Close {
+    void operator()(gzFile_s* f) const { gzclose(f); }
+  };
+
+  std::string name_;
+  std::unique_ptr<gzFile_s, Close> file_;
+};
+
+bool is_gzip(const fs::path& file) {
+  constexpr std::string_view kMagic = "\x1f\x8b";
+  char head[2] = {};
+  std::ifstream in(file, std::ios::binary);
+  return in.read(head, sizeof head) && std::string_view(head, sizeof head) == kMagic;
+}
+
 }  // namespace
 
 SourcePath SourcePath::in_archive(const fs::path& zip) { return {fs::path(), std::make_shared<ZipArchive>(zip)}; }
@@ -43,6 +85,8 @@ SourcePath SourcePath::in_archive(const fs::path& zip) { return {fs::path(), std
 SourcePath SourcePath::parent_path() const {
   return {(archive_ ? path_ : fs::absolute(path_)).parent_path(), archive_};
 }
+
+bool SourcePath::is_packed() const { return archive_ || is_gzip(path_); }
 
 bool SourcePath::is_file() const {
   std::error_code ignored;
@@ -73,7 +117,23 @@ std::string SourcePath::name() const {
 }
 
 std::unique_ptr<ByteSource> SourcePath::open() const {
-  return archive_ ? archive_->open(path_) : std::make_unique<DiskSource>(path_);
+  if (archive_) return archive_->open(path_);
+  if (is_gzip(path_)) return std::make_unique<GzipSource>(path_);
+  return std::make_unique<DiskSource>(path_);
+}
+
+Bytes SourcePath::head(std::size_t most) const {
+  const std::unique_ptr<ByteSource> source = open();
+  Bytes bytes(most);
+  std::size_t filled = 0;
+  try {
+    while (const std::size_t got = source->read({reinterpret_cast<char*>(bytes.data()) + filled, most - filled}))
+      filled += got;
+  } catch (const Damage&) {
+    // What came before it is as good as a short file.
+  }
+  bytes.resize(filled);
+  return bytes;
 }
 
 Bytes SourcePath::read(std::size_t max_bytes) const {

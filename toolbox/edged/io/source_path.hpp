@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The files of a recording, wherever they lie: in a folder or in a zip archive, which is read in place.
+// The files of a recording, wherever they lie: in a folder or in a zip archive, which is read in place; gzip
+// files as what they hold.
 #pragma once
 
 #include <concepts>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +32,10 @@ class SourcePath {
   SourcePath operator/(const std::filesystem::path& below) const { return {path_ / below, archive_}; }
   SourcePath parent_path() const;
 
-  bool is_archived() const { return archive_ != nullptr; }
+  /// Nothing within an archive.
+  std::optional<std::filesystem::path> disk_path() const { return archive_ ? std::nullopt : std::optional(path_); }
+  /// In an archive or a gzip file: it can be read from its begin only.
+  bool is_packed() const;
   bool is_file() const;
   bool is_folder() const;
   /// Names of what a folder holds, sorted.
@@ -43,6 +48,8 @@ class SourcePath {
 
   /// Throws InputError when it cannot be opened.
   std::unique_ptr<ByteSource> open() const;
+  /// So many bytes of its front, or all there are before its end or damage.
+  Bytes head(std::size_t most) const;
   /// All of it. Throws as open and read do, and Damage beyond max_bytes.
   Bytes read(std::size_t max_bytes) const;
 

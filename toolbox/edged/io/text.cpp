@@ -4,6 +4,7 @@
 #include "edged/io/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -113,7 +114,32 @@ std::optional<TextLine> LineReader::next() {
 
 bool is_heading(std::string_view line) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  return !line.empty() && (letter(line[0]) || line[0] == '"');
+  return !line.empty() && (letter(line[0]) || line[0] == '"' || line[0] == '%');
+}
+
+std::vector<std::string> heading_fields(std::string_view line) {
+  const bool listed = line.find_first_of(",;") != std::string_view::npos;
+  std::vector<std::string> fields;
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.size(), line.find_first_of(listed ? ",;" : " \t\r"));
+    const std::string_view field = line.substr(0, end);
+    line.remove_prefix(std::min(line.size(), end + 1));
+    if (!listed && field.empty()) continue;
+    const bool unit = !listed && !fields.empty() &&
+                      (field[0] == '[' || field[0] == '(' ||
+                       fields.back().find_last_of("[(") + 1 > fields.back().find_last_of("])") + 1);
+    if (unit)
+      fields.back() += field;
+    else
+      fields.emplace_back(field);
+  }
+  return fields;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
 }
 
 std::string_view FieldReader::next() {
@@ -180,7 +206,7 @@ std::string format_seconds(Timestamp t) {
 std::optional<Timestamp> last_stamp(const SourcePath& file,
                                     const std::function<std::optional<Timestamp>(std::string_view)>& parse) {
   constexpr std::streamoff kTail = 8192;
-  if (file.is_archived()) return std::nullopt;
+  if (file.is_packed()) return std::nullopt;
   std::ifstream in(file.string(), std::ios::binary | std::ios::ate);
   if (!in) return std::nullopt;
   const std::streamoff size = in.tellg();

@@ -68,6 +68,13 @@ class LineReader {
 /// Words where numbers are wanted: the names of the columns of a csv.
 bool is_heading(std::string_view line);
 
+/// The names in a heading: separated by commas or semicolons, else by blanks, where a unit in brackets belongs to the
+/// name before.
+std::vector<std::string> heading_fields(std::string_view line);
+
+/// ASCII letters as small ones.
+std::string lower_case(std::string_view text);
+
 /// Fields of a line, separated by blanks, tabs, carriage returns or single commas or semicolons.
 class FieldReader {
  public:
@@ -120,7 +127,7 @@ std::optional<Timestamp> parse_nanoseconds(std::string_view field);
 std::string format_seconds(Timestamp t);
 
 /// Stamp of the last complete line that `parse` finds one in, read from the end of the file; nothing when there is
-/// none, or in an archive, whose files have no end that could be read alone.
+/// none, or where it is packed and has no end that could be read alone.
 std::optional<Timestamp> last_stamp(const SourcePath& file,
                                     const std::function<std::optional<Timestamp>(std::string_view line)>& parse);
 

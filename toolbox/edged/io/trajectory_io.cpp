@@ -3,6 +3,7 @@
 // Reading and writing of trajectories.
 #include "edged/io/trajectory_io.hpp"
 
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <array>
@@ -104,7 +105,7 @@ Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on
   return read_poses(file, parse_kitti, on_damage);
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
+TrajectoryFormat trajectory_format(const std::filesystem::path& file) {
   LineReader lines(file);
   const auto line = lines.next();
   if (!line) throw InputError::format("{}: holds no pose", file.string());
@@ -112,20 +113,33 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   const std::string_view first = fields.next();
   std::size_t columns = 1;
   while (!fields.next().empty()) ++columns;
-  if (columns == 12) return read_kitti(file);
+  if (columns == 12) return TrajectoryFormat::Kitti;
   // Whole numbers are nanoseconds where commas say csv, or where no clock counts so many seconds.
   const auto whole = parse_nanoseconds(first);
   const bool commas = line->text.find(',') != std::string_view::npos;
-  if (columns >= 8 && whole && (commas || to_ns(*whole) > 1'000'000'000'000)) return read_euroc_csv(file);
-  if (columns == 8) return read_tum(file);
+  if (columns >= 8 && whole && (commas || to_ns(*whole) > 1'000'000'000'000)) return TrajectoryFormat::EurocCsv;
+  if (columns == 8) return TrajectoryFormat::Tum;
   throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12",
                            file.string(), line->number, columns);
 }
 
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  switch (trajectory_format(file)) {
+    case TrajectoryFormat::Tum:
+      return read_tum(file);
+    case TrajectoryFormat::EurocCsv:
+      return read_euroc_csv(file);
+    case TrajectoryFormat::Kitti:
+      return read_kitti(file);
+  }
+  EDGED_CHECK(false, "no format of trajectories");
+}
+
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
                                    const std::vector<std::string>& comments)
-    : out_(file), format_(format) {
+    : file_(file), out_(file), format_(format) {
   if (!out_) throw InputError::format("{}: cannot be written", file.string());
+  if (format == TrajectoryFormat::Kitti) return;
   for (const std::string& comment : comments) out_ << "# " << comment << '\n';
   out_ << (format == TrajectoryFormat::Tum ? "# timestamp [s] tx ty tz [m] qx qy qz qw\n"
                                            : "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z\n");
@@ -134,7 +148,10 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, Trajectory
 void TrajectoryWriter::add(const StampedPose& pose) {
   const Eigen::Vector3d& p = pose.T.translation();
   const Eigen::Quaterniond& q = pose.T.rotation();
-  if (format_ == TrajectoryFormat::Tum) {
+  if (format_ == TrajectoryFormat::Kitti) {
+    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T = pose.T.matrix().topRows<3>();
+    out_ << fmt::format("{}\n", fmt::join(T.data(), T.data() + T.size(), " "));
+  } else if (format_ == TrajectoryFormat::Tum) {
     out_ << fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
                         q.w());
   } else {
@@ -142,16 +159,22 @@ void TrajectoryWriter::add(const StampedPose& pose) {
   }
 }
 
+void TrajectoryWriter::flush() {
+  if (!out_.flush()) throw InputError::format("{}: cannot be written; is the disk full?", file_.string());
+}
+
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::vector<std::string>& comments) {
   TrajectoryWriter writer(file, TrajectoryFormat::Tum, comments);
   for (const StampedPose& pose : trajectory) writer.add(pose);
+  writer.flush();
 }
 
 void write_euroc_csv(const std::filesystem::path& file, const Trajectory& trajectory,
                      const std::vector<std::string>& comments) {
   TrajectoryWriter writer(file, TrajectoryFormat::EurocCsv, comments);
   for (const StampedPose& pose : trajectory) writer.add(pose);
+  writer.flush();
 }
 
 }  // namespace edged

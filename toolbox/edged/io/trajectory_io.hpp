@@ -32,21 +32,29 @@ Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage
 /// KITTI: 12 numbers of [R | t], row by row; the index of the pose counts as seconds. Damage as read_tum.
 Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
-/// Any of the three, told apart by the number of columns, by the stamps and by commas (whole numbers: EuRoC).
+enum class TrajectoryFormat { Tum, EurocCsv, Kitti };
+
+/// Told apart by the number of columns, by the stamps and by commas (whole numbers: EuRoC). Throws InputError where it
+/// is none of them.
+TrajectoryFormat trajectory_format(const std::filesystem::path& file);
+
+/// Any of the three.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
-enum class TrajectoryFormat { Tum, EurocCsv };
-
-/// Writes pose after pose, so that an interrupted run leaves a complete file. Numbers read back to the same bits.
+/// Writes pose after pose, so that an interrupted run leaves a complete file. Numbers read back to the same bits, but
+/// for KITTI's, which are those of a matrix.
 class TrajectoryWriter {
  public:
-  /// comments: each becomes a line that starts with "# ". Throws InputError when the file cannot be made.
+  /// comments: each becomes a line that starts with "# "; KITTI has none, as its readers take every line for a pose.
+  /// Throws InputError when the file cannot be made.
   TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
                    const std::vector<std::string>& comments);
   void add(const StampedPose& pose);
-  void flush() { out_.flush(); }
+  /// Throws InputError when the disk is full.
+  void flush();
 
  private:
+  std::filesystem::path file_;
   std::ofstream out_;
   TrajectoryFormat format_;
 };

@@ -9,6 +9,7 @@
 #include <functional>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/sim/random.hpp"
 

@@ -4,13 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 
 #include "edged/state.hpp"
 
 namespace edged {
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 
 /// Circle: three laps of 1.6 m radius, heading along them. Aggressive: fast shifts to the sides with the roll that they
 /// take. Square: two laps of four legs with a stop and a quarter turn at each corner. Line: to and fro along x. Turned:

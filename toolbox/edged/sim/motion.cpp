@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/sim/random.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/sim/flight.hpp"
 #include "edged/sim/simulator.hpp"
@@ -23,7 +24,7 @@ void mount_davis346(SimulatorConfig& config) {
                    .k2 = 0.021,
                    .p1 = 0.0004,
                    .p2 = -0.0006};
-  const double down = 4.0 * M_PI / 180.0;
+  const double down = 4.0 * kDegree;
   Eigen::Matrix3d R_B_C;
   R_B_C << 0, -std::sin(down), std::cos(down), -1, 0, 0, 0, -std::cos(down), -std::sin(down);
   config.T_B_C = {R_B_C, Eigen::Vector3d(0.048, -0.006, 0.017)};

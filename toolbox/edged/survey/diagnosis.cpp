@@ -10,12 +10,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "edged/core/angles.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kShortest_s = 1.0;  // a run needs as much to start
 constexpr double kSigmas = 6.0;      // errors of corners are not independent, so sigmas are too small
 
@@ -38,7 +38,8 @@ bool sure(const GyroAgreement& found) { return found.unexplained < 0.5; }
 
 /// Corners on pictures of events turn too slowly by a third, and no other unit is within a factor of two.
 bool in_degrees(const CameraCheck& check) {
-  const double ratio = check.agreement && sure(*check.agreement) ? check.agreement->gyro_scale / kDegPerRad : 0.0;
+  const double ratio =
+      check.agreement && sure(*check.agreement) ? check.agreement->gyro_scale / kDegreesPerRadian : 0.0;
   return ratio > 0.5 && ratio < 2.0;
 }
 
@@ -208,7 +209,7 @@ struct RotationError {
 std::optional<Eigen::Vector3d> unknown_axis(const GyroAgreement& found) {
   constexpr double kUnknown_deg = 10.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(found.rotation_covariance);
-  if (std::sqrt(axes.eigenvalues()[2]) * kDegPerRad < kUnknown_deg) return std::nullopt;
+  if (std::sqrt(axes.eigenvalues()[2]) * kDegreesPerRadian < kUnknown_deg) return std::nullopt;
   return axes.eigenvectors().col(2);
 }
 
@@ -218,10 +219,11 @@ RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found)
   const Eigen::Matrix3d off = R_B_C.transpose() * found.R_B_C;
   const auto axis = unknown_axis(found);
   const Eigen::AngleAxisd turn(axis ? Eigen::Quaterniond::FromTwoVectors(*axis, off * *axis) : Eigen::Quaterniond(off));
-  RotationError error{turn.angle() * turn.axis(), turn.angle() * kDegPerRad, 0.0, 0.0};
+  RotationError error{turn.angle() * turn.axis(), turn.angle() * kDegreesPerRadian, 0.0, 0.0};
   const Eigen::Matrix3d& measured = found.rotation_covariance;
-  const Eigen::Matrix3d whole = measured + std::pow(kSystematic_deg / kDegPerRad, 2) * Eigen::Matrix3d::Identity();
-  error.sigma_deg = std::sqrt(turn.axis().dot(measured * turn.axis())) * kDegPerRad;
+  const Eigen::Matrix3d whole =
+      measured + std::pow(kSystematic_deg / kDegreesPerRadian, 2) * Eigen::Matrix3d::Identity();
+  error.sigma_deg = std::sqrt(turn.axis().dot(measured * turn.axis())) * kDegreesPerRadian;
   error.sigmas = std::sqrt(error.turn.dot(whole.ldlt().solve(error.turn)));
   return error;
 }
@@ -270,7 +272,7 @@ void tell_rotation(const CameraCheck& check, Findings& out) {
                "camera {}: its rotation to the IMU is not calibrated; by its turning R_B_C is [{:.3f} {:.3f} {:.3f}; "
                "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
                check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2),
-               check.agreement->rotation_sigma * kDegPerRad),
+               check.agreement->rotation_sigma * kDegreesPerRadian),
            "a run needs it and the lever arm: calibrate camera and IMU together, for instance with Kalibr");
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <opencv2/core.hpp>
 
+#include "edged/core/path_length.hpp"
+
 namespace edged {
 namespace {
 
@@ -14,11 +16,8 @@ TruthSurvey survey_truth(const GroundTruth& truth) {
   TruthSurvey survey;
   survey.frame = truth.frame;
   StreamSurveyor stream;
-  for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
-    const StampedPose& pose = truth.trajectory[i];
-    stream.add(pose.t, pose.t);
-    if (i > 0) survey.path_m += (pose.T.translation() - truth.trajectory[i - 1].T.translation()).norm();
-  }
+  for (const StampedPose& pose : truth.trajectory) stream.add(pose.t, pose.t);
+  survey.path_m = path_length(truth.trajectory, &StampedPose::T);
   survey.stream = stream.result();
   return survey;
 }

@@ -5,9 +5,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "edged/core/angles.hpp"
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/compression.hpp"
 #include "edged/io/text.hpp"
@@ -86,7 +86,6 @@ void Aedat4Dataset::take_frame(ByteSpan buffer) {
 }
 
 void Aedat4Dataset::take_imu(ByteSpan buffer) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180;
   const FlatTable packet(buffer);
   const FlatVector list = packet.vector(0, 4);
   for (std::size_t i = 0; i < list.count; ++i) {
@@ -97,7 +96,7 @@ void Aedat4Dataset::take_imu(ByteSpan buffer) {
       if (!v.allFinite()) throw Damage("an IMU sample that is no number");
       return v;
     };
-    push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kRadPerDeg, three(2) * kStandardGravity});
+    push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kDegree, three(2) * kStandardGravity});
   }
 }
 

@@ -3,10 +3,10 @@
 #include "edged/io/calib/lens.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
@@ -130,8 +130,7 @@ std::optional<Sees> parse_sees(std::string_view text) {
 }
 
 std::optional<Sees> guess_sees(std::string_view words, int width, int height) {
-  std::string text(words);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string text = lower_case(words);
   const bool davis_size = (width == 240 && height == 180) || (width == 346 && height == 260);
   const bool images = has_any(text, {"image", "frame", "standard", "regular", "rgb", "mono", "gray", "grey", "color"});
   const bool davis = has_any(text, {"davis"});

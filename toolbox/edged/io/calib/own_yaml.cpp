@@ -35,7 +35,8 @@ Sees read_modality(const YamlReader& value) {
 
 /// The camera above that `same_as` names.
 Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
-  for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "T_B_C", "T_C_B", "time_offset"})
+  for (const char* key :
+       {"resolution", "intrinsics", "distortion", "coefficients", "T_B_C", "T_C_B", "q_B_C", "time_offset"})
     if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
   const std::string name = same_as.text();
   const auto base = std::find_if(above.begin(), above.end(), [&name](const Lens& lens) { return lens.name == name; });
@@ -43,9 +44,21 @@ Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vec
   return *base;
 }
 
+/// A matrix does not give back the quaternion that it was made of to the last bit, and a run repeats only with these.
+/// Who writes another T_B_C means that one.
+void take_last_bits(const YamlReader& node, SE3& T_B_C) {
+  constexpr double kSame = 1e-12;
+  const std::vector<double> q = node.numbers();
+  if (q.size() != 4) node.fail("must be [qw, qx, qy, qz]; it may be left out");
+  const Eigen::Quaterniond exact(q[0], q[1], q[2], q[3]);
+  if ((exact.coeffs() - T_B_C.rotation().coeffs()).norm() < kSame ||
+      (exact.coeffs() + T_B_C.rotation().coeffs()).norm() < kSame)
+    T_B_C.rotation() = exact;
+}
+
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
-                   "coefficients", "T_B_C", "T_C_B", "time_offset"});
+                   "coefficients", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
   Lens lens;
   const auto same_as = node.find("same_as");
   if (same_as) lens = read_base(node, *same_as, above);
@@ -58,6 +71,7 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   if (T_B_C.has_value() == T_C_B.has_value())
     node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
   lens.T_B_C = T_B_C ? T_B_C->transform() : T_C_B->transform().inverse();
+  if (const auto q_B_C = node.find("q_B_C")) take_last_bits(*q_B_C, lens.T_B_C);
   if (const auto offset = node.find("time_offset")) lens.time_offset = offset->time_offset();
   return lens;
 }
@@ -91,6 +105,9 @@ std::string camera_yaml(const RigCamera& camera) {
   const Eigen::Matrix4d T = camera.T_B_C.matrix();
   for (int row = 0; row < 4; ++row)
     out += fmt::format("      - [{}, {}, {}, {}]\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  const Eigen::Quaterniond& q = camera.T_B_C.rotation();
+  out += fmt::format("    q_B_C: [{}, {}, {}, {}]  # rotation of T_B_C to the last bit: w x y z\n", q.w(), q.x(), q.y(),
+                     q.z());
   return out + fmt::format("    time_offset: {}  # s: t_imu = t_cam + time_offset\n",
                            format_seconds(Timestamp(camera.time_offset)));
 }

@@ -3,16 +3,15 @@
 #include "edged/io/calib/plausibility.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kViewDegrees = 180.0 / std::numbers::pi;
 constexpr double kLongArm = 0.5;        // [m]
 constexpr double kMillimetreArm = 2.0;  // [m] beyond what heads have: read as metres what was in millimetres
 constexpr double kMinView = 1.0, kMaxView = 172.0;       // [deg] across the diagonal: no lens of this model
@@ -43,7 +42,7 @@ class Judge {
 
   void field(const RigCamera& camera) {
     const CameraModel& m = camera.model;
-    const double view = field_of_view(m).diagonal * kViewDegrees;
+    const double view = field_of_view(m).diagonal * kDegreesPerRadian;
     if (!(view >= kMinView && view <= kMaxView))
       throw InputError::format(
           "{}: camera {}: a field of view of {:.3g} deg is impossible: fx {:g}, fy {:g} must be in pixels of the image "

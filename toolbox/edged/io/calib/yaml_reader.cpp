@@ -101,7 +101,7 @@ std::string YamlReader::text_or(const std::string& key, const std::string& other
 
 double YamlReader::number() const {
   const auto value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
-  if (!value) fail("must be a finite number");
+  if (!value) fail("must be a finite number" + (node_.IsScalar() ? ", but is '" + node_.Scalar() + "'" : ""));
   return *value;
 }
 

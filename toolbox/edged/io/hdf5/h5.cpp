@@ -153,21 +153,20 @@ void H5Array::check_chunk(const std::vector<hsize_t>& offset) const {
 }
 
 void H5Array::read_as(hid_t memory_type, std::uint64_t first, std::uint64_t count, void* to) const {
-  const std::size_t size = checked_size(first, count);
-  if (size == 0) return;
+  if (checked_size(first, count) == 0) return;
   if (type_ != H5T_INTEGER && type_ != H5T_FLOAT && type_ != H5T_ENUM && type_ != H5T_COMPOUND)
     throw Damage(path_ + " holds no numbers");
   check_chunks(first, count);
   const H5ChunkScope scope(chunk_bytes_);
   const H5Handle space(H5Dget_space(data_.get()), H5Sclose);
-  const hsize_t values = size;
-  const H5Handle memory(H5Screate_simple(1, &values, nullptr), H5Sclose);
+  std::vector<hsize_t> start(shape_.size(), 0), extent(shape_.begin(), shape_.end());
   if (!shape_.empty()) {
-    std::vector<hsize_t> start(shape_.size(), 0), extent(shape_.begin(), shape_.end());
     start.front() = first;
     extent.front() = count;
     H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
   }
+  // In memory the shape of what is selected: into any other the library copies one element after the other.
+  const H5Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
   if (H5Dread(data_.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, to) < 0)
     throw Damage(fmt::format("{} cannot be read at rows {} to {}", path_, first, first + count));
 }

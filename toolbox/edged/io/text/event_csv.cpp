@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-TimeUnit stamp_unit(const std::filesystem::path& file, const EventTextForm& form, std::optional<TimeUnit> said) {
+TimeUnit stamp_unit(const SourcePath& file, const EventTextForm& form, std::optional<TimeUnit> said) {
   if (said) return *said;
   if (form.unit_known) return form.columns.unit;
   if (const auto guess = guess_time_unit(form.stamps)) return *guess;
@@ -50,11 +50,11 @@ class CsvWriter final : public RecordingWriter {
 
 }  // namespace
 
-Recording open_event_csv(const std::filesystem::path& file, const EventTextForm& form, const Rig* rig,
+Recording open_event_csv(const SourcePath& file, const EventTextForm& form, const Rig* rig,
                          const RecordingOptions& options) {
-  const cv::Size size = event_sensor_size(file, options.geometry ? options.geometry : form.geometry, rig);
+  const cv::Size size = event_sensor_size(file.string(), options.geometry ? options.geometry : form.geometry, rig);
   TextLayout layout;
-  layout.info.name = file.stem().string();
+  layout.info.name = std::filesystem::path(file.name()).stem().string();
   layout.info.format = "csv";
   layout.info.pose_frame = "events";
   layout.info.event_sensor = size;

@@ -39,7 +39,7 @@ struct EventTextForm {
 std::optional<EventTextForm> find_event_form(const SourcePath& file);
 
 /// Camera "events". Throws InputError where the unit of the stamps is neither said nor certain.
-Recording open_event_csv(const std::filesystem::path& file, const EventTextForm& form, const Rig* rig,
+Recording open_event_csv(const SourcePath& file, const EventTextForm& form, const Rig* rig,
                          const RecordingOptions& options);
 
 /// `t[s],x,y,p` with all nine decimals of the seconds.

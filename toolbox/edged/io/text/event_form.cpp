@@ -25,9 +25,8 @@ struct ColumnName {
 /// Of "timestamp [us]", "t(s)", "\"ts_ns\"" or "x".
 ColumnName column_name(std::string_view text) {
   ColumnName out;
-  for (const char c : text)
-    if (c != '"' && c != '\'' && c != ' ' && c != '\t')
-      out.name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char c : lower_case(text))
+    if (c != '"' && c != '\'' && c != ' ' && c != '\t') out.name += c;
   const std::size_t cut = out.name.find_first_of("[(_");
   if (cut == std::string::npos || cut == 0) return out;
   std::string unit = out.name.substr(cut + 1);
@@ -37,27 +36,10 @@ ColumnName column_name(std::string_view text) {
   return out;
 }
 
-/// Names are separated by commas or semicolons, else by blanks, where a unit in brackets belongs to the name before.
-std::vector<std::string> name_fields(std::string_view line) {
-  const bool listed = line.find_first_of(",;") != std::string_view::npos;
-  std::vector<std::string> fields;
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.size(), line.find_first_of(listed ? ",;" : " \t\r"));
-    const std::string_view field = line.substr(0, end);
-    line.remove_prefix(std::min(line.size(), end + 1));
-    if (!listed && field.empty()) continue;
-    if (!listed && !fields.empty() && (field[0] == '[' || field[0] == '('))
-      fields.back() += field;
-    else
-      fields.emplace_back(field);
-  }
-  return fields;
-}
-
 /// The columns that a line names; nothing where it does not name all four once.
 std::optional<EventTextForm> named_columns(std::string_view line) {
   line.remove_prefix(std::min(line.size(), line.find_first_not_of("#%/ \t")));
-  const std::vector<std::string> fields = name_fields(line.substr(0, line.find_last_not_of(" \t\r") + 1));
+  const std::vector<std::string> fields = heading_fields(line.substr(0, line.find_last_not_of(" \t\r") + 1));
   if (fields.size() < 4 || fields.size() > EventColumns::kMost) return std::nullopt;
   constexpr std::string_view kNames[4] = {" t ts time timestamp timestamps stamp ", " x col column ", " y row ",
                                           " p pol polarity polarities on "};

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "calib_check.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <utility>
+
+#include "calib_fit.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/odometry.hpp"
+#include "edged/pipeline/mode.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "json_text.hpp"
+#include "run_check.hpp"
+#include "run_folder.hpp"
+#include "run_mode.hpp"
+#include "run_statistics.hpp"
+#include "status_line.hpp"
+
+namespace edged {
+namespace {
+
+/// The run: everything that `edged run` does but for its files.
+class CheckRun {
+ public:
+  CheckRun(Source& source, Mode mode, bool quiet)
+      : source_(source),
+        mode_(mode),
+        check_(source.dataset->info(), source.calibration, mode),
+        odometry_(source.calibration.rig, source.calibration.imu, mode, config_, {kInOrder}),
+        status_(quiet),
+        rig_(odometry_.rig()),
+        found_(compare()) {}
+
+  void go() {
+    InterruptibleDataset recording(*source_.dataset);
+    drive(
+        odometry_, [&] { return next(recording); }, [&](const Step& step) { return observe(step); });
+    status_.clear();
+  }
+
+  CalibrationFit fit() { return judge_fit(found_, check_.findings(*source_.dataset), statistics_.waiting_for()); }
+  /// As found: by all that came before the estimate was last good.
+  const Rig& rig() const { return rig_; }
+
+ private:
+  std::optional<Measurement> next(Dataset& recording) {
+    std::optional<Measurement> measurement = recording.next();
+    if (measurement) check_.add(*measurement);
+    return measurement;
+  }
+
+  /// What a loss leaves behind is no estimate, so the last good one is kept.
+  bool observe(const Step& step) {
+    constexpr Duration kEvery = std::chrono::milliseconds(500);
+    statistics_.add(step);
+    if (step.status == TrackingStatus::Good && (!compared_ || step.t - *compared_ >= kEvery)) {
+      compared_ = step.t;
+      rig_ = odometry_.rig();
+      found_ = compare();
+    }
+    if (status_.due()) status_.show(progress_text(step.t, source_.dataset->info(), "checked"));
+    return interrupt_signal() == 0;
+  }
+
+  std::vector<CalibrationFound> compare() {
+    return compare_calibrations(source_.calibration.rig, odometry_, config_.estimator.calibration);
+  }
+
+  Source& source_;
+  Mode mode_;
+  OdometryConfig config_;
+  RunCheck check_;
+  Odometry odometry_;
+  StatusLine status_;
+  RunStatistics statistics_;
+  std::optional<Timestamp> compared_;
+  Rig rig_;
+  std::vector<CalibrationFound> found_;
+};
+
+int exit_code_of(Fit fit) {
+  return fit == Fit::Fits ? kExitOk : fit == Fit::DoesNotFit ? kExitNotTrusted : kExitNeverGood;
+}
+
+}  // namespace
+
+int check_calibration(CalibCheckOptions options) {
+  catch_interrupts();
+  if (!options.source.piece.to_s && !options.source.duration_s) options.source.duration_s = kCheckedSeconds;
+  Source source = open_source(options.source);
+  const Mode mode = choose_mode(options.mode, source.dataset->info());
+  match_cameras(source, mode);
+  CheckRun run(source, mode, options.quiet);
+  run.go();
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  const CalibrationFit fit = run.fit();
+  fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit));
+  if (!options.out.empty()) write_file(options.out, to_yaml(with_found(source.calibration, run.rig())));
+  return exit_code_of(fit.fit);
+}
+
+}  // namespace edged

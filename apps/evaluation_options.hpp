@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How a trajectory is held against ground truth, as a user says it on the command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/eval/metrics.hpp"
+
+namespace edged {
+
+struct EvaluationOptions {
+  std::string align = "se3";
+  std::vector<double> window;
+  double first_s = 0.0;
+  std::string protocol_name;
+  double max_gap_s = kDefaultMaxGap_s;
+};
+
+/// Adds --align, --window, --first, --protocol and --max-gap.
+void add_evaluation_options(CLI::App& command, EvaluationOptions& options);
+
+Protocol chosen_protocol(const EvaluationOptions& options);
+
+}  // namespace edged

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The page: verdict, path, pictures, plots, timeline, options, calibration. All text of recordings goes in as text.
+'use strict';
+
+const report = JSON.parse(document.getElementById('data').textContent);
+const runs = report.runs;
+const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
+const kSays = {
+  'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
+  'degraded': ['It got to the end, but its last poses are less certain.', 'degraded'],
+  'not to be trusted': ['There is a path to the end, but it is not to be trusted.', 'lost'],
+  'lost': ['Tracking was lost, and not found again.', 'lost'],
+  'lost, initializing again': ['Tracking was lost, and was starting again at the end.', 'lost'],
+  'never good': ['There never was a good pose.', 'lost'],
+  'interrupted': ['It was interrupted; all up to then is here.', 'degraded'],
+  'broken off': ['An error ended it; all up to then is here.', 'lost'],
+};
+
+/** An element with text or children; null children are left out. */
+function make(tag, attributes, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (name === 'c') element.style.setProperty('--c', 'var(--' + value + ')');
+    else element.setAttribute(name, value);
+  }
+  for (const child of children) if (child !== null) element.append(child);
+  return element;
+}
+
+function number(value, unit, decimals) {
+  return value === null || value === undefined ? null : value.toFixed(decimals) + (unit ? ' ' + unit : '');
+}
+/** Millimetres below 10 cm. */
+function length(value) {
+  if (value === null || value === undefined) return null;
+  return value < 0.1 ? (1e3 * value).toFixed(2) + ' mm' : value.toFixed(3) + ' m';
+}
+const runColour = i => 'run' + i % 6;
+const nameOf = run => runs.filter(other => other.name === run.name).length > 1 ? run.folder : run.name;
+const runName = run => nameOf(run) + (run.metrics && !run.name.includes(run.metrics.mode) ? ', ' + run.metrics.mode : '');
+/** With the recording, where the folder's name does not tell it. */
+const fullName = run => (run.metrics && !run.name.includes(run.metrics.recording) ? run.metrics.recording + ': ' : '') + runName(run);
+
+function section(title, ...children) {
+  const element = make('section', {}, make('h2', {}, title), ...children);
+  document.getElementById('main').append(element);
+  return element;
+}
+
+function table(heads, rows) {
+  return make('div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': heads.join(', ')},
+              make('table', {}, make('thead', {}, make('tr', {}, ...heads.map(head => make('th', {scope: 'col'}, head)))),
+                   make('tbody', {}, ...rows.map(row => make('tr', {}, ...row)))));
+}
+const cell = (text, kind) => make('td', kind ? {class: kind} : {}, text === null || text === undefined ? '–' : String(text));
+
+// ---- verdict ----
+
+/** What a run amounts to, name by name; null is left out. */
+function facts(run) {
+  const m = run.metrics, e = run.evaluation;
+  const list = [];
+  if (e) {
+    list.push(['ATE (RMSE)', length(e.ate_m.rmse) + ', ' + e.alignment + ' alignment' + (e.window_s[0] > 0 || e.window_s[1] !== null ? ' on a part' : '')]);
+    const local = (e.local_error || []).filter(l => l.rmse_m !== null).map(l => length(l.rmse_m) + ' over ' + l.window_s + ' s');
+    if (local.length) list.push(['local error', local.join(', ')]);
+    list.push(['worst error', length(e.ate_m.max)]);
+    list.push(['rotation error', number(e.rotation_deg.mean, '° on average', 2)]);
+    list.push(['scale', number(e.scale, '(1 is perfect)', 4)]);
+  } else {
+    list.push(['ATE (RMSE)', run.not_compared || 'no ground truth to compare with']);
+  }
+  list.push(['path', number(e ? e.path_length_m : run.path_m, e ? 'm (true)' : 'm (estimated)', 2)]);
+  if (!m) return list;
+  list.push(['duration', number(m.duration_s, 's', 1)]);
+  list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in all', 1)]);
+  if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
+  list.push(['coverage', number(100 * m.coverage, '% of the time Good', 1)]);
+  list.push(['first good pose', m.first_good_s === null ? 'never' : 'after ' + number(m.first_good_s, 's', 2)]);
+  list.push(['poses, keyframes', m.poses + ', ' + m.keyframes]);
+  if (m.consistency) list.push(['within 3 σ', number(100 * m.consistency.position.within_3_sigma, '% of the positions', 1)]);
+  list.push(['speed', number(m.real_time_factor, '× real time', 2) + ', ' + number(m.cpu_s_per_s, 'CPU s per s', 2) + ', ' + number(m.peak_rss_mb, 'MB', 0)]);
+  if (m.live) list.push(['latency', number(1e3 * m.live.latency_s.p50, 'ms (median)', 1) + ', ' + number(1e3 * m.live.latency_s.p99, 'ms (99 %)', 1)]);
+  list.push(['recording', m.recording + ' (' + m.format + '), ' + m.mode + (m.seed === null ? '' : ', seed ' + m.seed)]);
+  list.push(['pose of', run.frame === 'body' ? 'the body (IMU)' : 'camera ' + run.frame]);
+  list.push(['program', m.version]);
+  return list;
+}
+
+function verdictCard(run, i) {
+  const m = run.metrics;
+  const [says, ink] = run.is_file ? ['A trajectory file of another program.', 'initializing']
+    : !m ? ['It ended before it could write its numbers; what it wrote until then is here.', 'lost']
+    : kSays[m.status] || [m.status, 'degraded'];
+  const card = make('article', {class: 'card verdict'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), fullName(run)),
+                    make('p', {class: 'says'}, says));
+  card.style.setProperty('--verdict', 'var(--' + ink + ')');
+  if (m) {
+    for (const finding of m.findings || []) {
+      card.append(make('p', {class: 'finding'}, make('b', {}, finding.severity + ': '), finding.text),
+                  make('p', {}, '→ ' + finding.remedy));
+    }
+    if (m.waiting_for) card.append(make('p', {}, 'What was missing last: ' + m.waiting_for));
+    if (m.next) card.append(make('p', {}, 'Next: ', make('code', {}, m.next)));
+    for (const [what, count] of Object.entries(m.repairs || {})) card.append(make('p', {}, 'repaired: ' + count + ' × ' + what));
+  }
+  card.append(make('dl', {class: 'facts'}, ...facts(run).flatMap(([name, value]) => value === null ? [] : [make('div', {}, make('dt', {}, name), make('dd', {}, value))])));
+  return card;
+}
+
+// ---- path and pictures ----
+
+const begin = Math.min(...runs.map(run => run.rows.t.length ? run.rows.t[0] : Infinity));
+const end = Math.max(...runs.map(run => run.rows.t.length ? run.rows.t[run.rows.t.length - 1] : -Infinity));
+const time = new TimeGroup(isFinite(begin) ? begin : 0, isFinite(end) ? end : 1);
+const show = {error: runs.length === 1, truth: true, map: true, whole: false, keyframes: false};
+let space = null;
+
+function axisOf(flat, k) {
+  return flat.filter((value, i) => i % 3 === k);
+}
+
+function fillSpace() {
+  const shadeMax = Math.max(1e-9, ...runs.map(run => (run.rows.error_m || []).reduce((a, b) => Math.max(a, b || 0), 0)));
+  space.paths = [];
+  space.points = [];
+  runs.forEach((run, i) => {
+    const rows = run.rows;
+    if (show.map && run.map.length) space.points.push({xyz: run.map, colour: runs.length > 1 ? runColour(i) : 'truth', size: 2, alpha: 0.55});
+    if (show.keyframes && rows.keyframe) {
+      const xyz = rows.t.flatMap((t, k) => rows.keyframe[k] && rows.x[k] !== null ? [rows.x[k], rows.y[k], rows.z[k]] : []);
+      space.points.push({xyz, colour: 'ink', size: 5});
+    }
+    if (show.truth && run.truth.length) {
+      space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'truth', width: 4, dash: true});
+    }
+    if (!rows.x) return;
+    const shade = show.error && rows.error_m ? rows.error_m : null;
+    space.paths.push({x: rows.x, y: rows.y, z: rows.z, colour: runColour(i), width: 2, shade, shadeMax});
+  });
+  space.fit(show.map && show.whole);
+  return shadeMax;
+}
+
+function moveMarks() {
+  space.marks = runs.flatMap((run, i) => {
+    const rows = run.rows;
+    if (!rows.x || !rows.t.length) return [];
+    const start = rows.x.findIndex(value => value !== null), now = time.cursor === null ? -1 : rowAt(rows.t, time.cursor);
+    const marks = start < 0 ? [] : [{p: [rows.x[start], rows.y[start], rows.z[start]], colour: runColour(i), size: 4}];
+    if (now >= 0) marks.push({p: [rows.x[now], rows.y[now], rows.z[now]], colour: runColour(i), size: 7});
+    return marks;
+  });
+  space.draw();
+}
+
+function pathCard() {
+  const canvas = make('canvas', {tabindex: '0', role: 'img', id: 'path',
+                                 'aria-label': 'Path in space; arrows turn, with shift move, plus and minus zoom, t looks from above, Home resets'});
+  const tools = make('div', {class: 'tools'});
+  space = new SpaceView(canvas);
+  const scale = make('span', {class: 'scale'});
+  const refresh = () => {
+    const most = fillSpace();
+    scale.replaceChildren();
+    if (show.error && runs.some(run => run.rows.error_m)) {
+      const bar = make('i', {});
+      bar.style.background = 'linear-gradient(90deg,' + kErrorColours.map(c => 'rgb(' + c.join(',') + ')').join(',') + ')';
+      scale.append('error 0', bar, length(most));
+    }
+    moveMarks();
+  };
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), map: runs.some(run => run.map.length), whole: runs.some(run => run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
+    if (!has[key]) continue;
+    const box = make('input', {type: 'checkbox'});
+    box.checked = show[key];
+    box.addEventListener('change', () => { show[key] = box.checked; refresh(); });
+    tools.append(make('label', {}, box, label));
+  }
+  const button = (text, action) => {
+    const element = make('button', {type: 'button'}, text);
+    element.addEventListener('click', action);
+    return element;
+  };
+  tools.append(button('From above', () => { space.turn = 0; space.tilt = Math.PI / 2; space.draw(); }),
+               button('From the side', () => { space.turn = 0; space.tilt = 0; space.draw(); }),
+               button('Reset', () => { space.home(); space.draw(); }), scale);
+  const world = runs.some(run => run.evaluation) ? 'World of the ground truth, z up.' : 'World of the estimate, z up; it begins at the origin.';
+  const card = make('div', {class: 'card view'}, canvas, tools,
+                    make('p', {class: 'hint'}, world + ' Drag turns, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.'));
+  return [card, refresh];
+}
+
+/** The picture nearest before the cursor, of each run. */
+function picturesCard() {
+  const withPictures = runs.filter(run => run.pictures.length);
+  if (!withPictures.length) return null;
+  const slider = make('input', {type: 'range', min: time.full[0], max: time.full[1], step: (time.full[1] - time.full[0]) / 1000, 'aria-label': 'time of the pictures', id: 'scrubber'});
+  const card = make('div', {class: 'card'}, make('h3', {}, 'What the cameras saw, with tracks'), slider);
+  const shown = [];
+  for (const run of withPictures) {
+    for (const [key, name] of [['frame', 'frame'], ['events', 'events, motion-compensated']]) {
+      if (!run.pictures.some(picture => picture[key])) continue;
+      const image = make('img', {alt: name}), caption = make('figcaption', {});
+      shown.push({list: run.pictures.filter(picture => picture[key]), times: run.pictures.filter(picture => picture[key]).map(picture => picture.t), key, image, caption,
+                  name: (withPictures.length > 1 ? runName(run) + ': ' : '') + name});
+      card.append(make('figure', {class: 'shot'}, image, caption));
+    }
+  }
+  const figures = make('div', {class: 'shots'}, ...card.querySelectorAll('figure'));
+  card.append(figures, make('p', {class: 'hint'}, 'Orange: new corners, green: those followed for more than five images.'));
+  const update = () => {
+    const t = time.cursor === null ? time.full[0] + 0.5 * (time.full[1] - time.full[0]) : time.cursor;
+    slider.value = t;
+    for (const each of shown) {
+      const picture = each.list[rowAt(each.times, t)], source = 'data:image/jpeg;base64,' + picture[each.key];
+      if (each.image.src !== source) each.image.src = source;
+      each.caption.textContent = each.name + ', ' + picture.t.toFixed(2) + ' s';
+    }
+  };
+  slider.addEventListener('input', () => time.point(Number(slider.value)));
+  time.listeners.push(update);
+  update();
+  return card;
+}

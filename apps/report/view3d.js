@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Paths and points in space on a canvas, seen from anywhere: z is up, no perspective, so that lengths compare.
+'use strict';
+
+/** From right to wrong, told apart by brightness as well. */
+const kErrorColours = [[42, 120, 190], [66, 168, 150], [214, 184, 60], [226, 120, 46], [190, 30, 60]];
+
+function errorColour(share) {
+  const at = Math.min(Math.max(share, 0), 1) * (kErrorColours.length - 1), i = Math.min(Math.floor(at), kErrorColours.length - 2);
+  const mixed = kErrorColours[i].map((c, k) => Math.round(c + (kErrorColours[i + 1][k] - c) * (at - i)));
+  return 'rgb(' + mixed.join(',') + ')';
+}
+
+/** paths: [{x, y, z, colour, dash, width, shade: values, shadeMax}], points: [{xyz: flat, colour, size}], marks: [{p, colour, size}]. */
+class SpaceView {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.paths = [];
+    this.points = [];
+    this.marks = [];
+    this.home();
+    this.listen();
+  }
+
+  home() {
+    this.turn = -0.9;  // [rad] about the world's z
+    this.tilt = 0.6;   // [rad], 0 from the side, pi/2 from above
+    this.zoom = 1;
+    this.shift = [0, 0];
+  }
+
+  /** The box that holds the paths, and where asked for the bulk of the points: some always lie far out. */
+  fit(withPoints) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const hold = (k, values) => values.forEach(value => {
+      if (value !== null) low[k] = Math.min(low[k], value), high[k] = Math.max(high[k], value);
+    });
+    for (const path of this.paths) ['x', 'y', 'z'].forEach((axis, k) => hold(k, path[axis]));
+    for (const cloud of withPoints ? this.points : []) {
+      for (let k = 0; k < 3; ++k) {
+        const sorted = cloud.xyz.filter((value, i) => i % 3 === k && value !== null).sort((a, b) => a - b);
+        if (sorted.length) hold(k, [sorted[Math.floor(0.05 * sorted.length)], sorted[Math.floor(0.95 * sorted.length)]]);
+      }
+    }
+    this.empty = low[0] > high[0];
+    this.centre = low.map((value, k) => this.empty ? 0 : (value + high[k]) / 2);
+    this.floor = this.empty ? 0 : low[2];
+    this.radius = this.empty ? 1 : Math.max(0.02, 0.5 * Math.hypot(...low.map((value, k) => high[k] - value)));
+  }
+
+  project(x, y, z) {
+    const dx = x - this.centre[0], dy = y - this.centre[1], dz = z - this.centre[2];
+    const right = this.cosTurn * dx + this.sinTurn * dy, away = -this.sinTurn * dx + this.cosTurn * dy;
+    return [this.middle[0] + this.scale * right, this.middle[1] - this.scale * (this.cosTilt * dz + this.sinTilt * away)];
+  }
+
+  draw() {
+    const [context, width, height] = sized(this.canvas);
+    this.cosTurn = Math.cos(this.turn), this.sinTurn = Math.sin(this.turn);
+    this.cosTilt = Math.cos(this.tilt), this.sinTilt = Math.sin(this.tilt);
+    this.scale = this.zoom * 0.45 * Math.min(width, height) / this.radius;
+    this.middle = [width / 2 + this.shift[0], height / 2 + this.shift[1]];
+    context.font = '12px system-ui, "DejaVu Sans", sans-serif';
+    context.lineJoin = 'round';
+    if (this.empty) {
+      context.fillStyle = colour('soft');
+      context.fillText('no pose was estimated', 16, 28);
+      return;
+    }
+    this.drawFloor(context);
+    for (const cloud of this.points) this.drawPoints(context, cloud);
+    for (const path of this.paths) this.drawPath(context, path);
+    for (const mark of this.marks) this.drawMark(context, mark);
+    this.drawAxes(context, height);
+  }
+
+  drawFloor(context) {
+    const step = niceStep(2 * this.radius / Math.max(1, this.zoom), 6), n = 4;
+    const [cx, cy] = this.centre.map(value => Math.round(value / step) * step);
+    context.strokeStyle = colour('grid');
+    context.lineWidth = 1;
+    context.beginPath();
+    for (let i = -n; i <= n; ++i) {
+      context.moveTo(...this.project(cx + i * step, cy - n * step, this.floor));
+      context.lineTo(...this.project(cx + i * step, cy + n * step, this.floor));
+      context.moveTo(...this.project(cx - n * step, cy + i * step, this.floor));
+      context.lineTo(...this.project(cx + n * step, cy + i * step, this.floor));
+    }
+    context.stroke();
+    context.fillStyle = colour('soft');
+    context.fillText('squares of ' + tickText(step, step) + ' m', 12, 20);
+  }
+
+  drawPoints(context, cloud) {
+    context.fillStyle = colour(cloud.colour);
+    context.globalAlpha = cloud.alpha || 1;
+    for (let i = 0; i + 2 < cloud.xyz.length; i += 3) {
+      if (cloud.xyz[i] === null) continue;
+      const [x, y] = this.project(cloud.xyz[i], cloud.xyz[i + 1], cloud.xyz[i + 2]);
+      context.fillRect(x - cloud.size / 2, y - cloud.size / 2, cloud.size, cloud.size);
+    }
+    context.globalAlpha = 1;
+  }
+
+  /** Shaded paths are drawn shade by shade: a stroke a segment would be slow. */
+  drawPath(context, path) {
+    const kShades = 16, strokes = new Map();
+    let before = null;
+    for (let i = 0; i < path.x.length; ++i) {
+      const now = path.x[i] === null ? null : this.project(path.x[i], path.y[i], path.z[i]);
+      if (now && before) {
+        const share = path.shade && path.shade[i] !== null ? path.shade[i] / path.shadeMax : null;
+        const key = share === null ? -1 : Math.min(kShades - 1, Math.floor(share * kShades));
+        if (!strokes.has(key)) strokes.set(key, new Path2D());
+        strokes.get(key).moveTo(...before);
+        strokes.get(key).lineTo(...now);
+      }
+      before = now;
+    }
+    context.lineWidth = path.width || 2;
+    context.lineCap = path.dash ? 'butt' : 'round';
+    for (const [key, stroke] of strokes) {
+      context.strokeStyle = key < 0 ? colour(path.colour) : errorColour((key + 0.5) / kShades);
+      context.stroke(stroke);
+    }
+  }
+
+  drawMark(context, mark) {
+    if (!mark.p || mark.p[0] === null || mark.p[0] === undefined) return;
+    const [x, y] = this.project(...mark.p);
+    context.beginPath();
+    context.arc(x, y, mark.size, 0, 2 * Math.PI);
+    context.fillStyle = colour(mark.colour);
+    context.fill();
+    context.lineWidth = 2;
+    context.strokeStyle = colour('card');
+    context.stroke();
+  }
+
+  drawAxes(context, height) {
+    const at = [44, height - 40], length = 26;
+    context.lineWidth = 2;
+    context.textAlign = 'center';
+    [['x', 1, 0, 0, 'run5'], ['y', 0, 1, 0, 'run2'], ['z', 0, 0, 1, 'run0']].forEach(([name, x, y, z, ink]) => {
+      const u = this.cosTurn * x + this.sinTurn * y;
+      const v = this.cosTilt * z + this.sinTilt * (-this.sinTurn * x + this.cosTurn * y);
+      context.strokeStyle = context.fillStyle = colour(ink);
+      context.beginPath();
+      context.moveTo(...at);
+      context.lineTo(at[0] + length * u, at[1] - length * v);
+      context.stroke();
+      context.fillText(name, at[0] + (length + 9) * u, at[1] - (length + 9) * v + 4);
+    });
+    context.textAlign = 'left';
+  }
+
+  rotate(dx, dy) {
+    this.turn -= 0.008 * dx;
+    this.tilt = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.tilt + 0.008 * dy));
+    this.draw();
+  }
+  magnify(factor) {
+    this.zoom = Math.min(200, Math.max(0.2, this.zoom * factor));
+    this.draw();
+  }
+  move(dx, dy) {
+    this.shift = [this.shift[0] + dx, this.shift[1] + dy];
+    this.draw();
+  }
+
+  listen() {
+    const canvas = this.canvas, fingers = new Map();
+    canvas.addEventListener('pointerdown', event => {
+      canvas.setPointerCapture(event.pointerId);
+      fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    });
+    canvas.addEventListener('pointermove', event => {
+      const was = fingers.get(event.pointerId);
+      if (!was) return;
+      const now = [event.offsetX, event.offsetY], dx = now[0] - was[0], dy = now[1] - was[1];
+      const others = [...fingers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
+      fingers.set(event.pointerId, now);
+      if (others.length > 0) {
+        const far = p => Math.max(8, Math.hypot(p[0] - others[0][0], p[1] - others[0][1]));
+        this.move(dx / 2, dy / 2);
+        this.magnify(far(now) / far(was));
+      } else if (event.shiftKey || event.buttons === 2) {
+        this.move(dx, dy);
+      } else {
+        this.rotate(dx, dy);
+      }
+    });
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, event => fingers.delete(event.pointerId));
+    canvas.addEventListener('contextmenu', event => event.preventDefault());
+    canvas.addEventListener('dblclick', () => { this.home(); this.draw(); });
+    // The wheel belongs to the page until someone has clicked here.
+    canvas.addEventListener('wheel', event => {
+      if (document.activeElement !== canvas) return;
+      event.preventDefault();
+      this.magnify(Math.exp(-0.0015 * event.deltaY));
+    }, {passive: false});
+    canvas.addEventListener('keydown', event => {
+      const by = event.shiftKey ? (dx, dy) => this.move(dx, dy) : (dx, dy) => this.rotate(dx, dy);
+      const actions = {
+        ArrowLeft: () => by(-15, 0), ArrowRight: () => by(15, 0), ArrowUp: () => by(0, -15), ArrowDown: () => by(0, 15),
+        '+': () => this.magnify(1.25), '=': () => this.magnify(1.25), '-': () => this.magnify(0.8),
+        Home: () => { this.home(); this.draw(); }, t: () => { this.turn = 0; this.tilt = Math.PI / 2; this.draw(); },
+      };
+      if (!actions[event.key]) return;
+      event.preventDefault();
+      actions[event.key]();
+    });
+  }
+}

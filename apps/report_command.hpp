@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// `edged report`: run folders as a page for a browser.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace edged {
+
+/// Adds the sub-command; `chosen` receives what to run when the user chose it.
+void add_report_command(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace edged

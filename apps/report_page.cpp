@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "report_page.hpp"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "edged/core/check.hpp"
+#include "report_data.hpp"
+#include "report_parts.hpp"
+#include "run_folder.hpp"
+
+namespace edged {
+namespace {
+
+/// As json that a browser finds within a script: "<" begins no tag there.
+std::string script_safe(const nlohmann::ordered_json& data) {
+  const std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size() + 1024);
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string report_page(const nlohmann::ordered_json& data) {
+  const std::map<std::string_view, std::string> parts = {
+      {"css", kReportCss},   {"data", script_safe(data)}, {"tools", kToolsJs},      {"plot", kPlotJs},
+      {"view3d", kView3dJs}, {"report", kReportJs},       {"sections", kSectionsJs}};
+  constexpr std::string_view kOpen = "{{", kClose = "}}";
+  std::string page;
+  std::string_view rest = kReportHtml;
+  for (std::size_t at = rest.find(kOpen); at != std::string_view::npos; at = rest.find(kOpen)) {
+    const std::size_t end = rest.find(kClose, at);
+    EDGED_CHECK(end != std::string_view::npos, "report.html: a part without an end");
+    page += rest.substr(0, at);
+    page += parts.at(rest.substr(at + kOpen.size(), end - at - kOpen.size()));
+    rest.remove_prefix(end + kClose.size());
+  }
+  return page += rest;
+}
+
+void write_run_report(const std::filesystem::path& folder) {
+  write_file(folder / "report.html", report_page(report_data({folder})));
+}
+
+}  // namespace edged

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/keyframe_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "edged/core/statistics.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kMargin_px = 9.0;
+constexpr int kCell_px = 16;
+constexpr int kJudged = 10;        // tries
+constexpr double kMinFound = 0.3;  // share of them
+constexpr double kFarthest = 1.5;  // [scene depths]: keyframes that lie farther away see it otherwise
+constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
+constexpr std::size_t kFewestAgreeing = 12;
+constexpr double kLeastAgreeing = 0.3;  // share of the corners that look like a point
+constexpr double kWidest_deg = 60.0;    // between the optical axes
+
+/// How far it has proved findable.
+double reliability(const MapPoint& point) { return (1.0 + point.found) / (2.0 + point.tried); }
+
+/// Pixels of the image by pixels of the patch, of a plane through the point that faces its keyframe.
+std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_now_then, const CameraModel& camera,
+                                          const Eigen::Vector2d& pixel) {
+  Eigen::Matrix2d A;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d beside = camera.pixel_to_point(point.pixel + Eigen::Vector2d::Unit(axis));
+    const auto seen = camera.project(T_now_then * (beside.homogeneous() / point.inverse_depth));
+    if (!seen) return std::nullopt;
+    A.col(axis) = *seen - pixel;
+  }
+  return A;
+}
+
+}  // namespace
+
+bool KeyframeMap::gains_by(MapKeyframe& keyframe) const {
+  const bool soon = !keyframes_.empty() && to_seconds(keyframe.t - keyframes_.back().t) < config_.min_interval_s;
+  if (soon) return false;
+  std::erase_if(keyframe.points,
+                [&](const MapPoint& point) { return !(point.sigma < config_.max_depth_error * point.inverse_depth); });
+  if (static_cast<int>(keyframe.points.size()) < config_.min_points) return false;
+  if (static_cast<int>(keyframe.points.size()) > config_.max_points) {
+    std::ranges::stable_sort(keyframe.points, {}, [](const MapPoint& p) { return p.sigma / p.inverse_depth; });
+    keyframe.points.resize(static_cast<std::size_t>(config_.max_points));
+  }
+  return true;
+}
+
+void KeyframeMap::add(MapKeyframe keyframe) {
+  std::vector<double> inverse;
+  for (const MapPoint& point : keyframe.points) inverse.push_back(point.inverse_depth);
+  keyframe.scene_depth = 1.0 / median(std::move(inverse));
+  keyframes_.push_back(std::move(keyframe));
+}
+
+std::optional<std::size_t> KeyframeMap::superfluous() const {
+  if (static_cast<int>(keyframes_.size()) <= config_.max_keyframes) return std::nullopt;
+  const auto longest =
+      std::ranges::min_element(keyframes_.begin(), std::prev(keyframes_.end()), {}, &MapKeyframe::found_at);
+  return static_cast<std::size_t>(longest - keyframes_.begin());
+}
+
+void KeyframeMap::remove(std::size_t keyframe) {
+  keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(keyframe));
+}
+
+void KeyframeMap::note(const Candidate& candidate, bool found, Timestamp t) {
+  ++candidate.point->tried;
+  if (!found) return;
+  ++candidate.point->found;
+  keyframes_[candidate.keyframe].found_at = t;
+}
+
+std::vector<std::size_t> KeyframeMap::near(const MapQuery& query, const SE3& T_M_C) const {
+  const double widest = std::cos(kWidest_deg * std::numbers::pi / 180.0);
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    const MapKeyframe& keyframe = keyframes_[k];
+    if (keyframe.t >= query.before) break;  // in order of time
+    if (keyframe.camera != query.camera) continue;
+    const SE3 T_M_then = query.T_M_K[k] * keyframe.T_B_C;
+    const double distance = (T_M_then.translation() - T_M_C.translation()).norm() / keyframe.scene_depth;
+    const double cosine = T_M_then.R().col(2).dot(T_M_C.R().col(2));
+    if (distance < kFarthest && cosine > widest) found.emplace_back(distance + 1.0 - cosine, k);
+  }
+  const auto most = std::min<std::ptrdiff_t>(config_.candidates, std::ssize(found));
+  std::ranges::stable_sort(found, {}, &std::pair<double, std::size_t>::first);
+  std::vector<std::size_t> nearest;
+  for (auto it = found.begin(); it != found.begin() + most; ++it) nearest.push_back(it->second);
+  return nearest;
+}
+
+std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_M_C, const CameraModel& camera,
+                                            int most) {
+  const double widest = std::cos(config_.max_view_angle_deg * std::numbers::pi / 180.0);
+  const SE3 T_C_M = T_M_C.inverse();
+  std::vector<Candidate> found;
+  for (const std::size_t k : near(query, T_M_C)) {
+    MapKeyframe& keyframe = keyframes_[k];
+    const SE3 T_C_K = T_C_M * query.T_M_K[k] * keyframe.T_B_C;
+    for (MapPoint& point : keyframe.points) {
+      if (point.tried >= kJudged && point.found < kMinFound * point.tried) continue;
+      const Eigen::Vector3d p_K = point.point.homogeneous() / point.inverse_depth, p_C = T_C_K * p_K;
+      const auto pixel = camera.project(p_C);
+      if (!pixel || !camera.contains(*pixel, kMargin_px)) continue;
+      const double scale = p_C.norm() / p_K.norm();
+      const double cosine = (T_C_K.R() * p_K).dot(p_C) / (p_K.norm() * p_C.norm());
+      if (scale > config_.max_scale || scale < 1.0 / config_.max_scale || cosine < widest) continue;
+      const auto A = patch_warp(point, T_C_K, camera, *pixel);
+      if (!A) continue;
+      const Eigen::Vector3d depth_sigma_K = keyframe.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
+      found.push_back({k, &point, keyframe.T_B_C * p_K, depth_sigma_K, *pixel, *A});
+    }
+  }
+  std::ranges::stable_sort(found, std::ranges::greater{}, [](const Candidate& c) { return reliability(*c.point); });
+  std::set<std::pair<int, int>> taken;
+  std::erase_if(found, [&](const Candidate& c) {
+    return static_cast<int>(taken.size()) >= most ||
+           !taken.emplace(static_cast<int>(c.pixel.x()) / kCell_px, static_cast<int>(c.pixel.y()) / kCell_px).second;
+  });
+  return found;
+}
+
+std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
+                                          std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
+                                          double max_error) const {
+  std::vector<PlaceMatch> matches;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    if (!descriptors[i]) continue;
+    int nearest = kAlike;
+    PlaceMatch match{points[i], {}};
+    for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+      const MapKeyframe& keyframe = keyframes_[k];
+      if (keyframe.t >= query.before) break;
+      if (keyframe.camera != query.camera) continue;
+      for (const MapPoint& point : keyframe.points) {
+        const int bits = point.descriptor ? distance(*descriptors[i], *point.descriptor) : kAlike;
+        if (bits >= nearest) continue;
+        nearest = bits;
+        match.p_M = query.T_M_K[k] * (keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth));
+      }
+    }
+    if (nearest < kAlike) matches.push_back(match);
+  }
+  const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, max_error);
+  if (!pose || pose->agreeing < kFewestAgreeing ||
+      pose->agreeing < kLeastAgreeing * static_cast<double>(matches.size()))
+    return std::nullopt;
+  return pose->T_M_C;
+}
+
+}  // namespace edged

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/keyframe_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace edged {
+namespace {
+
+const CameraModel kCamera(240, 180, 200, 200, 119.5, 89.5);
+
+const std::string kName = "frames";
+
+Timestamp at(double t_s) { return timestamp_from_seconds(t_s); }
+
+/// All are where the map begins.
+MapQuery asked(double before_s, std::string_view camera = kName) {
+  static const std::vector<SE3> kThere(3);
+  return {camera, at(before_s), kThere};
+}
+
+/// A wall 2 m ahead, its points 20 px apart.
+MapKeyframe keyframe(double t_s, double depth_sigma = 0.01) {
+  MapKeyframe made{at(t_s), at(t_s), kName, SE3(), {}};
+  for (int x = 20; x < 230; x += 20) {
+    for (int y = 20; y < 170; y += 20) {
+      MapPoint point;
+      point.pixel = {x, y};
+      point.point = kCamera.pixel_to_point(point.pixel);
+      point.inverse_depth = 0.5;
+      point.sigma = depth_sigma * 0.5;
+      made.points.push_back(point);
+    }
+  }
+  return made;
+}
+
+TEST(KeyframeMap, KeepsOnlyWhatItGainsBy) {
+  const KeyframeMap map({});
+  MapKeyframe good = keyframe(5.0), vague = keyframe(5.0, 0.3);
+  EXPECT_TRUE(map.wants(0.2));
+  EXPECT_TRUE(map.gains_by(good));
+  EXPECT_EQ(good.points.size(), 60U) << "the best-placed";
+  EXPECT_FALSE(map.wants(0.8));
+  EXPECT_TRUE(map.wants(0.0));
+  EXPECT_FALSE(map.gains_by(vague));
+}
+
+TEST(KeyframeMap, KeepsADistanceInTime) {
+  KeyframeMap map({});
+  map.add(keyframe(5.0));
+  MapKeyframe soon = keyframe(5.1), later = keyframe(5.5);
+  EXPECT_FALSE(map.gains_by(soon));
+  EXPECT_TRUE(map.gains_by(later));
+}
+
+TEST(KeyframeMap, ExpectsPointsWhereTheyShouldBeAndHowTheyShouldLook) {
+  KeyframeMap map({});
+  map.add(keyframe(5.0));
+  const SE3 T_M_C(Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.4});
+  const std::vector<Candidate> seen = map.visible(asked(10.0), T_M_C, kCamera, 40);
+  ASSERT_GT(seen.size(), 20U);
+  ASSERT_LE(seen.size(), 40U);
+  std::set<std::pair<int, int>> cells;
+  for (const Candidate& c : seen) {
+    const Eigen::Vector2d expected = *kCamera.project(T_M_C.inverse() * c.p_K);
+    EXPECT_LT((c.pixel - expected).norm(), 1e-9);
+    EXPECT_LT((c.A - 1.25 * Eigen::Matrix2d::Identity()).norm(), 1e-6) << "2 m then, 1.6 m now";
+    EXPECT_NEAR(c.depth_sigma_K.norm(), 0.01 * c.p_K.norm(), 1e-12);
+    EXPECT_TRUE(cells.emplace(static_cast<int>(c.pixel.x()) / 16, static_cast<int>(c.pixel.y()) / 16).second);
+  }
+}
+
+TEST(KeyframeMap, ExpectsNothingFromAfarFromAsideOrOfTheNewest) {
+  KeyframeMap map({});
+  map.add(keyframe(5.0));
+  const auto count = [&](const SE3& T_M_C, double t_s) { return map.visible(asked(t_s), T_M_C, kCamera, 40).size(); };
+  EXPECT_GT(count(SE3(), 10.0), 0U);
+  EXPECT_EQ(count(SE3(), 4.5), 0U) << "the window has them";
+  EXPECT_TRUE(map.visible(asked(10.0, "events"), SE3(), kCamera, 40).empty()) << "another camera's";
+  EXPECT_EQ(count(SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -3.5}), 10.0), 0U) << "too small";
+  EXPECT_EQ(count(SE3(so3::exp({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()), 10.0), 0U) << "behind";
+  EXPECT_EQ(count(SE3(so3::exp({0.0, -0.9, 0.0}), {2.2, 0.0, 0.6}), 10.0), 0U) << "from aside";
+}
+
+TEST(KeyframeMap, GivesUpPointsThatAreNeverFound) {
+  KeyframeMap map({});
+  map.add(keyframe(5.0));
+  for (int i = 0; i < 12; ++i) {
+    for (const Candidate& c : map.visible(asked(10.0), SE3(), kCamera, 1000))
+      map.note(c, c.pixel.x() > 120.0, at(10.0 + i));
+  }
+  for (const Candidate& c : map.visible(asked(30.0), SE3(), kCamera, 1000)) EXPECT_GT(c.pixel.x(), 120.0);
+  EXPECT_EQ(map.keyframes().front().found_at, at(21.0));
+}
+
+TEST(KeyframeMap, LetsGoWhatWasNotFoundForLongest) {
+  KeyframeMapConfig config;
+  config.max_keyframes = 2;
+  KeyframeMap map(config);
+  for (const double t_s : {5.0, 6.0}) map.add(keyframe(t_s));
+  EXPECT_FALSE(map.superfluous());
+  map.note(map.visible(asked(7.5), SE3(), kCamera, 1).front(), true,
+           at(7.5));  // of the first: only that is old enough
+  map.add(keyframe(8.0));
+  ASSERT_TRUE(map.superfluous());
+  EXPECT_EQ(*map.superfluous(), 1U);
+  map.remove(1);
+  EXPECT_EQ(map.keyframes().back().t, at(8.0));
+  EXPECT_FALSE(map.superfluous());
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/map_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "edged/core/angles.hpp"
+#include "edged/core/statistics.hpp"
+
+namespace edged {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Matrix23d = Eigen::Matrix<double, 2, 3>;
+
+constexpr double kCauchy = 2.0;             // [sigma]
+constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
+
+/// How the error of a pose becomes that of another that is known against it: T_M_A to T_M_A * T_A_B.
+Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B) {
+  Matrix6d F = Matrix6d::Identity();
+  F.topRightCorner<3, 3>() = -T_M_A.R() * skew(T_A_B.translation());
+  F.bottomRightCorner<3, 3>() = T_A_B.R().transpose();
+  return F;
+}
+
+SE3 corrected(const SE3& T, const Eigen::Ref<const VectorXd>& error) {
+  return {T.rotation() * so3::exp(error.tail<3>()), T.translation() + error.head<3>()};
+}
+
+Eigen::Index block_of(std::size_t keyframe) { return 6 * static_cast<Eigen::Index>(keyframe + 1); }
+
+}  // namespace
+
+void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma) {
+  T_M_O_ = T_M_O;
+  T_O_B_ = T_O_B;
+  t_ = t;
+  const Eigen::Vector3d up_B = T_M_B().R().transpose() * Eigen::Vector3d::UnitZ();
+  P_.topRows<6>().setZero();
+  P_.leftCols<6>().setZero();
+  P_.topLeftCorner<3, 3>() = position_sigma * position_sigma * Eigen::Matrix3d::Identity();
+  P_.block<3, 3>(3, 3) = yaw_sigma * yaw_sigma * up_B * up_B.transpose();
+}
+
+/// What the odometry may be off by after dt [s].
+Matrix6d MapFilter::drift(const SE3& T_M_B, double dt) const {
+  const double yaw = config_.drift_yaw_deg * kDegree, tilt = config_.drift_tilt_deg * kDegree;
+  const Eigen::Vector3d up_B = T_M_B.R().transpose() * Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
+  Matrix6d Q = Matrix6d::Zero();
+  Q.diagonal().head<3>().setConstant(config_.drift_m * config_.drift_m * dt);
+  Q.bottomRightCorner<3, 3>() = dt * (yaw * yaw * along_up + tilt * tilt * (Eigen::Matrix3d::Identity() - along_up));
+  return Q;
+}
+
+void MapFilter::predict(const SE3& T_O_B, Timestamp t) {
+  const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_B);
+  P_.topRows<6>() = F * P_.topRows<6>().eval();
+  P_.leftCols<6>() = P_.leftCols<6>().eval() * F.transpose();
+  T_O_B_ = T_O_B;
+  P_.topLeftCorner<6, 6>() += drift(T_M_B(), std::max(to_seconds(t - t_), 0.0));
+  t_ = t;
+}
+
+void MapFilter::add_keyframe(const SE3& T_O_K, Timestamp t) {
+  const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_K);
+  const Eigen::Index n = P_.rows();
+  MatrixXd grown(n + 6, n + 6);
+  grown.topLeftCorner(n, n) = P_;
+  grown.bottomLeftCorner(6, n) = F * P_.topRows<6>();
+  grown.topRightCorner(n, 6) = grown.bottomLeftCorner(6, n).transpose();
+  T_M_K_.push_back(T_M_O_ * T_O_K);
+  grown.bottomRightCorner<6, 6>() =
+      F * P_.topLeftCorner<6, 6>() * F.transpose() + drift(T_M_K_.back(), std::abs(to_seconds(t_ - t)));
+  P_ = std::move(grown);
+}
+
+void MapFilter::remove_keyframe(std::size_t keyframe) {
+  const Eigen::Index k = block_of(keyframe), after = P_.rows() - k - 6;
+  P_.middleRows(k, after) = P_.bottomRows(after).eval();
+  P_.middleCols(k, after) = P_.rightCols(after).eval();
+  P_.conservativeResize(k + after, k + after);
+  T_M_K_.erase(T_M_K_.begin() + static_cast<std::ptrdiff_t>(keyframe));
+}
+
+std::optional<MapFilter::Row> MapFilter::linearise(const MapSight& sight, const SE3& T_B_C) const {
+  const SE3 T_B_M = T_M_B().inverse(), T_C_B = T_B_C.inverse();
+  const SE3& T_M_K = T_M_K_[sight.keyframe];
+  const Eigen::Vector3d p_B = T_B_M * (T_M_K * sight.p_K), p_C = T_C_B * p_B;
+  if (p_C.z() <= 0.0) return std::nullopt;
+  Matrix23d of_p_B;
+  of_p_B << 1.0 / p_C.z(), 0.0, -p_C.x() / (p_C.z() * p_C.z()), 0.0, 1.0 / p_C.z(), -p_C.y() / (p_C.z() * p_C.z());
+  of_p_B *= T_C_B.R();
+  const Matrix23d of_p_M = of_p_B * T_B_M.R();
+  Row row;
+  row.r = p_C.hnormalized() - sight.seen;
+  row.by_body << -of_p_M, of_p_B * skew(p_B);
+  row.by_keyframe << of_p_M, -of_p_M * T_M_K.R() * skew(sight.p_K);
+  const Eigen::Vector2d along = of_p_M * T_M_K.R() * sight.depth_sigma_K;
+  row.R = sight.sigma * sight.sigma * Eigen::Matrix2d::Identity() + along * along.transpose();
+  return row;
+}
+
+Eigen::Matrix2d MapFilter::expected_covariance(const Row& row, std::size_t keyframe) const {
+  const Eigen::Index k = block_of(keyframe);
+  const Eigen::Matrix2d cross = row.by_body * P_.block<6, 6>(0, k) * row.by_keyframe.transpose();
+  return row.R + row.by_body * P_.topLeftCorner<6, 6>() * row.by_body.transpose() + cross + cross.transpose() +
+         row.by_keyframe * P_.block<6, 6>(k, k) * row.by_keyframe.transpose();
+}
+
+double MapFilter::expected_error(const MapSight& sight, const SE3& T_B_C) const {
+  const std::optional<Row> row = linearise(sight, T_B_C);
+  return row ? std::sqrt(expected_covariance(*row, sight.keyframe).trace()) : 0.0;
+}
+
+void MapFilter::correct(const VectorXd& error) {
+  T_M_O_ = corrected(T_M_B(), error.head<6>()) * T_O_B_.inverse();
+  for (std::size_t k = 0; k < T_M_K_.size(); ++k) T_M_K_[k] = corrected(T_M_K_[k], error.segment<6>(block_of(k)));
+}
+
+/// The rows' part of the normal equations on the body and the keyframes that they touch, far ones weighed down.
+MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::span<const Row> rows) const {
+  Information sum;
+  for (const MapSight& sight : sights) sum.place.try_emplace(sight.keyframe, 0);
+  Eigen::Index m = 6;
+  for (auto& [keyframe, at] : sum.place) at = std::exchange(m, m + 6);
+  sum.H = MatrixXd::Zero(m, m);
+  sum.g = VectorXd::Zero(m);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const double squared = row.r.dot(expected_covariance(row, sights[i].keyframe).inverse() * row.r);
+    const Eigen::Matrix2d W = row.R.inverse() / (1.0 + squared / (kCauchy * kCauchy));
+    const Eigen::Index k = sum.place.at(sights[i].keyframe);
+    const Eigen::Matrix<double, 6, 2> body_W = row.by_body.transpose() * W,
+                                      keyframe_W = row.by_keyframe.transpose() * W;
+    sum.H.topLeftCorner<6, 6>() += body_W * row.by_body;
+    sum.H.block<6, 6>(0, k) += body_W * row.by_keyframe;
+    sum.H.block<6, 6>(k, 0) += keyframe_W * row.by_body;
+    sum.H.block<6, 6>(k, k) += keyframe_W * row.by_keyframe;
+    sum.g.head<6>() += body_W * row.r;
+    sum.g.segment<6>(k) += keyframe_W * row.r;
+  }
+  return sum;
+}
+
+/// Root of the median squared residual that is left of the rows once the poses are corrected [sigma of each].
+double MapFilter::misfit(std::span<const MapSight> sights, std::span<const Row> rows, const VectorXd& error) const {
+  std::vector<double> squared;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Eigen::Vector2d left = rows[i].r + rows[i].by_body * error.head<6>() +
+                                 rows[i].by_keyframe * error.segment<6>(block_of(sights[i].keyframe));
+    squared.push_back(left.dot(rows[i].R.inverse() * left));
+  }
+  return std::sqrt(median(std::move(squared)) / kMedianOfSquares);
+}
+
+bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, const SE3& T_B_C) {
+  if (static_cast<int>(sights.size()) < config_.min_sights ||
+      static_cast<double>(sights.size()) < config_.min_found_share * static_cast<double>(expected))
+    return false;
+  std::vector<Row> rows;
+  for (const MapSight& sight : sights) {
+    std::optional<Row> row = linearise(sight, T_B_C);
+    if (!row) return false;
+    rows.push_back(*row);
+  }
+  const auto [place, H, g] = gather(sights, rows);
+  // P' = P - P_t (H^-1 + P_tt)^-1 P_t^T, t the blocks touched; H has no inverse: (H^-1 + P_tt)^-1 = (I + H P_tt)^-1 H.
+  const Eigen::Index m = H.rows();
+  MatrixXd P_t(P_.rows(), m), P_tt(m, m);
+  P_t.leftCols<6>() = P_.leftCols<6>();
+  for (const auto& [keyframe, at] : place) P_t.middleCols<6>(at) = P_.middleCols<6>(block_of(keyframe));
+  P_tt.topRows<6>() = P_t.topRows<6>();
+  for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(block_of(keyframe));
+  const MatrixXd inverse = (MatrixXd::Identity(m, m) + H * P_tt).partialPivLu().inverse();
+  const VectorXd error = -P_t * (inverse * g);
+  if (!(misfit(sights, rows, error) < config_.max_misfit)) return false;
+  correct(error);
+  P_ -= P_t * (inverse * H) * P_t.transpose();
+  P_ = 0.5 * (P_ + P_.transpose().eval());
+  return true;
+}
+
+}  // namespace edged

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Where the body and the keyframes are in the map M: one Kalman filter over all their poses. The odometry moves the
+// body on; points of keyframes that are found again tie it to them, and all that hangs together moves. The odometry
+// itself learns nothing of it: no measurement counts twice there, and a wrong map does it no harm.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/map/map_config.hpp"
+#include "edged/se3.hpp"
+#include "edged/time.hpp"
+
+namespace edged {
+
+/// A point of a keyframe that was found again in the present image.
+struct MapSight {
+  std::size_t keyframe = 0;                                 ///< index into MapFilter::keyframes
+  Eigen::Vector3d p_K = Eigen::Vector3d::Zero();            ///< in the body frame of the keyframe
+  Eigen::Vector3d depth_sigma_K = Eigen::Vector3d::Zero();  ///< by how much p_K moves with one sigma of its depth
+  Eigen::Vector2d seen = Eigen::Vector2d::Zero();           ///< on the unit plane of the camera
+  double sigma = 0.0;                                       ///< of seen, each coordinate
+};
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Errors of a pose T_M_B are (position in M [m], rotation in B [rad]): p_true = p + dp, R_true = R Exp(phi).
+class MapFilter {
+ public:
+  explicit MapFilter(const MapFilterConfig& config) : config_(config) {}
+
+  /// A new frame O of the odometry: where it lies in M is a guess with these sigmas [m], [rad] of position and yaw.
+  void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
+  /// The odometry has come to T_O_B.
+  void predict(const SE3& T_O_B, Timestamp t);
+  /// A keyframe of the odometry, at T_O_K: it comes last in keyframes().
+  void add_keyframe(const SE3& T_O_K, Timestamp t);
+  /// The others' order stays.
+  void remove_keyframe(std::size_t keyframe);
+  /// Fits all poses to the sights; expected: how many could have been found. False where they do not agree: nothing has
+  /// changed then.
+  bool update(std::span<const MapSight> sights, std::size_t expected, const SE3& T_B_C);
+
+  const SE3& T_M_O() const { return T_M_O_; }
+  SE3 T_M_B() const { return T_M_O_ * T_O_B_; }
+  const std::vector<SE3>& keyframes() const { return T_M_K_; }
+  /// Of the body against the map's first keyframe.
+  Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
+  /// How far a sight may lie from where it is expected on the unit plane: one sigma.
+  double expected_error(const MapSight& sight, const SE3& T_B_C) const;
+
+ private:
+  /// Of a sight: residual, Jacobians by the body and by its keyframe, and noise.
+  struct Row {
+    Eigen::Vector2d r;
+    Eigen::Matrix<double, 2, 6> by_body, by_keyframe;
+    Eigen::Matrix2d R;
+  };
+  std::optional<Row> linearise(const MapSight& sight, const SE3& T_B_C) const;
+  Eigen::Matrix2d expected_covariance(const Row& row, std::size_t keyframe) const;
+  Matrix6d drift(const SE3& T_M_B, double dt) const;
+  /// Normal equations of the body and of the keyframes in `place`, by where those begin.
+  struct Information {
+    std::map<std::size_t, Eigen::Index> place;
+    Eigen::MatrixXd H;
+    Eigen::VectorXd g;
+  };
+  Information gather(std::span<const MapSight> sights, std::span<const Row> rows) const;
+  double misfit(std::span<const MapSight> sights, std::span<const Row> rows, const Eigen::VectorXd& error) const;
+  void correct(const Eigen::VectorXd& error);
+
+  MapFilterConfig config_;
+  SE3 T_M_O_, T_O_B_;
+  Timestamp t_;
+  std::vector<SE3> T_M_K_;
+  Eigen::MatrixXd P_ = Eigen::MatrixXd::Zero(6, 6);  ///< body first, then the keyframes
+};
+
+}  // namespace edged

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The filter against odometry that drifts by a known walk, in a world whose points are known.
+#include "edged/map/map_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace edged {
+namespace {
+
+constexpr double kStep_s = 0.25, kPixel = 1.0 / 200.0;
+
+/// A body that circles before a wall of points and looks at it, and odometry that walks away from that.
+class World {
+ public:
+  explicit World(std::uint64_t seed, double drift_m = 0.002, double drift_rad = 0.001)
+      : random_(seed), drift_m_(drift_m), drift_rad_(drift_rad) {
+    std::uniform_real_distribution<double> wide(-2.0, 2.0), deep(2.5, 4.0);
+    for (int i = 0; i < 60; ++i) points_.emplace_back(deep(random_), wide(random_), wide(random_));
+    odometry_ = truth(0.0);
+  }
+
+  /// Comes back every 8 s. The camera looks along x, z of the camera.
+  static SE3 truth(double t) {
+    const double a = 2.0 * M_PI * t / 8.0;
+    return {so3::exp({0.0, 0.05 * std::sin(a), 0.1 * std::cos(a)}),
+            {0.3 * std::cos(2.0 * a), 0.6 * std::sin(a), 0.3 * std::cos(a)}};
+  }
+  const SE3 T_B_C = SE3(Eigen::Quaterniond(Eigen::Matrix3d{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}}), {0.05, 0.0, 0.02});
+
+  /// T_O_B a step later.
+  const SE3& odometry(double t) {
+    const SE3 moved = truth(t - kStep_s).inverse() * truth(t);
+    const double root = std::sqrt(kStep_s);
+    const Eigen::Vector3d position = drift_m_ * root * normal(), turn = drift_rad_ * root * normal();
+    odometry_ = odometry_ * moved * SE3(so3::exp(turn), position);
+    return odometry_;
+  }
+
+  /// Every third point, as that keyframe had it, seen from the truth at t with that noise.
+  std::vector<MapSight> sights(const std::vector<SE3>& keyframes, std::size_t keyframe, double t,
+                               double noise_px = 0.4) {
+    std::vector<MapSight> out;
+    for (std::size_t i = keyframe % 3; i < points_.size(); i += 3) {
+      const Eigen::Vector3d p_C = (truth(t) * T_B_C).inverse() * points_[i];
+      const Eigen::Vector2d noise = noise_px * kPixel * normal().head<2>();
+      out.push_back({keyframe, keyframes[keyframe].inverse() * points_[i], Eigen::Vector3d::Zero(),
+                     p_C.hnormalized() + noise, 0.4 * kPixel});
+    }
+    return out;
+  }
+
+  Eigen::Vector3d normal() {
+    std::normal_distribution<double> one;
+    return {one(random_), one(random_), one(random_)};
+  }
+
+ private:
+  std::mt19937_64 random_;
+  double drift_m_, drift_rad_;
+  std::vector<Eigen::Vector3d> points_;
+  SE3 odometry_;
+};
+
+MapFilterConfig config_of_world() {
+  MapFilterConfig config;
+  config.drift_m = 0.002;
+  config.drift_yaw_deg = config.drift_tilt_deg = 0.001 * 180.0 / M_PI;
+  return config;
+}
+
+/// Root mean squares over times of a walk, and the mean of the errors' squares by their covariance, over six.
+struct Walk {
+  double early_m = 0.0, late_m = 0.0, odometry_late_m = 0.0, nees = 0.0;
+};
+
+/// Keyframes in the first round, of 8 s; after that their points are seen again.
+Walk walk(std::uint64_t seed) {
+  constexpr double kMapped_s = 8.0, kEarly_s = 60.0, kLate_s = 180.0, kEnd_s = 240.0;
+  World world(seed);
+  MapFilter filter(config_of_world());
+  filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0);
+  std::vector<SE3> keyframes;  // where they are in truth
+  Walk sum;
+  int early = 0, late = 0, all = 0;
+  for (double t = kStep_s; t < kEnd_s; t += kStep_s) {
+    const SE3 T_O_B = world.odometry(t), T_M_B = World::truth(t);
+    filter.predict(T_O_B, timestamp_from_seconds(t));
+    const auto nth = static_cast<std::size_t>(std::lround(t / kStep_s));
+    if (t <= kMapped_s) {
+      if (nth % 4 != 0) continue;
+      filter.add_keyframe(T_O_B, timestamp_from_seconds(t));
+      keyframes.push_back(T_M_B);
+      continue;
+    }
+    const std::vector<MapSight> sights = world.sights(keyframes, nth / 4 % keyframes.size(), t);
+    filter.update(sights, sights.size(), world.T_B_C);
+    Eigen::Matrix<double, 6, 1> error;
+    error << T_M_B.translation() - filter.T_M_B().translation(),
+        so3::log((filter.T_M_B().inverse() * T_M_B).rotation());
+    sum.nees += error.dot(filter.covariance().ldlt().solve(error)) / 6.0;
+    ++all;
+    if (t < kEarly_s) sum.early_m += error.head<3>().squaredNorm(), ++early;
+    if (t < kLate_s) continue;
+    sum.late_m += error.head<3>().squaredNorm();
+    sum.odometry_late_m += (T_O_B.translation() - T_M_B.translation()).squaredNorm();
+    ++late;
+  }
+  return {std::sqrt(sum.early_m / early), std::sqrt(sum.late_m / late), std::sqrt(sum.odometry_late_m / late),
+          sum.nees / all};
+}
+
+TEST(MapFilter, HoldsTheBodyWhereTheOdometryWalksAwayAndKnowsHowWell) {
+  Walk mean;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Walk walked = walk(seed);
+    mean.early_m += walked.early_m / 12.0;
+    mean.late_m += walked.late_m / 12.0;
+    mean.odometry_late_m += walked.odometry_late_m / 12.0;
+    mean.nees += walked.nees / 12.0;
+  }
+  EXPECT_LT(mean.late_m, 1.1 * mean.early_m) << "what the first round drifted by stays, no more";
+  EXPECT_LT(mean.late_m, 0.4 * mean.odometry_late_m);
+  EXPECT_GT(mean.nees, 0.6);
+  EXPECT_LT(mean.nees, 1.5);
+}
+
+class OneKeyframe : public testing::Test {
+ protected:
+  OneKeyframe() : world_(3), filter_(config_of_world()) {
+    filter_.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0);
+    filter_.add_keyframe(World::truth(0.0), Timestamp{});
+    const SE3 off(so3::exp({0.0, 0.0, 0.004}), {0.01, -0.006, 0.004});
+    T_O_B_ = off * World::truth(4.0);
+    filter_.predict(T_O_B_, timestamp_from_seconds(4.0));
+    sights_ = world_.sights({World::truth(0.0)}, 0, 4.0, 0.0);
+  }
+  double error() const { return (filter_.T_M_B().translation() - World::truth(4.0).translation()).norm(); }
+
+  World world_;
+  MapFilter filter_;
+  SE3 T_O_B_;
+  std::vector<MapSight> sights_;
+};
+
+TEST_F(OneKeyframe, PullsTheBodyBack) {
+  const double before = error();
+  ASSERT_TRUE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  EXPECT_LT(error(), 0.6 * before);
+}
+
+TEST_F(OneKeyframe, ChangesNothingWhereTooFewOrTooSmallAShareIsFound) {
+  const SE3 before = filter_.T_M_O();
+  EXPECT_FALSE(filter_.update(std::span(sights_).first(5), 5, world_.T_B_C));
+  EXPECT_FALSE(filter_.update(sights_, 3 * sights_.size(), world_.T_B_C));
+  EXPECT_EQ(before.translation(), filter_.T_M_O().translation());
+}
+
+TEST_F(OneKeyframe, ChangesNothingWhereTheSightsAgreeOnNoPose) {
+  const SE3 before = filter_.T_M_O();
+  for (MapSight& sight : sights_) sight.seen += 8.0 * kPixel * world_.normal().head<2>();
+  EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  EXPECT_EQ(before.translation(), filter_.T_M_O().translation());
+}
+
+TEST_F(OneKeyframe, IsHardlyMovedByAFewThatAreWrong) {
+  for (std::size_t i = 0; i < sights_.size(); i += 5) sights_[i].seen.x() += 12.0 * kPixel;
+  const double before = error();
+  ASSERT_TRUE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  EXPECT_LT(error(), 0.6 * before);
+}
+
+TEST_F(OneKeyframe, NeverTakesAPointThatLiesBehind) {
+  sights_[0].p_K = Eigen::Vector3d(-5.0, 0.0, 0.0);
+  EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+}
+
+/// What a sight's expected error is made of follows the residual's change with each pose: the same body, a keyframe
+/// that is exact, and the other way round.
+TEST_F(OneKeyframe, ExpectsSightsAsFarOffAsTheBodyIsUncertain) {
+  filter_.restart(SE3(), World::truth(4.0), timestamp_from_seconds(4.0), 0.1, 0.0);
+  double sum = 0.0;
+  for (const MapSight& sight : sights_) {
+    const double z =
+        1.0 / (kPixel * 200.0) * ((World::truth(4.0) * world_.T_B_C).inverse() * (World::truth(0.0) * sight.p_K)).z();
+    sum += filter_.expected_error(sight, world_.T_B_C) * z / (0.1 * std::sqrt(2.0));
+  }
+  EXPECT_NEAR(sum / static_cast<double>(sights_.size()), 1.0, 0.15);  // off the axis z counts, too
+}
+
+TEST_F(OneKeyframe, ForgetsAKeyframeAndKeepsTheOthers) {
+  filter_.add_keyframe(T_O_B_, timestamp_from_seconds(4.0));
+  const SE3 kept = filter_.keyframes()[1];
+  filter_.remove_keyframe(0);
+  ASSERT_EQ(filter_.keyframes().size(), 1U);
+  EXPECT_EQ(filter_.keyframes()[0].translation(), kept.translation());
+  const std::vector<MapSight> sights = world_.sights({World::truth(4.0)}, 0, 4.0, 0.0);
+  EXPECT_TRUE(filter_.update(sights, sights.size(), world_.T_B_C));
+}
+
+}  // namespace
+}  // namespace edged

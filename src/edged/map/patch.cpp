@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/patch.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace edged {
+namespace {
+
+// What is compared: the patch without its rim, which is there for the gradients.
+constexpr int kInner = Patch::kSize - 2;
+constexpr int kSamples = kInner * kInner;
+using Samples = Eigen::Matrix<float, kSamples, 1>;
+
+/// Of the inner pixel's place in the patch, from its middle.
+Eigen::Vector2d offset(int x, int y) { return {x - 0.5 * (kInner - 1), y - 0.5 * (kInner - 1)}; }
+
+float bilinear(const cv::Mat& image, double x, double y) {
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
+  const std::uint8_t* upper = image.ptr(top) + left;
+  const std::uint8_t* lower = image.ptr(top + 1) + left;
+  const float above = upper[0] + fx * static_cast<float>(upper[1] - upper[0]);
+  const float below = lower[0] + fx * static_cast<float>(lower[1] - lower[0]);
+  return above + fy * (below - above);
+}
+
+/// Without mean, of length one; false where all is of one grey.
+bool normalise(Samples& samples) {
+  samples.array() -= samples.mean();
+  const float norm = samples.norm();
+  if (norm < 1.0F) return false;
+  samples /= norm;
+  return true;
+}
+
+/// The patch as it is compared, and how that changes as it moves.
+struct Template {
+  Samples grey;
+  Eigen::Matrix<float, kSamples, 2> gradient;
+};
+
+std::optional<Template> template_of(const Patch& patch) {
+  Template made;
+  const auto at = [&](int x, int y) { return static_cast<float>(patch.pixels[y * Patch::kSize + x]); };
+  for (int y = 0, i = 0; y < kInner; ++y) {
+    for (int x = 0; x < kInner; ++x, ++i) {
+      made.grey[i] = at(x + 1, y + 1);
+      made.gradient(i, 0) = 0.5F * (at(x + 2, y + 1) - at(x, y + 1));
+      made.gradient(i, 1) = 0.5F * (at(x + 1, y + 2) - at(x + 1, y));
+    }
+  }
+  const float norm = (made.grey.array() - made.grey.mean()).matrix().norm();
+  if (!normalise(made.grey)) return std::nullopt;
+  made.gradient = (made.gradient.rowwise() - made.gradient.colwise().mean()) / norm;
+  return made;
+}
+
+/// What the image shows in the patch's place; false where that is outside, or of one grey.
+bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, Samples& samples) {
+  const Eigen::Vector2d reach = 0.5 * (kInner - 1) * A.cwiseAbs().rowwise().sum();
+  if (!((middle - reach).minCoeff() >= 0.0) || !(middle.x() + reach.x() < image.cols - 1) ||
+      !(middle.y() + reach.y() < image.rows - 1))
+    return false;
+  for (int y = 0, i = 0; y < kInner; ++y) {
+    Eigen::Vector2d place = middle + A * offset(0, y);
+    for (int x = 0; x < kInner; ++x, ++i, place += A.col(0)) samples[i] = bilinear(image, place.x(), place.y());
+  }
+  return normalise(samples);
+}
+
+/// The whole pixel within the radius where the image is most like the patch.
+std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& image, const Eigen::Vector2d& expected,
+                                      const Eigen::Matrix2d& A, double radius_px) {
+  const int reach = static_cast<int>(std::ceil(radius_px));
+  std::optional<Eigen::Vector2d> best;
+  float most = 0.0F;
+  Samples seen;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      if (dx * dx + dy * dy > radius_px * radius_px) continue;
+      const Eigen::Vector2d place = expected + Eigen::Vector2d(dx, dy);
+      if (!sample(image, place, A, seen)) continue;
+      const float similarity = seen.dot(wanted.grey);
+      if (similarity > most) most = similarity, best = place;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner) {
+  const Eigen::Vector2d first = corner.array() - 0.5 * (Patch::kSize - 1);
+  if (!(first.minCoeff() >= 0.0) || !(first.x() + Patch::kSize < image.cols) ||
+      !(first.y() + Patch::kSize < image.rows))
+    return std::nullopt;
+  Patch patch;
+  for (int y = 0, i = 0; y < Patch::kSize; ++y) {
+    for (int x = 0; x < Patch::kSize; ++x, ++i) {
+      patch.pixels[i] = static_cast<std::uint8_t>(std::lround(bilinear(image, first.x() + x, first.y() + y)));
+    }
+  }
+  return patch;
+}
+
+std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, const Eigen::Vector2d& expected,
+                                      const Eigen::Matrix2d& A, double radius_px, const PatchConfig& config) {
+  constexpr double kConverged_px = 0.02, kFarthest_px = 2.0;
+  const std::optional<Template> wanted = template_of(patch);
+  if (!wanted) return std::nullopt;
+  const std::optional<Eigen::Vector2d> nearest = search(*wanted, image, expected, A, radius_px);
+  if (!nearest) return std::nullopt;
+  const Eigen::Matrix2f H = wanted->gradient.transpose() * wanted->gradient;
+  if (H.determinant() < 1e-8F) return std::nullopt;
+  const Eigen::Matrix2d H_inverse = H.cast<double>().inverse();
+  PatchMatch match{*nearest, 0.0};
+  Samples seen;
+  for (int i = 0; i < config.iterations; ++i) {
+    if (!sample(image, match.pixel, A, seen)) return std::nullopt;
+    const Eigen::Vector2d wrong = (wanted->gradient.transpose() * (seen - wanted->grey)).cast<double>();
+    const Eigen::Vector2d step = A * (H_inverse * wrong);
+    match.pixel -= step;
+    if ((match.pixel - *nearest).norm() > kFarthest_px) return std::nullopt;
+    if (step.norm() < kConverged_px) break;
+  }
+  if (!sample(image, match.pixel, A, seen)) return std::nullopt;
+  match.similarity = seen.dot(wanted->grey);
+  return match.similarity >= config.min_similarity ? std::optional(match) : std::nullopt;
+}
+
+}  // namespace edged

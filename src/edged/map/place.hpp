@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// To know a place again without knowing where one is: descriptors that stand upright by gravity, and a pose by two
+// points, as gravity tells the rest.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/se3.hpp"
+
+namespace edged {
+
+/// 256 comparisons of grey levels around a corner (ORB, by OpenCV).
+using Descriptor = std::array<std::uint64_t, 4>;
+
+/// How many bits differ.
+int distance(const Descriptor& a, const Descriptor& b);
+
+/// One for each corner; nothing near the image's rim, and where a camera looks up or down, as gravity has no direction
+/// in the image there. points: the same on the unit plane; up_C: what points up, in the camera.
+std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<const Eigen::Vector2d> pixels,
+                                                std::span<const Eigen::Vector2d> points, const Eigen::Vector3d& up_C);
+
+/// A corner of the present image that looks like a point of the map.
+struct PlaceMatch {
+  Eigen::Vector2d point;  ///< of the corner, on the unit plane
+  Eigen::Vector3d p_M;
+};
+
+struct PlacePose {
+  SE3 T_M_C;
+  std::size_t agreeing;  ///< of the matches
+};
+
+/// The pose that most matches agree with, by up to max_error on the unit plane. R_O_C: of the camera in any frame whose
+/// z points up; the pose has the same tilt. Deterministic. Nothing with fewer than two matches.
+std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, const Eigen::Quaterniond& R_O_C,
+                                         double max_error);
+
+}  // namespace edged

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/mapper.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace edged {
+namespace {
+
+constexpr double kSearchSigmas = 3.0;
+constexpr double kLeastSearch_px = 2.0;
+constexpr double kAgreement_px = 3.0;                        // of a corner with a place recognised
+constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
+constexpr double kUnnoticed_s = 2.5;                         // until a loss is said, StatusConfig::lost_after_s
+constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // that dead reckoning may be off
+constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
+constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
+constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to say how much of it the map shows
+
+/// The live corners of a camera, and what they look like.
+struct Corners {
+  std::vector<Eigen::Vector2d> pixels, points;
+  std::vector<std::optional<Descriptor>> descriptors;
+};
+
+Corners corners_of(const ChannelView& view, const SE3& T_O_C) {
+  Corners corners;
+  for (const Track& track : view.channel->tracker.tracks()) {
+    corners.pixels.push_back(track.pixel);
+    corners.points.push_back(track.point);
+  }
+  const Eigen::Vector3d up_C = T_O_C.R().transpose() * Eigen::Vector3d::UnitZ();
+  corners.descriptors = describe(view.track, corners.pixels, corners.points, up_C);
+  return corners;
+}
+
+}  // namespace
+
+Mapper::Mapper(const MapConfig& config) : config_(config), map_(config.keyframes), filter_(config.filter) {}
+
+void Mapper::restart(const SE3& T_M_O, const NavState& now) {
+  const bool first = map_.keyframes().empty();
+  filter_.restart(T_M_O, now.T_W_B, now.t, first ? 0.0 : kRestartPosition_m, first ? 0.0 : kRestartYaw_rad);
+  started_ = now.t;
+  blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : kUnnoticed_s) + to_seconds(now.t - predicted_);
+  searching_ = !first;
+  T_M_O_guess_ = T_M_O;
+  recognised_.reset();
+  looks_.clear();
+  found_px_.clear();
+}
+
+void Mapper::predict(const NavState& now) {
+  filter_.predict(now.T_W_B, now.t);
+  predicted_ = now.t;
+}
+
+Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Timestamp before) {
+  const CameraModel& camera = view.channel->tracker.camera();
+  Search search;
+  search.T_B_C = filter.T_M_B().inverse() * filter.T_M_O() * T_O_C;
+  search.candidates = map_.visible({view.channel->camera.name, before, filter.keyframes()}, filter.T_M_O() * T_O_C,
+                                   camera, config_.max_sights);
+  for (const Candidate& candidate : search.candidates) {
+    MapSight sight{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K, camera.pixel_to_point(candidate.pixel),
+                   config_.filter.pixel_sigma / camera.mean_focal()};
+    const double expected_px = kSearchSigmas * camera.mean_focal() * filter.expected_error(sight, search.T_B_C);
+    const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
+    const auto match =
+        match_patch(candidate.point->patch, view.track, candidate.pixel, candidate.A, radius, config_.patch);
+    search.found.push_back(match.has_value());
+    if (!match) continue;
+    sight.seen = camera.pixel_to_point(match->pixel);
+    search.sights.push_back(sight);
+    search.pixels.push_back(match->pixel);
+  }
+  return search;
+}
+
+/// The filter takes what was found, where that agrees.
+bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
+  if (!filter.update(search.sights, search.candidates.size(), search.T_B_C)) return false;
+  for (std::size_t i = 0; i < search.candidates.size(); ++i) map_.note(search.candidates[i], search.found[i], t);
+  found_px_ = search.pixels;
+  return true;
+}
+
+bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
+  if (looked_at_ && to_seconds(t - *looked_at_) < config_.min_interval_s) return false;
+  looked_at_ = t;
+  found_px_.clear();
+  const SE3 T_O_C = view.channel->T_W_C(T_O_B);
+  const Search here = search(filter_, view, T_O_C, t - duration_from_seconds(config_.keyframes.min_age_s));
+  const auto older = std::ranges::count_if(
+      here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
+  const bool agreed = update(filter_, here, t);
+  if (!searching_) return false;
+  searching_ = !(agreed && older >= config_.filter.min_sights) && !recognise(t, view, T_O_C);
+  return !searching_;
+}
+
+/// Whether dead reckoning may have been so far off. Its heading is the gyro's, and good: of places that look alike most
+/// are refused by that.
+bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
+  const SE3 off = (T_M_O_guess_ * T_O_B).inverse() * (T_M_O * T_O_B);
+  return off.translation().norm() < kFarthest_m + kFarthest_mps * blind_s_ &&
+         so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * blind_s_;
+}
+
+/// By looks alone, of what was there before the newest start. Two images must agree on where that is, and the points
+/// that should then be in view be found. What has been mapped since, from a guess, goes.
+bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
+  const Corners corners = corners_of(view, T_O_C);
+  const double max_error = kAgreement_px / view.channel->tracker.camera().mean_focal();
+  const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, started_, filter_.keyframes()},
+                                                  corners.descriptors, corners.points, T_O_C.rotation(), max_error);
+  const std::optional<SE3> before = std::exchange(recognised_, std::nullopt);
+  if (!T_M_C) return false;
+  const SE3 T_M_O = *T_M_C * T_O_C.inverse(), T_O_B = filter_.T_M_O().inverse() * filter_.T_M_B();
+  if (!plausible(T_M_O, T_O_B)) return false;
+  recognised_ = T_M_O;
+  if (!before) return false;
+  const SE3 between = (*before * T_O_B).inverse() * (T_M_O * T_O_B);
+  if (between.translation().norm() > kSamePlace_m || so3::log(between.rotation()).norm() > kSamePlace_rad) return false;
+  MapFilter there = filter_;
+  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  if (!update(there, search(there, view, T_O_C, started_), t)) return false;
+  filter_ = std::move(there);
+  while (map_.keyframes().back().t >= started_) remove_keyframe(map_.keyframes().size() - 1);
+  return true;
+}
+
+double Mapper::covered_share(const FeatureTracker& tracker) const {
+  const CameraModel& camera = tracker.camera();
+  const auto cell = [&](const Eigen::Vector2d& pixel) {
+    return std::pair(static_cast<int>(pixel.x() * kCellsAcross / camera.width()),
+                     static_cast<int>(pixel.y() * kCellsDown / camera.height()));
+  };
+  std::set<std::pair<int, int>> textured, shown;
+  for (const Track& track : tracker.tracks()) textured.insert(cell(track.pixel));
+  for (const Eigen::Vector2d& pixel : found_px_) {
+    if (textured.contains(cell(pixel))) shown.insert(cell(pixel));
+  }
+  return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
+}
+
+void Mapper::keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
+  const FeatureTracker& tracker = view.channel->tracker;
+  if (to_seconds(t - started_) < config_.keyframes.min_known_s) return;
+  if (!map_.wants(covered_share(tracker))) return;
+  Look look{t, view.channel->camera.name, {}};
+  const Corners corners = corners_of(view, view.channel->T_W_C(T_O_B));
+  for (std::size_t i = 0; i < corners.pixels.size(); ++i) {
+    if (const auto patch = cut_patch(view.track, corners.pixels[i]))
+      look.corners[tracker.tracks()[i].id] = {*patch, corners.descriptors[i], corners.pixels[i]};
+  }
+  looks_.push_back(std::move(look));
+}
+
+void Mapper::take(const KeyframeRecord& record) {
+  while (!looks_.empty() && looks_.front().t < record.t) looks_.pop_front();
+  if (looks_.empty() || looks_.front().t != record.t) return;
+  const Look& look = looks_.front();
+  const auto view = std::ranges::find(record.views, look.camera, &KeyframeView::camera);
+  MapKeyframe keyframe{record.t, record.t, look.camera, view->T_B_C, {}};
+  for (const KeyframePoint& point : view->points) {
+    const auto corner = look.corners.find(point.id);
+    if (corner == look.corners.end()) continue;
+    keyframe.points.push_back({point.point, point.inverse_depth, point.sigma, corner->second.patch,
+                               corner->second.descriptor, corner->second.pixel, 0, 0});
+  }
+  if (!map_.gains_by(keyframe)) return;
+  map_.add(std::move(keyframe));
+  filter_.add_keyframe(record.T_W_B, record.t);
+  if (const auto superfluous = map_.superfluous()) remove_keyframe(*superfluous);
+}
+
+void Mapper::remove_keyframe(std::size_t keyframe) {
+  map_.remove(keyframe);
+  filter_.remove_keyframe(keyframe);
+}
+
+}  // namespace edged

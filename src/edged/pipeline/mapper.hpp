@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The odometry's joint with the map: what its keyframes looked like, where it is by what was seen before, and what the
+// map keeps of a keyframe that leaves the window. The odometry's frame is O here, W of the estimator; the map's is M.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+
+#include "edged/estimator/keyframe_record.hpp"
+#include "edged/map/keyframe_map.hpp"
+#include "edged/map/map_filter.hpp"
+#include "edged/pipeline/channel.hpp"
+
+namespace edged {
+
+class Mapper {
+ public:
+  explicit Mapper(const MapConfig& config);
+
+  /// The estimator has started anew: T_M_O is where dead reckoning puts it.
+  void restart(const SE3& T_M_O, const NavState& now);
+  /// The odometry has come to `now`.
+  void predict(const NavState& now);
+  /// Looks for the map in the image, and after a new start, until it has been found again, everywhere: true when it has
+  /// been just now. T_O_B: of the image's instant.
+  bool localize(Timestamp t, const ChannelView& view, const SE3& T_O_B);
+  /// The packet has become a keyframe, which looks like this.
+  void keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B);
+  /// A keyframe has left the window: kept where the map gains by it.
+  void take(const KeyframeRecord& record);
+
+  const SE3& T_M_O() const { return filter_.T_M_O(); }
+
+ private:
+  /// How a keyframe of the window looked.
+  struct Look {
+    struct Corner {
+      Patch patch;
+      std::optional<Descriptor> descriptor;
+      Eigen::Vector2d pixel;
+    };
+    Timestamp t;
+    std::string camera;
+    std::map<FeatureId, Corner> corners;
+  };
+  /// Points that should be in view, and what was found of them.
+  struct Search {
+    std::vector<Candidate> candidates;
+    std::vector<bool> found;  ///< one a candidate
+    std::vector<MapSight> sights;
+    std::vector<Eigen::Vector2d> pixels;  ///< one a sight
+    SE3 T_B_C;
+  };
+  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Timestamp before);
+  bool update(MapFilter& filter, const Search& search, Timestamp t);
+  bool recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C);
+  bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
+  double covered_share(const FeatureTracker& tracker) const;
+  void remove_keyframe(std::size_t keyframe);
+
+  MapConfig config_;
+  KeyframeMap map_;
+  MapFilter filter_;
+  std::deque<Look> looks_;
+  std::vector<Eigen::Vector2d> found_px_;  ///< points of the map in the newest image
+  std::optional<Timestamp> looked_at_;
+  Timestamp predicted_;            ///< newest word of the odometry
+  Timestamp started_;              ///< the estimator's newest start
+  SE3 T_M_O_guess_;                ///< there, by dead reckoning
+  double blind_s_ = 0.0;           ///< how long it had gone on that alone, since what is older was last found
+  bool searching_ = false;         ///< since then nothing older has been found again
+  std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
+};
+
+}  // namespace edged

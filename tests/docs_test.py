@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""What the pages promise: docs/demands.md holds, commands on any page have flags that there are, messages in docs/faq.md are
+those of the source. Usage: EDGED=path/to/edged docs_test.py"""
+import functools
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import unittest
+
+from program import WithFolder, edged
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def demands(*args):
+    return subprocess.run([sys.executable, ROOT / "scripts/demands", *map(str, args)], capture_output=True, text=True,
+                          check=False)
+
+
+class Demands(WithFolder):
+    def page(self, *rows, first=""):
+        page = self.folder / "page.md"
+        page.write_text("\n".join([f"```bash\n{first}\n```", "| | demand | met | by | try it |", "|---|---|---|---|---|", *rows]))
+        return page
+
+    def test_all_that_the_page_calls_met_is(self):
+        done = demands()
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(len(done.stdout.splitlines()), 26, done.stdout)
+        self.assertIn(" 0 FAILED", done.stdout)
+
+    def test_what_fails_and_what_is_missing_is_said(self):
+        page = self.page("| 1 | works | yes | | `test -e made` `edged --version` |",
+                         "| 2 | fails | yes | | `edged --version` `edged info nothing` |",
+                         "| 3 | has no file | partly | [this](nothing.md) | `true` |",
+                         "| 4 | is missing | not met | nobody did it | `false` |", first="touch made")
+        done = demands("--page", page)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        lines = done.stdout.splitlines()
+        for line, words in zip(lines, (("1  ok",), ("2  FAILED", "edged info nothing: exit code 3", "nothing"),
+                                       ("3  FAILED", "nothing.md: there is no such file"), ("4  not met",),
+                                       ("1 ok, 2 FAILED, 1 not met",))):
+            for word in words:
+                self.assertIn(word, line)
+        self.assertEqual(demands("--page", page, "--only", 1, 4).returncode, 0)
+
+    def test_a_page_that_cannot_be_read_is_refused(self):
+        for row, words in (("| 1 | x | maybe | | `true` |", "'maybe'"), ("| 2 | x | yes | | `true` |", "numbered"),
+                           ("| 1 | x | yes | words | words |", "no command and no file")):
+            self.assert_refused(demands("--page", self.page(row)), words, code=2)
+        self.assert_refused(demands("--page", self.page("| 1 | x | yes | | `true` |", first="false")), "all commands need",
+                            code=2)
+
+
+def commands_of(page):
+    """Command lines of the program on a page: lines of its shell listings, and inline code."""
+    text = page.read_text()
+    fences = re.findall(r"^```bash\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    lines = [line for fence in fences for line in fence.replace("\\\n", " ").splitlines()]
+    lines += re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE))
+    for line in lines:
+        for part in re.split(r"&&|;|\s\|\s", line.split(" #")[0]):
+            part = re.sub(r"^\S*build/release/bin/edged ", "edged ", part.strip())
+            if re.match(r"edged \S", part):
+                yield part
+
+
+@functools.lru_cache(None)
+def flags_of(command):
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", edged(command, "--help").stdout))
+
+
+@functools.lru_cache(None)
+def options_of(command):
+    """Keys that --set takes."""
+    text = edged("simulate", "--list").stdout if command == "simulate" else edged("config", "--yaml").stdout
+    keys, groups = set(), []
+    for line in text.splitlines():
+        found = re.match(r"( *)([\w.]+):", line)
+        if found:
+            groups = groups[:len(found.group(1)) // 2] + [found.group(2)]
+            keys.add(".".join(groups))
+    return keys
+
+
+class Commands(unittest.TestCase):
+    def test_commands_on_all_pages_have_flags_and_options_that_there_are(self):
+        known = set(re.findall(r"^  ([a-z]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
+        count = 0
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+            for line in commands_of(page):
+                with self.subTest(page=page.name, line=line):
+                    words = shlex.split(line)
+                    if words[1].startswith("-") or words[1].isupper():  # edged --version, edged COMMAND
+                        continue
+                    count += 1
+                    self.assertIn(words[1], known)
+                    for word in words[2:]:
+                        if word.startswith("--"):
+                            self.assertIn(word.split("=")[0], flags_of(words[1]))
+                    for flag, value in zip(words, words[1:]):
+                        if flag == "--set" and not value.isupper():
+                            self.assertIn(value.split("=")[0], options_of(words[1]))
+        self.assertGreater(count, 100)
+
+
+class Messages(unittest.TestCase):
+    LITERALS = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
+
+    def test_messages_in_the_faq_are_those_of_the_source(self):
+        said = []
+        for source in (path for folder in ("apps", "src", "toolbox") for path in (ROOT / folder).rglob("*.cpp")):
+            if not source.name.endswith("_test.cpp"):
+                said += ["".join(re.findall(r'"((?:\\.|[^"\\\n])*)"', text))
+                         for text in self.LITERALS.findall(source.read_text())]
+        everything = "\n".join(said)
+        headings = re.findall(r"^### `(.+)`$", (ROOT / "docs/faq.md").read_text(), re.MULTILINE)
+        self.assertGreater(len(headings), 20)
+        for heading in headings:
+            with self.subTest(heading=heading):
+                parts = [re.escape(part) for part in heading.split("...")]
+                self.assertTrue(re.search(r"[^\n]*".join(parts), everything))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

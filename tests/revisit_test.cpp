@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What it is worth to know where one has been: flights that come by the same places again and again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "end_to_end.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kDuration_s = 40.0;
+
+/// ATE [m] of the poses as they were known at their time.
+double causal_error(const Flight& flight, Mode mode, bool with_map) {
+  OdometryConfig config;
+  config.map.enabled = with_map;
+  const FlightRun run = run_flight(flight.calibration, flight.measurements, mode, config);
+  EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
+  return score(flight, run).evaluation.ate_m.rmse;
+}
+
+TEST(Revisits, HoldTheDriftOfTheOdometry) {
+  std::map<Mode, double> log_ratio;
+  for (const int seed : {5, 7}) {
+    const Flight flight = simulate_flight("room", seed, kDuration_s);
+    for (const Mode mode : {Mode::Frames, Mode::Events}) {
+      const double without = causal_error(flight, mode, false), with = causal_error(flight, mode, true);
+      std::cout << mode_name(mode) << " " << seed << ": " << 1e3 * without << " -> " << 1e3 * with << " mm\n";
+      log_ratio[mode] += std::log(with / without) / 2.0;
+    }
+  }
+  EXPECT_LT(std::exp(log_ratio[Mode::Frames]), 0.8);   // 0.68
+  EXPECT_LT(std::exp(log_ratio[Mode::Events]), 0.95);  // 0.87
+}
+
+/// Of a flight whose lens is covered for 4 s while it goes on: the mean position error of the last 5 s, once the first
+/// 12 s are laid onto the truth [m].
+double error_after_cover(const Flight& flight, Mode mode, bool with_map) {
+  OdometryConfig config;
+  config.map.enabled = with_map;
+  const FlightRun run = run_flight(flight.calibration, flight.measurements, mode, config);
+  EXPECT_GE(run.statistics.times_lost(), 1U);
+  // A better start that takes the place of a provisional one is found again, too.
+  EXPECT_EQ(std::ranges::any_of(run.steps, &Step::found_again), with_map);
+  Trajectory estimate;
+  for (const Step& step : run.steps) {
+    if (is_tracking(step.status)) estimate.push_back({step.t, step.state.T_W_B});
+  }
+  const std::vector<PosePair> pairs = associate(flight.truth->trajectory, estimate).pairs;
+  const Similarity onto = align_rigidly(within(pairs, {0.0, 12.0}));
+  const Timestamp late = run.steps.back().t - std::chrono::seconds(5);
+  double sum = 0.0;
+  int count = 0;
+  for (const PosePair& pair : pairs) {
+    if (pair.t < late) continue;
+    sum += (onto * pair.estimate.translation() - pair.truth.translation()).norm();
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(Revisits, FindThePlaceAgainAfterTheLensWasCovered) {
+  SimulatorConfig config = simulator_preset("room");
+  config.seed = 4;
+  config.duration_s = 24.0;
+  config.disturbance = {DisturbanceKind::LensCovered, 13.0, 4.0, 0.0};
+  const Flight flight = simulate_flight(config);
+  for (const Mode mode : {Mode::Frames, Mode::Fused, Mode::Events}) {
+    const double without = error_after_cover(flight, mode, false), with = error_after_cover(flight, mode, true);
+    std::cout << mode_name(mode) << ": " << 1e3 * without << " -> " << 1e3 * with << " mm\n";
+    EXPECT_GT(without, 0.1) << "dead reckoning for 4 s";
+    EXPECT_LT(with, mode == Mode::Events ? 0.08 : 0.03);
+  }
+}
+
+}  // namespace
+}  // namespace edged

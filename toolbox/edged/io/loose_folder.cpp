@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/io/loose_folder.hpp"
+
+#include <spdlog/fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat4.hpp"
+#include "edged/io/bytes.hpp"
+#include "edged/io/prophesee/raw.hpp"
+#include "edged/io/ros/open_messages.hpp"
+#include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/imu_text.hpp"
+
+namespace edged {
+namespace {
+
+std::vector<std::string> files_in(const SourcePath& folder) {
+  std::vector<std::string> files = folder.names();
+  std::erase_if(files, [&folder](const std::string& name) { return !(folder / name).is_file(); });
+  return files;
+}
+
+/// Without ".gz".
+std::string extension_of(const std::filesystem::path& file) {
+  const std::string last = lower_case(file.extension().string());
+  return last == ".gz" ? lower_case(file.stem().extension().string()) : last;
+}
+
+bool is_text_file(const std::string& name) {
+  const std::string extension = extension_of(name);
+  return extension == ".csv" || extension == ".txt";
+}
+
+bool is_binary_recording(const SourcePath& file) {
+  constexpr std::size_t kHeadBytes = 4096;
+  const Bytes head = file.head(kHeadBytes);
+  return is_bag(head) || is_prophesee_file(head) || is_aedat4(head);
+}
+
+std::optional<std::string> only_one(const SourcePath& folder, const std::vector<std::string>& names) {
+  if (names.size() > 1)
+    throw InputError::format("{}: holds several recordings: give one of {}", folder.string(), fmt::join(names, ", "));
+  return names.empty() ? std::nullopt : std::optional(names.front());
+}
+
+/// Whether its heading names the axes of an IMU, or its name says that it is one and its content agrees.
+bool holds_imu(const SourcePath& file) try {
+  return find_imu_form(file).named || lower_case(file.name()).find("imu") != std::string::npos;
+} catch (const InputError&) {
+  return false;
+}
+
+}  // namespace
+
+std::optional<std::string> find_main_file(const SourcePath& folder) {
+  std::vector<std::string> binary, text;
+  for (const std::string& name : files_in(folder)) {
+    if (is_text_file(name))
+      text.push_back(name);
+    else if (is_binary_recording(folder / name))
+      binary.push_back(name);
+  }
+  if (!binary.empty()) return only_one(folder, binary);
+  std::erase_if(text, [&folder](const std::string& name) { return !find_event_form(folder / name); });
+  return only_one(folder, text);
+}
+
+std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::set<std::string>& others) {
+  std::vector<std::string> found = files_in(folder);
+  std::erase_if(found, [&](const std::string& name) {
+    return others.contains(name) || !is_text_file(name) || !holds_imu(folder / name);
+  });
+  if (found.size() > 1)
+    spdlog::warn("{}: several files hold IMU samples, none is read: give one to --imu", folder.string());
+  return found.size() == 1 ? std::optional(folder / found.front()) : std::nullopt;
+}
+
+void tell_unread(const SourcePath& folder, const std::set<std::string>& read) {
+  static const std::set<std::string> kData = {".csv", ".txt", ".bag", ".raw",  ".dat", ".aedat4", ".aedat", ".h5",
+                                              ".db3", ".zip", ".npz", ".mcap", ".npy", ".mat",    ".hdf5"};
+  std::vector<std::string> names;
+  for (const std::string& name : files_in(folder)) {
+    const std::string lower = lower_case(name);
+    const bool about = lower.starts_with("readme") || lower.starts_with("license");
+    if (!about && !read.contains(name) && kData.contains(extension_of(name))) names.push_back(name);
+  }
+  if (!names.empty()) spdlog::warn("{}: not read: {}", folder.string(), fmt::join(names, ", "));
+}
+
+}  // namespace edged
