@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/cost.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -33,48 +32,69 @@ void add_motion_factors(const Window& window, std::vector<Factor>& out) {
   }
 }
 
-void add_visual_factors(Window& window, Observations observations, std::vector<Factor>& out) {
-  for (const auto& [id, feature] : window.features) {
-    if (!feature.anchor) continue;
-    const auto view = [&](StateId state) {
-      return LandmarkView{feature.seen.at(state).point, window.states.at(state).rate()};
-    };
-    const auto pose = [](StateId state) { return BlockKey{BlockKind::Pose, state}; };
-    const BlockKey calib{BlockKind::Calibration, feature.camera}, depth{BlockKind::InverseDepth, id};
-    const SE3& T_B_C = window.cameras[feature.camera].T_B_C;
-    const StateId anchor = *feature.anchor;
-    const LandmarkView from = view(anchor);
-    for (const TrackStep& step : track_steps(window, feature, observations)) {
-      Factor factor{FactorKind::Observation, nullptr, window.visual_loss(), {pose(anchor), pose(step.seen)}};
-      factor.state = step.seen;
-      factor.landmark = id;
-      // The anchor's observation is exact by the choice of the landmark: the first step has no error to start from.
-      if (step.before == anchor || step.correlation == 0.0) {
-        factor.cost = std::make_unique<ReprojectionFactor>(T_B_C, from, view(step.seen), step.sigma);
-      } else {
-        factor.cost = std::make_unique<TrackStepFactor>(T_B_C, from, view(step.seen), view(step.before),
-                                                        step.correlation, step.sigma);
-        factor.blocks.push_back(pose(step.before));
-      }
-      factor.blocks.insert(factor.blocks.end(), {calib, depth});
-      out.push_back(std::move(factor));
+/// The inverse depths that share a factor with another.
+std::set<FeatureId> coupled_depths(const std::vector<Factor>& factors) {
+  std::set<FeatureId> coupled;
+  for (const Factor& factor : factors) {
+    for (const BlockKey& key : factor.blocks) {
+      if (key.kind == BlockKind::InverseDepth) coupled.insert(key.id);
     }
   }
+  return coupled;
+}
+
+std::vector<LandmarkTerm> landmark_terms(Window& window, Observations observations,
+                                         const std::set<FeatureId>& coupled) {
+  std::map<StateId, std::size_t> place;
+  for (const auto& [id, state] : window.states) place.emplace(id, place.size());
+  std::vector<LandmarkTerm> terms;
+  for (auto& [id, feature] : window.features) {
+    if (!feature.anchor) continue;
+    const StateId anchor = *feature.anchor;
+    LandmarkTerm term{id,
+                      feature.camera,
+                      anchor,
+                      place.at(anchor),
+                      feature.seen.at(anchor).point,
+                      &feature.inverse_depth,
+                      coupled.contains(id),
+                      {}};
+    for (const TrackStep& step : track_steps(window, feature, observations)) {
+      const double correlation = step.before == anchor ? 0.0 : step.correlation;
+      term.residuals.push_back(
+          {step.seen, place.at(step.seen), feature.seen.at(step.seen).point, correlation, 1.0 / step.sigma});
+    }
+    terms.push_back(std::move(term));
+  }
+  return terms;
 }
 
 }  // namespace
 
-std::vector<Factor> factors_of(Window& window, Observations observations) {
-  std::vector<Factor> out;
-  if (!window.prior.empty())
-    out.push_back({FactorKind::Prior, std::make_unique<LinearPriorFactor>(window.prior), nullptr, window.prior.blocks});
-  for (const LinearPrior& soft : window.soft_priors) {
-    out.push_back({FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(soft), nullptr, soft.blocks});
+Cost cost_of(Window& window, Observations observations) {
+  Cost cost;
+  const auto add_prior = [&](FactorKind kind, const LinearPrior& prior) {
+    cost.factors.push_back({kind, std::make_unique<LinearPriorFactor>(prior), nullptr, prior.blocks});
+  };
+  if (!window.prior.empty()) add_prior(FactorKind::Prior, window.prior);
+  for (const LinearPrior& soft : window.soft_priors) add_prior(FactorKind::SoftPrior, soft);
+  add_motion_factors(window, cost.factors);
+  add_depth_factors(window, cost.factors);
+  cost.landmarks = landmark_terms(window, observations, coupled_depths(cost.factors));
+  return cost;
+}
+
+std::set<BlockKey> blocks_of(const Cost& cost) {
+  std::set<BlockKey> blocks;
+  for (const Factor& factor : cost.factors) blocks.insert(factor.blocks.begin(), factor.blocks.end());
+  for (const LandmarkTerm& term : cost.landmarks) {
+    if (term.coupled) blocks.insert({BlockKind::InverseDepth, term.id});
+    if (term.residuals.empty()) continue;
+    blocks.insert({BlockKind::Pose, term.anchor});
+    blocks.insert({BlockKind::Calibration, term.camera});
+    for (const LandmarkResidual& residual : term.residuals) blocks.insert({BlockKind::Pose, residual.seen});
   }
-  add_motion_factors(window, out);
-  add_visual_factors(window, observations, out);
-  add_depth_factors(window, out);
-  return out;
+  return blocks;
 }
 
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Observations observations) {
@@ -95,16 +115,6 @@ std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
   follow(std::next(anchor), feature.seen.end());
   follow(std::make_reverse_iterator(anchor), feature.seen.rend());
   return steps;
-}
-
-std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors) {
-  std::set<BlockKey> coupled;
-  for (const Factor& factor : factors) {
-    const auto is_depth = [](const BlockKey& key) { return key.kind == BlockKind::InverseDepth; };
-    if (std::count_if(factor.blocks.begin(), factor.blocks.end(), is_depth) < 2) continue;
-    std::copy_if(factor.blocks.begin(), factor.blocks.end(), std::inserter(coupled, coupled.end()), is_depth);
-  }
-  return coupled;
 }
 
 double imu_strain(const Window& window) {

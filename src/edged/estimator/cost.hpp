@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The cost of a window: its factors, as one list that is solved and marginalised alike.
+// The cost of a window: its terms, as one list that is solved and marginalised alike.
 #pragma once
 
 #include <set>
@@ -15,10 +15,6 @@ namespace edged {
 /// marginalised, not dropped.
 enum class Observations { All, OfKeyframes };
 
-/// The terms of the present window, each once. They borrow from the window: use them before it
-/// changes.
-std::vector<Factor> factors_of(Window& window, Observations observations = Observations::All);
-
 /// An observation of a landmark and its neighbour towards the anchor.
 struct TrackStep {
   StateId before, seen;
@@ -31,8 +27,37 @@ struct TrackStep {
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
                                    Observations observations = Observations::All);
 
-/// The inverse depths that share a factor with another: they cannot be eliminated one by one.
-std::set<BlockKey> coupled_depths(const std::vector<Factor>& factors);
+/// A residual (2) of a landmark: weight * (e - correlation * e of the residual before).
+struct LandmarkResidual {
+  StateId seen;
+  std::size_t place;      ///< of the state in the window, the oldest being 0
+  Eigen::Vector2d point;  ///< on the unit plane
+  double correlation;     ///< 0 where the observation before is the anchor's: that is exact by the landmark's choice
+  double weight;          ///< 1 / sigma
+};
+
+/// All that the views of a landmark say of it.
+struct LandmarkTerm {
+  FeatureId id = 0;
+  std::size_t camera = 0;
+  StateId anchor = 0;
+  std::size_t anchor_place = 0;
+  Eigen::Vector2d point;            ///< in the anchor view
+  double* inverse_depth = nullptr;  ///< in the window
+  bool coupled = false;             ///< its depth shares a factor with another's: not to be eliminated by itself
+  std::vector<LandmarkResidual> residuals;
+};
+
+/// The terms of a window, each once. They borrow from it: use them before it changes in more than its blocks' values.
+struct Cost {
+  std::vector<Factor> factors;
+  std::vector<LandmarkTerm> landmarks;
+};
+
+Cost cost_of(Window& window, Observations observations = Observations::All);
+
+/// The blocks that its terms are of; not the inverse depths that can be eliminated one by one.
+std::set<BlockKey> blocks_of(const Cost& cost);
 
 /// Root mean square of what the IMU's factors are off by [sigma]. Small as long as nothing pulls against the IMU,
 /// because it is the stiffest of all: to make up motion that it has not felt takes more than any right landmark asks

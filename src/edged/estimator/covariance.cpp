@@ -4,21 +4,19 @@
 
 #include <Eigen/Cholesky>
 
-#include "edged/estimator/cost.hpp"
 #include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
 
 std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks) {
-  const std::vector<Factor> factors = factors_of(window);
-  std::set<BlockKey> others;
-  for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
+  const Cost cost = cost_of(window);
+  std::set<BlockKey> others = blocks_of(cost);
   for (const BlockKey& block : blocks) {
     if (others.erase(block) == 0) return std::nullopt;
   }
-  const NormalEquations eq = normal_equations(window, factors, others);
-  const Eigen::Index n = eq.size - eq.depths, m = eq.size - eq.leaving;
-  const Eigen::MatrixXd H = eq.H.bottomRightCorner(n, n);
+  const Layout layout(blocks_of(cost), others);
+  const Eigen::MatrixXd H = normal_equations(window, cost, layout, Linearisation::FirstEstimates).H;
+  const Eigen::Index m = layout.size - layout.leaving;
   const Eigen::VectorXd scale = unit_diagonal_scale(H);
   const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
   if (llt.info() != Eigen::Success) return std::nullopt;

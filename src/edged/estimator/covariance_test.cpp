@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "edged/estimator/cost.hpp"
 #include "edged/estimator/marginalization.hpp"
 #include "edged/estimator/test_world.hpp"
 
@@ -18,12 +17,11 @@ TEST(Covariance, IsTheInverseOfWhatMarginalisationLeavesOfAState) {
   const std::optional<Matrix15d> P = covariance(window, newest);
   ASSERT_TRUE(P);
 
-  const std::vector<Factor> factors = factors_of(window);
-  std::set<BlockKey> others;
-  for (const Factor& factor : factors) others.insert(factor.blocks.begin(), factor.blocks.end());
+  const Cost cost = cost_of(window);
+  std::set<BlockKey> others = blocks_of(cost);
   others.erase({BlockKind::Pose, newest});
   others.erase({BlockKind::Motion, newest});
-  const LinearPrior left = marginalize(window, factors, others);
+  const LinearPrior left = marginalize(window, cost, others);
   const Matrix15d product = left.J.transpose() * left.J * *P;
   EXPECT_LT((product - Matrix15d::Identity()).cwiseAbs().maxCoeff(), 1e-4);
 }

@@ -4,17 +4,14 @@
 #pragma once
 
 #include <set>
-#include <vector>
 
-#include "edged/estimator/factors/factor.hpp"
-#include "edged/estimator/window.hpp"
+#include "edged/estimator/cost.hpp"
 
 namespace edged {
 
-/// Linearises `factors` and eliminates the blocks in `leaving` by Schur complement. Residuals are taken at the present
-/// values, Jacobians at the first estimates (Window::linearisation_point), so that directions the measurements cannot
-/// see stay unseen. Robust losses act with their present weight. Returns the prior on the remaining blocks, at their
-/// linearisation points; `factors` must hold every term that touches a leaving block, the old prior included.
-LinearPrior marginalize(Window& window, const std::vector<Factor>& factors, const std::set<BlockKey>& leaving);
+/// Linearises `cost` (Linearisation::FirstEstimates) and eliminates by Schur complement the blocks in `leaving` and all
+/// inverse depths that it is of. Returns the prior on the remaining blocks, at their linearisation points; `cost` must
+/// hold every term that touches a leaving block, the old prior included.
+LinearPrior marginalize(Window& window, const Cost& cost, const std::set<BlockKey>& leaving);
 
 }  // namespace edged

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "edged/estimator/cost.hpp"
 #include "edged/estimator/solver.hpp"
 #include "edged/estimator/test_world.hpp"
 
@@ -22,8 +21,8 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
 
   const StateId first = window.states.begin()->first;
   const std::set<BlockKey> leaving = {{BlockKind::Pose, first}, {BlockKind::Motion, first}};
-  std::vector<Factor> touching = factors_of(window);
-  std::erase_if(touching, [&](const Factor& f) {
+  Cost touching = cost_of(window);
+  std::erase_if(touching.factors, [&](const Factor& f) {
     return std::none_of(f.blocks.begin(), f.blocks.end(), [&](const BlockKey& k) { return leaving.contains(k); });
   });
   window.prior = marginalize(window, touching, leaving);
@@ -46,11 +45,11 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
 TEST(Marginalize, KeepsTheInformationOfTheNormalEquations) {
   TestWorld world({});
   Window window = inertial_window(world);
-  const std::vector<Factor> factors = factors_of(window);
-  const LinearPrior prior = marginalize(window, factors, {});  // nothing leaves: J^T J is H, J^T r is g
+  const Cost cost = cost_of(window);
+  const LinearPrior prior = marginalize(window, cost, {});  // nothing leaves: J^T J is H, J^T r is g
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(prior.J.cols(), prior.J.cols());
   Eigen::VectorXd g = Eigen::VectorXd::Zero(prior.J.cols());
-  for (const Factor& factor : factors) {
+  for (const Factor& factor : cost.factors) {
     Eigen::VectorXd r(factor.cost->num_residuals());
     std::vector<const double*> x;
     std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J;

@@ -2,120 +2,97 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/normal_equations.hpp"
 
-#include "edged/estimator/cost.hpp"
+#include <cmath>
+#include <limits>
+
+#include "edged/estimator/landmark_equations.hpp"
 
 namespace edged {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kNoInformation = 1e-9;  // a diagonal entry below this was not measured at all
-
-/// A factor's residual r and Jacobian columns J per block, so that r + sum J_i * (x_i - x0_i) is its linear form.
+/// A factor's residual and Jacobian by the tangents of its blocks side by side.
 struct LinearFactor {
   VectorXd r;
-  std::vector<MatrixXd> J;
+  MatrixXd J;
+  std::vector<Placed> blocks;
 };
 
-LinearFactor linearise(Window& window, const Factor& factor) {
-  const int rows = factor.cost->num_residuals();
+/// False where the factor is not defined at the present values.
+bool linearise(Window& window, const Factor& factor, const Layout& layout, Linearisation at, LinearFactor& out) {
   const std::size_t n = factor.blocks.size();
-  std::vector<const double*> now(n), first(n);
+  const int rows = factor.cost->num_residuals();
+  std::vector<const double*> now(n), taken(n);
   std::vector<RowMajorMatrix> J(n);
   std::vector<double*> J_data(n);
+  out.blocks.clear();
+  Index columns = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    now[i] = window.block(factor.blocks[i]);
-    first[i] = window.linearisation_point(factor.blocks[i]);
-    J[i].resize(rows, block_size(factor.blocks[i].kind));
+    const BlockKey& key = factor.blocks[i];
+    now[i] = window.block(key);
+    taken[i] = at == Linearisation::Present ? now[i] : window.linearisation_point(key);
+    J[i].resize(rows, block_size(key.kind));
     J_data[i] = J[i].data();
+    out.blocks.push_back({columns, tangent_size(key.kind), layout.offset.at(key)});
+    columns += tangent_size(key.kind);
   }
-  LinearFactor out;
   out.r.resize(rows);
-  bool usable = factor.cost->Evaluate(first.data(), out.r.data(), J_data.data());
-  if (now != first) usable = usable && factor.cost->Evaluate(now.data(), out.r.data(), nullptr);
-  double weight = usable ? 1.0 : 0.0;
-  if (usable && factor.loss != nullptr) {
-    double rho[3];
-    factor.loss->Evaluate(out.r.squaredNorm(), rho);
-    weight = std::sqrt(rho[1]);
-  }
+  if (!factor.cost->Evaluate(taken.data(), out.r.data(), J_data.data())) return false;
+  if (now != taken && !factor.cost->Evaluate(now.data(), out.r.data(), nullptr)) return false;
+  double rho[3] = {0.0, 1.0, 0.0};
+  if (factor.loss != nullptr) factor.loss->Evaluate(out.r.squaredNorm(), rho);
+  const double weight = std::sqrt(rho[1]);
   out.r *= weight;
+  out.J.resize(rows, columns);
   for (std::size_t i = 0; i < n; ++i) {
-    const BlockKind kind = factor.blocks[i].kind;
-    out.J.push_back(weight == 0.0 ? MatrixXd::Zero(rows, tangent_size(kind))
-                                  : MatrixXd(weight * J[i].leftCols(tangent_size(kind))));
-    if (now[i] == first[i]) continue;
-    VectorXd moved(tangent_size(kind));
-    tangent_difference(kind, now[i], first[i], moved.data());
-    out.r -= out.J.back() * moved;  // as a function of the distance from the first estimate
+    const Placed& block = out.blocks[i];
+    out.J.middleCols(block.local, block.size) = weight * J[i].leftCols(block.size);
+    if (now[i] == taken[i]) continue;
+    VectorXd moved(block.size);
+    tangent_difference(factor.blocks[i].kind, now[i], taken[i], moved.data());
+    out.r -= out.J.middleCols(block.local, block.size) * moved;
   }
-  if (!usable) out.r.setZero();
-  return out;
+  return true;
 }
 
-NormalEquations order_blocks(const std::vector<Factor>& factors, const std::set<BlockKey>& leaving) {
-  NormalEquations eq;
-  std::set<BlockKey> used;
-  for (const Factor& factor : factors) used.insert(factor.blocks.begin(), factor.blocks.end());
-  const auto place = [&](const BlockKey& key) {
-    eq.offset[key] = eq.size;
-    eq.size += tangent_size(key.kind);
-  };
-  const std::set<BlockKey> coupled = coupled_depths(factors);
-  const auto alone = [&](const BlockKey& key) { return key.kind == BlockKind::InverseDepth && !coupled.contains(key); };
-  for (const BlockKey& key : used) {
-    if (leaving.contains(key) && alone(key)) place(key);
-  }
-  eq.depths = eq.size;
-  for (const BlockKey& key : used) {
-    if (leaving.contains(key) && !alone(key)) place(key);
-  }
-  eq.leaving = eq.size;
-  for (const BlockKey& key : used) {
-    if (!leaving.contains(key)) place(key), eq.staying.push_back(key);
-  }
-  eq.H = MatrixXd::Zero(eq.size, eq.size);
-  eq.g = VectorXd::Zero(eq.size);
-  return eq;
-}
-
-void accumulate(NormalEquations& eq, const Factor& factor, const LinearFactor& linear) {
-  std::vector<Eigen::Index> offsets;
-  for (const BlockKey& key : factor.blocks) offsets.push_back(eq.offset.at(key));
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    const MatrixXd& J_i = linear.J[i];
-    eq.g.segment(offsets[i], J_i.cols()).noalias() += J_i.transpose().lazyProduct(linear.r);
-    for (std::size_t j = 0; j < offsets.size(); ++j) {
-      const MatrixXd& J_j = linear.J[j];
-      eq.H.block(offsets[i], offsets[j], J_i.cols(), J_j.cols()).noalias() += J_i.transpose().lazyProduct(J_j);
-    }
-  }
-}
-
-/// These do not couple with one another: their part of H is diagonal.
-void eliminate_depths(NormalEquations& eq) {
-  const Eigen::Index m = eq.depths, n = eq.size - m;
-  const VectorXd h = eq.H.diagonal().head(m);
-  const VectorXd inverse = (h.array() > kNoInformation).select(h.array().inverse(), 0.0);
-  const MatrixXd coupling = eq.H.bottomLeftCorner(n, m), scaled = coupling * inverse.asDiagonal();
-  eq.H.bottomRightCorner(n, n).noalias() -= scaled * coupling.transpose();
-  eq.g.tail(n).noalias() -= scaled * eq.g.head(m);
+double value_of(Window& window, const Factor& factor) {
+  std::vector<const double*> now;
+  for (const BlockKey& key : factor.blocks) now.push_back(window.block(key));
+  VectorXd r(factor.cost->num_residuals());
+  if (!factor.cost->Evaluate(now.data(), r.data(), nullptr)) return std::numeric_limits<double>::infinity();
+  double rho[3] = {r.squaredNorm(), 1.0, 0.0};
+  if (factor.loss != nullptr) factor.loss->Evaluate(rho[0], rho);
+  return 0.5 * rho[0];
 }
 
 }  // namespace
 
-Eigen::VectorXd unit_diagonal_scale(const MatrixXd& H) {
-  return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
+NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+                                 std::vector<EliminatedDepth>* eliminated) {
+  NormalEquations equations(layout.size);
+  LinearFactor linear;
+  MatrixXd H;
+  for (const Factor& factor : cost.factors) {
+    if (!linearise(window, factor, layout, at, linear)) continue;
+    H.setZero(linear.J.cols(), linear.J.cols());
+    H.selfadjointView<Eigen::Lower>().rankUpdate(linear.J.transpose());
+    equations.add(H, linear.J.transpose() * linear.r, linear.blocks);
+  }
+  LandmarkEquations landmarks(window, layout, at);
+  for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, equations, eliminated);
+  return equations;
 }
 
-NormalEquations normal_equations(Window& window, const std::vector<Factor>& factors,
-                                 const std::set<BlockKey>& leaving) {
-  NormalEquations eq = order_blocks(factors, leaving);
-  for (const Factor& factor : factors) accumulate(eq, factor, linearise(window, factor));
-  eliminate_depths(eq);
-  return eq;
+double value_of(Window& window, const Cost& cost) {
+  double sum = 0.0;
+  for (const Factor& factor : cost.factors) sum += value_of(window, factor);
+  const CameraViews views(window, Linearisation::Present);
+  for (const LandmarkTerm& term : cost.landmarks) sum += value_of(term, views, *window.visual_loss());
+  return sum;
 }
 
 }  // namespace edged

@@ -1,38 +1,33 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The normal equations of a set of factors, with what is to be eliminated in front.
+// From the terms of a window to its normal equations: the same for solving, marginalising and covariance.
 #pragma once
 
-#include <Eigen/Core>
-#include <map>
-#include <set>
-#include <vector>
-
-#include "edged/estimator/factors/factor.hpp"
-#include "edged/estimator/window.hpp"
+#include "edged/estimator/cost.hpp"
+#include "edged/estimator/linear_system.hpp"
 
 namespace edged {
 
-/// H d = -g of all factors, over the tangent steps d from the blocks' linearisation points. Ordered: leaving inverse
-/// depths that couple with no other, the other leaving blocks, the staying blocks.
-struct NormalEquations {
-  std::map<BlockKey, Eigen::Index> offset;
-  std::vector<BlockKey> staying;
-  Eigen::Index depths = 0;   ///< columns of the inverse depths in front
-  Eigen::Index leaving = 0;  ///< columns of all that leaves
-  Eigen::Index size = 0;
-  Eigen::MatrixXd H;
-  Eigen::VectorXd g;
+/// Where Jacobians are taken; residuals always at the present values. FirstEstimates: at the
+/// Window::linearisation_point of each block, so that directions the measurements cannot see stay unseen; d then counts
+/// from there.
+enum class Linearisation { Present, FirstEstimates };
+
+/// What is needed to find a landmark's inverse depth again: its step is -(g + coupling^T d) / h.
+struct EliminatedDepth {
+  double* inverse_depth;
+  double h, g;
+  Eigen::VectorXd coupling;     ///< over the columns of `blocks`
+  std::vector<Placed> blocks;
 };
 
-/// Linearises the factors: residuals at the present values, Jacobians at the first estimates
-/// (Window::linearisation_point), so that directions the measurements cannot see stay unseen. Robust losses act with
-/// their present weight. The inverse depths in front are eliminated already: only what is behind them in H and g
-/// counts.
-NormalEquations normal_equations(Window& window, const std::vector<Factor>& factors, const std::set<BlockKey>& leaving);
+/// Linearises the terms. Robust losses act with their present weight; what is not defined at the present values (a
+/// landmark behind a camera) counts nothing. Inverse depths that the layout does not hold are eliminated, and what
+/// their steps follow from is added to `eliminated` if there is one.
+NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+                                 std::vector<EliminatedDepth>* eliminated = nullptr);
 
-/// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in
-/// information by ten orders of magnitude.
-Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H);
+/// Half the sum of squares, robust losses applied, at the present values; infinite where a term is not defined.
+double value_of(Window& window, const Cost& cost);
 
 }  // namespace edged

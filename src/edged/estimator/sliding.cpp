@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kRestStretch = 10.0;
 
-/// The prior (always) and every other factor with a block that leaves.
-std::vector<Factor> factors_touching(Window& window, const std::set<BlockKey>& leaving) {
-  std::vector<Factor> factors = factors_of(window, Observations::OfKeyframes);
-  std::erase_if(factors, [&](const Factor& factor) {
-    return factor.kind != FactorKind::Prior &&
-           std::ranges::none_of(factor.blocks, [&](const BlockKey& key) { return leaving.contains(key); });
-  });
-  return factors;
-}
-
 /// The youngest keyframe takes over the landmarks that it still sees; its observation and later ones are kept for that.
 StateId youngest_keyframe(const Window& window) {
   StateId youngest = window.states.begin()->first;
@@ -33,18 +23,28 @@ StateId youngest_keyframe(const Window& window) {
   return youngest;
 }
 
-/// Whether a factor that touches leaving blocks is to stay out of the prior. inherited: the landmarks anchored in the
-/// leaving state, and whether the heir goes on with them.
-bool stays_out(const Factor& factor, const Window& window, const std::map<FeatureId, bool>& inherited, StateId heir) {
-  if (factor.kind == FactorKind::SceneDepth) {
-    // It leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
-    return factor.state != window.states.begin()->first || !factor.lasting;
+/// Whether a factor goes into the prior when the oldest state leaves.
+bool goes(const Factor& factor, const std::set<BlockKey>& leaving, StateId oldest) {
+  if (factor.kind == FactorKind::Prior) return true;
+  // It leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
+  if (factor.kind == FactorKind::SceneDepth) return factor.state == oldest && factor.lasting;
+  return std::ranges::any_of(factor.blocks, [&](const BlockKey& key) { return leaving.contains(key); });
+}
+
+/// The terms that go into the prior when the oldest state leaves. inherited: the landmarks anchored there, and whether
+/// the heir goes on with them; of landmarks anchored in younger keyframes only an observation goes.
+Cost cost_leaving(Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
+                  StateId heir) {
+  const StateId oldest = window.states.begin()->first;
+  Cost cost = cost_of(window, Observations::OfKeyframes);
+  std::erase_if(cost.factors, [&](const Factor& factor) { return !goes(factor, leaving, oldest); });
+  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor != oldest; });
+  for (LandmarkTerm& term : cost.landmarks) {
+    // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
+    if (!inherited.at(term.id)) continue;
+    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) { return residual.seen > heir; });
   }
-  if (factor.kind != FactorKind::Observation) return false;
-  const auto found = inherited.find(factor.landmark);
-  if (found == inherited.end()) return true;  // anchored in a younger keyframe: only this observation goes
-  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
-  return found->second && factor.state > heir;
+  return cost;
 }
 
 /// A landmark as one of its views sees it. The errors of a track are a walk, so that of its depth the view that is
@@ -116,19 +116,17 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
   std::map<FeatureId, bool> inherited;
   for (auto& [feature_id, feature] : window.features) {
     if (feature.anchor != id) continue;
-    leaving.insert({BlockKind::InverseDepth, feature_id});
     inherited[feature_id] = heir != id && feature.seen.contains(heir);
     keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(heir) : std::nullopt);
   }
-  std::vector<Factor> touching = factors_touching(window, leaving);
-  std::erase_if(touching, [&](const Factor& factor) { return stays_out(factor, window, inherited, heir); });
+  Cost cost = cost_leaving(window, leaving, inherited, heir);
   LinearPrior scale_walk;
   if (!window.ln_scale.empty()) {
     scale_walk = begin_scale(window, to_seconds(std::next(window.states.begin())->second.t - oldest.t));
-    touching.push_back(
+    cost.factors.push_back(
         {FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
   }
-  window.prior = marginalize(window, touching, leaving);
+  window.prior = marginalize(window, cost, leaving);
   for (auto it = window.features.begin(); it != window.features.end();) {
     const auto found = inherited.find(it->first);
     bool keep = true;

@@ -2,86 +2,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/solver.hpp"
 
-#include <ceres/problem.h>
-#include <ceres/solver.h>
+#include <Eigen/Cholesky>
+#include <cmath>
 
-#include "edged/estimator/cost.hpp"
+#include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
 namespace {
 
-/// All blocks side by side in the order of their keys. Ceres orders blocks by address: only so are two runs bit-equal.
-struct Arena {
-  Arena(Window& window, const std::vector<Factor>& factors) {
-    for (const Factor& factor : factors) {
-      for (const BlockKey& key : factor.blocks) offsets.emplace(key, 0);
+using Eigen::VectorXd;
+
+// Of a matrix with ones on its diagonal. Close to Gauss-Newton: more leaves the scale, which many blocks share, far
+// from converged.
+constexpr double kDamping = 1e-9, kMoreDamping = 1e3;
+constexpr double kConverged = 1e-6;  // a step that gains less of the cost is the last
+
+/// The window around its present values: its linear system, and the way to another point and back.
+class Neighbourhood {
+ public:
+  Neighbourhood(Window& window, const Cost& cost) : window_(window), cost_(cost), layout_(blocks_of(cost)) {}
+
+  void linearise() {
+    eliminated_.clear();
+    NormalEquations equations = normal_equations(window_, cost_, layout_, Linearisation::Present, &eliminated_);
+    scale_ = unit_diagonal_scale(equations.H);
+    H_ = std::move(equations.H);
+    H_.array() *= (scale_ * scale_.transpose()).array();
+    g_ = scale_.asDiagonal() * equations.g;
+  }
+
+  /// The step that solves the system; false when it has none.
+  bool step(double damping, VectorXd& d) const {
+    Eigen::MatrixXd damped = H_;
+    damped.diagonal().array() += damping;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(damped);
+    if (llt.info() != Eigen::Success) return false;
+    d = scale_.asDiagonal() * llt.solve(-g_);
+    return d.allFinite();
+  }
+
+  /// Moves the window; restore() takes it back.
+  void move(const VectorXd& d) {
+    before_.clear();
+    for (const auto& [key, offset] : layout_.offset) {
+      double* block = window_.block(key);
+      before_.insert(before_.end(), block, block + block_size(key.kind));
+      plus(key.kind, block, d.data() + offset);
     }
-    for (auto& [key, offset] : offsets) {
-      offset = values.size();
-      const double* block = window.block(key);
-      values.insert(values.end(), block, block + block_size(key.kind));
+    for (const EliminatedDepth& depth : eliminated_) {
+      before_.push_back(*depth.inverse_depth);
+      double coupled = depth.g;
+      for (const Placed& at : depth.blocks) {
+        coupled += depth.coupling.segment(at.local, at.size).dot(d.segment(at.global, at.size));
+      }
+      *depth.inverse_depth -= coupled / depth.h;
     }
   }
 
-  void write_back(Window& window) const {
-    for (const auto& [key, offset] : offsets) {
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(offset), block_size(key.kind), window.block(key));
+  void restore() {
+    const double* value = before_.data();
+    for (const auto& [key, offset] : layout_.offset) {
+      std::copy_n(value, block_size(key.kind), window_.block(key));
+      value += block_size(key.kind);
     }
+    for (const EliminatedDepth& depth : eliminated_) *depth.inverse_depth = *value++;
   }
 
-  std::map<BlockKey, std::size_t> offsets;
-  std::vector<double> values;
+ private:
+  Window& window_;
+  const Cost& cost_;
+  Layout layout_;
+  std::vector<EliminatedDepth> eliminated_;
+  VectorXd scale_, g_;
+  Eigen::MatrixXd H_;
+  std::vector<double> before_;
 };
 
 }  // namespace
 
 SolveSummary solve(Window& window, int max_iterations) {
-  std::vector<Factor> factors = factors_of(window);
-  PoseManifold pose_manifold;
-
-  ceres::Problem::Options options;
-  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.disable_all_safety_checks = true;
-  ceres::Problem problem(options);
-  auto* ordering = new ceres::ParameterBlockOrdering;
-
-  Arena arena(window, factors);
-  const std::set<BlockKey> coupled = coupled_depths(factors);
-  for (const auto& [key, offset] : arena.offsets) {
-    double* block = arena.values.data() + offset;
-    if (key.kind == BlockKind::Pose) {
-      problem.AddParameterBlock(block, 7, &pose_manifold);
-    } else {
-      problem.AddParameterBlock(block, block_size(key.kind));
+  const Cost cost = cost_of(window);
+  SolveSummary summary;
+  summary.initial_cost = summary.final_cost = value_of(window, cost);
+  summary.usable = std::isfinite(summary.initial_cost);
+  if (!summary.usable) return summary;
+  Neighbourhood around(window, cost);
+  VectorXd d;
+  double damping = kDamping;
+  bool fresh = false;  // linearised where the window stands
+  while (summary.iterations < max_iterations) {
+    ++summary.iterations;
+    if (!fresh) around.linearise();
+    fresh = true;
+    double value = std::numeric_limits<double>::infinity();
+    if (around.step(damping, d)) {
+      around.move(d);
+      value = value_of(window, cost);
+      if (!(value < summary.final_cost)) around.restore();
     }
-    const bool alone = key.kind == BlockKind::InverseDepth && !coupled.contains(key);
-    ordering->AddElementToGroup(block, alone ? 0 : 1);
+    if (!(value < summary.final_cost)) {
+      if (std::isfinite(value) && value - summary.final_cost <= kConverged * value) break;  // nothing more to gain
+      damping *= kMoreDamping;
+      continue;
+    }
+    const double gain = summary.final_cost - value;
+    summary.final_cost = value;
+    damping = kDamping;
+    fresh = false;
+    if (gain <= kConverged * value) break;
   }
-  std::vector<double*> blocks;
-  for (const Factor& factor : factors) {
-    blocks.clear();
-    for (const BlockKey& key : factor.blocks) blocks.push_back(arena.values.data() + arena.offsets.at(key));
-    problem.AddResidualBlock(factor.cost.get(), factor.loss, blocks.data(), static_cast<int>(blocks.size()));
-  }
-
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_SCHUR;
-  solver.linear_solver_ordering.reset(ordering);
-  solver.max_num_iterations = max_iterations;
-  // Close to Gauss-Newton: the default damping leaves the scale, which many blocks share, far from converged.
-  solver.initial_trust_region_radius = 1e9;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  solver.function_tolerance = 1e-6;
-  solver.gradient_tolerance = 0.0;
-  solver.parameter_tolerance = 1e-7;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  if (summary.IsSolutionUsable()) arena.write_back(window);
-  return {summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size()),
-          summary.IsSolutionUsable()};
+  return summary;
 }
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Solves the window with Ceres.
+// Solves the window: Gauss-Newton, the inverse depths eliminated, damped where a step does not gain.
 #pragma once
 
 #include "edged/estimator/window.hpp"
@@ -9,11 +9,11 @@ namespace edged {
 
 struct SolveSummary {
   double initial_cost = 0.0, final_cost = 0.0;
-  int iterations = 0;
-  bool usable = false;
+  int iterations = 0;   ///< steps tried
+  bool usable = false;  ///< the cost is defined where the window stands
 };
 
-/// Minimises the sum of the window's factors over all its blocks, in place. One thread; deterministic.
+/// Minimises the sum of the window's terms over all its blocks, in place. One thread; deterministic.
 SolveSummary solve(Window& window, int max_iterations);
 
 }  // namespace edged

@@ -203,4 +203,26 @@ inline Window inertial_window(TestWorld& world) {
   return window;
 }
 
+inline constexpr double kTrackedPeriod_s = 0.2;
+
+/// Keyframes at the true poses, velocities and biases, with their IMU and what the cameras see; the gauge is held.
+inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, int states = 6) {
+  Window window(world.rig(), 1.0);
+  world.packet(1.0 - kTrackedPeriod_s, kTrackedPeriod_s, true);
+  for (int i = 0; i < states; ++i) {
+    const double t = 1.0 + kTrackedPeriod_s * i;
+    const EstimatorInput input = world.packet(t, kTrackedPeriod_s, true);
+    WindowState state;
+    state.t = input.t;
+    state.pose = to_block(world.T_W_B(t));
+    Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
+    state.keyframe = true;
+    if (i > 0) state.imu = input.motion.reintegrated(options.bias_gyro, options.bias_accel);
+    window.add_observations(window.add_state(std::move(state)), input.observations);
+  }
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
+  return window;
+}
+
 }  // namespace edged

@@ -14,26 +14,11 @@
 namespace edged {
 namespace {
 
-constexpr double kPeriod_s = 0.2;
-
-/// States at the true poses, velocities and biases, with their IMU and what the cameras see; the gauge is held.
-Window window_at_truth(TestWorld& world, const TestWorldOptions& options, int states = 6) {
-  Window window(world.rig(), 1.0);
-  world.packet(1.0 - kPeriod_s, kPeriod_s, true);
-  for (int i = 0; i < states; ++i) {
-    const double t = 1.0 + kPeriod_s * i;
-    const EstimatorInput input = world.packet(t, kPeriod_s, true);
-    WindowState state;
-    state.t = input.t;
-    state.pose = to_block(world.T_W_B(t));
-    Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
-    state.keyframe = true;
-    if (i > 0) state.imu = input.motion.reintegrated(options.bias_gyro, options.bias_accel);
-    window.add_observations(window.add_state(std::move(state)), input.observations);
-  }
-  const auto first = window.states.begin();
-  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
-  return window;
+std::size_t terms_of(Window& window) {
+  const Cost cost = cost_of(window);
+  std::size_t terms = cost.factors.size();
+  for (const LandmarkTerm& landmark : cost.landmarks) terms += landmark.residuals.size();
+  return terms;
 }
 
 double worst_position_error(const Window& window, const TestWorld& world) {
@@ -47,27 +32,27 @@ double worst_position_error(const Window& window, const TestWorld& world) {
 TEST(Window, HoldsEachTermOfTheCostOnce) {
   const TestWorldOptions options{.cameras = 2};
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
-  EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
+  Window window = tracked_window(world, options);
+  EXPECT_EQ(terms_of(window), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
   std::size_t observations = 0;
   for (const auto& [id, feature] : window.features) {
     if (feature.anchor) observations += feature.seen.size() - 1;
   }
   EXPECT_GT(observations, 100U);
-  EXPECT_EQ(factors_of(window).size(), 3U + 1U + 5U + observations);
+  EXPECT_EQ(terms_of(window), 3U + 1U + 5U + observations);
 }
 
 TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
   const TestWorldOptions options{};
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
+  Window window = tracked_window(world, options);
   triangulate_features(window, {});
   window.track_noise = {0.9, 0.6, 2.0};
   const auto landmark =
       std::ranges::find_if(window.features, [](const auto& f) { return f.second.anchor.has_value(); });
   ASSERT_NE(landmark, window.features.end());
-  const double decay = std::exp(-kPeriod_s / 2.0);
+  const double decay = std::exp(-kTrackedPeriod_s / 2.0);
   window.cameras[0].modality = Modality::Frames;
   EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, 0.9 * decay, 1e-9);
   window.cameras[0].modality = Modality::Events;
@@ -102,7 +87,7 @@ TEST(Window, RefusesObservationsOfACameraItDoesNotHave) {
 TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
   const TestWorldOptions options{.imu_noise = 0.0};
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
+  Window window = tracked_window(world, options);
   EXPECT_LT(imu_strain(window), 0.5);
   window.states.rbegin()->second.pose[0] += 0.05;
   EXPECT_GT(imu_strain(window), 2.0);
@@ -111,16 +96,16 @@ TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
 TEST(Window, HoldsStatesTogetherBetweenWhichTheBodyRested) {
   const TestWorldOptions options;
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
-  const std::size_t before = factors_of(window).size();
+  Window window = tracked_window(world, options);
+  const std::size_t before = terms_of(window);
   window.states.rbegin()->second.rested = true;
-  EXPECT_EQ(factors_of(window).size(), before + 1);
+  EXPECT_EQ(terms_of(window), before + 1);
 }
 
 TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   const TestWorldOptions options;
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
+  Window window = tracked_window(world, options);
   window.drop_orphaned_priors();
   EXPECT_EQ(window.soft_priors.size(), 3U);  // calibrations of camera and IMU, gauge
   window.states.erase(window.states.begin());
@@ -133,7 +118,7 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
   const TestWorldOptions options;
   TestWorld world(options);
-  Window window = window_at_truth(world, options);
+  Window window = tracked_window(world, options);
   const BlockKey first{BlockKind::Pose, window.states.begin()->first},
       last{BlockKind::Pose, window.states.rbegin()->first};
   window.prior = window.soft_priors.back();
@@ -149,7 +134,7 @@ TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
     SCOPED_TRACE(cameras);
     const TestWorldOptions options{.cameras = cameras, .pixel_noise = 0.0, .imu_noise = 0.0};
     TestWorld world(options);
-    Window window = window_at_truth(world, options);
+    Window window = tracked_window(world, options);
     triangulate_features(window, {});
     int i = 0;
     for (auto& [id, state] : window.states) {
@@ -177,7 +162,7 @@ TEST(Solve, GivesTheSameBitsWhereverTheWindowLies) {
   std::vector<std::vector<char>> holes;
   for (std::vector<double>& result : results) {
     TestWorld world(options);
-    Window window = window_at_truth(world, options);
+    Window window = tracked_window(world, options);
     triangulate_features(window, {});
     solve(window, 10);
     for (const auto& [id, state] : window.states) result.insert(result.end(), state.pose.begin(), state.pose.end());

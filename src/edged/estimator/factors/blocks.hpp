@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The parameter blocks of the window, and how a factor's derivatives reach them.
+// The parameter blocks of the window and their tangent spaces. A factor writes its derivative by a pose's tangent into
+// the first six of the seven columns that Ceres' cost functions have for it, and zero into the last.
 #pragma once
 
-#include <ceres/manifold.h>
-
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -77,16 +77,16 @@ inline void tangent_difference(BlockKind kind, const double* x, const double* x0
   d << T.translation() - T0.translation(), so3::log(T0.rotation().conjugate() * T.rotation());
 }
 
-/// The pose manifold for Ceres. Factors write their derivative with respect to the tangent into the first six of the
-/// seven columns and zero into the last, so that PlusJacobian, [I_6; 0], picks out just those.
-class PoseManifold final : public ceres::Manifold {
- public:
-  int AmbientSize() const override { return 7; }
-  int TangentSize() const override { return 6; }
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
-  bool PlusJacobian(const double* x, double* jacobian) const override;
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
-  bool MinusJacobian(const double* x, double* jacobian) const override;
-};
+/// x moved by d in the tangent space of the block: undone by tangent_difference.
+inline void plus(BlockKind kind, double* x, const double* d) {
+  if (kind != BlockKind::Pose) {
+    for (int i = 0; i < block_size(kind); ++i) x[i] += d[i];
+    return;
+  }
+  const SE3 T = pose_of(x);
+  const Eigen::Map<const Eigen::Vector3d> d_p(d), d_phi(d + 3);
+  const PoseBlock moved = to_block(SE3(T.rotation() * so3::exp(d_phi), T.translation() + d_p));
+  std::copy(moved.begin(), moved.end(), x);
+}
 
 }  // namespace edged

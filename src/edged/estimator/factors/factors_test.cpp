@@ -8,8 +8,8 @@
 #include "edged/estimator/factors/depth_factor.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
-#include "edged/estimator/factors/reprojection_factor.hpp"
 #include "edged/estimator/factors/standstill_factor.hpp"
+#include "edged/estimator/factors/test_landmark_cost.hpp"
 
 namespace edged {
 namespace {
@@ -17,14 +17,9 @@ namespace {
 using Blocks = std::vector<std::vector<double>>;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-std::vector<double> plus(BlockKind kind, const std::vector<double>& x, const Eigen::VectorXd& d) {
-  std::vector<double> out = x;
-  if (kind == BlockKind::Pose) {
-    PoseManifold().Plus(x.data(), d.data(), out.data());
-  } else {
-    for (std::size_t i = 0; i < x.size(); ++i) out[i] += d[static_cast<Eigen::Index>(i)];
-  }
-  return out;
+std::vector<double> plus(BlockKind kind, std::vector<double> x, const Eigen::VectorXd& d) {
+  plus(kind, x.data(), d.data());
+  return x;
 }
 
 Eigen::VectorXd evaluate(const ceres::CostFunction& cost, const Blocks& blocks) {
@@ -119,11 +114,11 @@ TEST(StandstillFactor, JacobiansMatchCentralDifferences) {
                   {pose({0.3, -0.8, 0.2}, {1, 2, 3}), pose({0.35, -0.7, 0.25}, {1.1, 1.9, 3.05})});
 }
 
-TEST(ReprojectionFactor, JacobiansMatchCentralDifferences) {
+TEST(LandmarkFactor, JacobiansMatchCentralDifferences) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3);
+    const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3);
     for (const auto& calibration : {std::vector<double>(4, 0.0), std::vector<double>{0.03, -0.02, 0.04, 0.012}}) {
       check_jacobians(
           factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
@@ -132,13 +127,13 @@ TEST(ReprojectionFactor, JacobiansMatchCentralDifferences) {
   }
 }
 
-TEST(TrackStepFactor, JacobiansMatchCentralDifferences) {
+TEST(LandmarkFactor, JacobiansBesideAnObservationBeforeMatchCentralDifferences) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
       rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const TrackStepFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, {{0.22, -0.08}, rate_2}, 0.9,
-                                 5e-3);
+    const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3,
+                              LandmarkView{{0.22, -0.08}, rate_2}, 0.9);
     check_jacobians(
         factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
         {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
@@ -149,27 +144,27 @@ TEST(TrackStepFactor, JacobiansMatchCentralDifferences) {
   }
 }
 
-TEST(TrackStepFactor, ChargesATrackForADriftOnce) {
+TEST(LandmarkFactor, ChargesATrackForADriftOnce) {
   const SE3 T_B_C;
   const auto anchor = pose({0, 0, 0}, {0, 0, 0}), before = pose({0, 0, 0}, {0.1, 0, 0}),
              seen = pose({0, 0, 0}, {0.2, 0, 0});
   const Eigen::Vector2d drift(3e-3, -1e-3);
   const auto view = [&](double x) { return LandmarkView{Eigen::Vector2d(0.1 - x, 0.2) + drift, {}}; };
-  const TrackStepFactor factor(T_B_C, {{0.1, 0.2}, {}}, view(0.2 * 0.5), view(0.1 * 0.5), 0.9, 1e-3);
+  const LandmarkCost factor(T_B_C, {{0.1, 0.2}, {}}, view(0.2 * 0.5), 1e-3, view(0.1 * 0.5), 0.9);
   const Eigen::VectorXd r = evaluate(factor, {anchor, seen, before, std::vector<double>(4, 0.0), {0.5}});
   EXPECT_LT((r + 0.1 * drift / 1e-3).norm(), 1e-9);
 }
 
-TEST(ReprojectionFactor, IsZeroForAPointWhereItWasSeen) {
+TEST(LandmarkFactor, IsZeroForAPointWhereItWasSeen) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const Eigen::Vector3d p_W = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
   const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_W;
-  const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, {}}, {p_C1.hnormalized(), {}}, 5e-3);
+  const LandmarkCost factor(T_B_C, {{0.2, -0.1}, {}}, {p_C1.hnormalized(), {}}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, std::vector<double>(4, 0.0), {0.5}}).norm(), 1e-9);
 }
 
-TEST(ReprojectionFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
+TEST(LandmarkFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
@@ -177,12 +172,12 @@ TEST(ReprojectionFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
   const SE3 T_W_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
   const SE3 T_W_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
   const Eigen::Vector3d p_C1 = T_W_C1.inverse() * (T_W_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));
-  const ReprojectionFactor factor(T_B_C, {{0.2, -0.1}, rate_0}, {p_C1.hnormalized(), rate_1}, 5e-3);
+  const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {p_C1.hnormalized(), rate_1}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, calibration, {0.5}}).norm(), 1e-9);
 }
 
-TEST(ReprojectionFactor, RefusesAPointBehindTheCamera) {
-  const ReprojectionFactor factor(SE3(), {{0.0, 0.0}, {}}, {{0.0, 0.0}, {}}, 5e-3);
+TEST(LandmarkFactor, RefusesAPointBehindTheCamera) {
+  const LandmarkCost factor(SE3(), {{0.0, 0.0}, {}}, {{0.0, 0.0}, {}}, 5e-3);
   const auto here = pose({0, 0, 0}, {0, 0, 0}), turned = pose({0, 3.1, 0}, {0, 0, 0});
   const double rho = 1.0;
   const CalibrationBlock exact{};

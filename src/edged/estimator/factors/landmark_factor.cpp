@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/factors/landmark_factor.hpp"
+
+#include "edged/estimator/factors/blocks.hpp"
+
+namespace edged {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// A body moved on along its rate.
+SE3 moved_body(const SE3& T_W_B, const BodyRate& rate, double time) {
+  return {T_W_B.rotation() * so3::exp(rate.omega_B * time), T_W_B.translation() + rate.v_W * time};
+}
+
+}  // namespace
+
+SE3 camera_pose(const SE3& T_W_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration) {
+  const Eigen::Map<const Vector3d> phi(calibration);
+  return moved_body(T_W_B, rate, calibration[3]) * SE3(T_B_C.rotation() * so3::exp(phi), T_B_C.translation());
+}
+
+CameraOnBody::CameraOnBody(const SE3& T_B_C, const double* calibration)
+    : R_B_C((T_B_C.rotation() * so3::exp(Vector3d(calibration))).toRotationMatrix()),
+      t_B_C(T_B_C.translation()),
+      by_phi(so3::right_jacobian(Vector3d(calibration))),
+      time(calibration[3]) {}
+
+CameraAt::CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate& rate_in)
+    : by_turn(so3::exp(rate_in.omega_B * -camera.time).toRotationMatrix()), rate(rate_in) {
+  const SE3 T_W_moved = moved_body(T_W_B, rate, camera.time);
+  R_W_B = T_W_moved.R();
+  R_C_W = (R_W_B * camera.R_B_C).transpose();
+  p_W_C = T_W_moved.translation() + R_W_B * camera.t_B_C;
+}
+
+AnchoredLandmark::AnchoredLandmark(const CameraOnBody& camera, const CameraAt& anchor, const Vector2d& point,
+                                   double rho)
+    : camera_(camera), anchor_(anchor), rho_(rho) {
+  const Vector3d bearing_C = point.homogeneous();
+  const Vector3d x_B = camera.R_B_C * bearing_C + rho * camera.t_B_C;
+  bearing_W_ = anchor.R_C_W.transpose() * bearing_C;
+  by_turn_ = -anchor.R_W_B * skew(x_B) * anchor.by_turn;
+  by_phi_ = -anchor.R_C_W.transpose() * skew(bearing_C);
+  by_time_ = anchor.R_W_B * anchor.rate.omega_B.cross(x_B) + rho * anchor.rate.v_W;
+}
+
+bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Vector2d& e) const {
+  const Vector3d x_C = in_camera(seen);
+  if (x_C.z() < kMinDepthShare) return false;
+  e = x_C.head<2>() / x_C.z() - point;
+  return true;
+}
+
+bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, ObservationError& observation) const {
+  const Vector3d x_C = in_camera(seen);
+  if (x_C.z() < kMinDepthShare) return false;
+  const double z_inv = 1.0 / x_C.z();
+  const Vector2d predicted = x_C.head<2>() * z_inv;
+  observation.e = predicted - point;
+
+  Eigen::Matrix<double, 2, 3> by_xC;
+  by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;
+  const Eigen::Matrix<double, 2, 3> by_xW = by_xC * seen.R_C_W, by_xB = by_xW * seen.R_W_B;
+  const Vector3d x_B = camera_.R_B_C * x_C + rho_ * camera_.t_B_C;
+  observation.by_anchor.leftCols<3>() = rho_ * by_xW;
+  observation.by_anchor.rightCols<3>() = by_xW * by_turn_;
+  observation.by_seen.leftCols<3>() = -rho_ * by_xW;
+  observation.by_seen.rightCols<3>() = by_xB * skew(x_B) * seen.by_turn;
+  observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera_.by_phi;
+  observation.by_calibration.col(3) =
+      by_xW * (by_time_ - rho_ * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+  observation.by_rho = by_xW * (anchor_.p_W_C - seen.p_W_C);
+  return true;
+}
+
+}  // namespace edged

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The visual factor: a landmark, held as inverse depth in its anchor view, seen from other states by the same camera.
+//
+// A landmark has many views, and a view many landmarks: what depends on one of the two alone is worked out once
+// (CameraAt, AnchoredLandmark), and only what is left for each observation.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "edged/se3.hpp"
+
+namespace edged {
+
+/// How the body moves at the instant of a state: what turns a shift of the camera's clock into one of its pose.
+struct BodyRate {
+  Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();      ///< [m/s]
+};
+
+/// T_W_C of a camera whose image was taken `time` after the state: T_W_B moved on by the rate, then T_B_C turned by
+/// phi. calibration: a CalibrationBlock's numbers.
+SE3 camera_pose(const SE3& T_W_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
+
+/// A camera on the body, its calibration applied.
+struct CameraOnBody {
+  /// calibration: a CalibrationBlock's numbers.
+  CameraOnBody(const SE3& T_B_C, const double* calibration);
+  Eigen::Matrix3d R_B_C;
+  Eigen::Vector3d t_B_C;
+  Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a turn of the camera
+  double time;             ///< of its image after the state [s]
+};
+
+/// A camera at one state's image. The rate is a constant: what it is off by counts only times the time shift.
+struct CameraAt {
+  CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate& rate);
+  Eigen::Matrix3d R_W_B;  ///< of the body at the image's time
+  Eigen::Matrix3d R_C_W;
+  Eigen::Vector3d p_W_C;
+  Eigen::Matrix3d by_turn;  ///< a turn of the state's body as one of the body at the image's time
+  BodyRate rate;
+};
+
+/// e = predicted - seen on the unit plane, and its derivatives by the tangents of the blocks.
+struct ObservationError {
+  Eigen::Vector2d e;
+  Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
+  Eigen::Matrix<double, 2, 4> by_calibration;
+  Eigen::Vector2d by_rho;
+};
+
+/// A landmark as its anchor has it. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
+/// infinity (rho = 0) are ordinary points.
+class AnchoredLandmark {
+ public:
+  /// point: in the anchor view, on the unit plane. The camera and its view there must outlive this.
+  AnchoredLandmark(const CameraOnBody& camera, const CameraAt& anchor, const Eigen::Vector2d& point, double rho);
+
+  /// Of an observation at `point` of the camera `seen`. False when the landmark is not in front of it.
+  bool error(const CameraAt& seen, const Eigen::Vector2d& point, Eigen::Vector2d& e) const;
+  bool error(const CameraAt& seen, const Eigen::Vector2d& point, ObservationError& observation) const;
+
+ private:
+  Eigen::Vector3d in_camera(const CameraAt& seen) const {
+    return seen.R_C_W * (bearing_W_ + rho_ * (anchor_.p_W_C - seen.p_W_C));
+  }
+
+  const CameraOnBody& camera_;
+  const CameraAt& anchor_;
+  double rho_;
+  Eigen::Vector3d bearing_W_;
+  // Of where it is in the world, times rho, by the anchor's turn, by phi, the time and rho.
+  Eigen::Matrix3d by_turn_, by_phi_;
+  Eigen::Vector3d by_time_;
+};
+
+}  // namespace edged

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Normal equations over blocks, and how terms are added to them.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "edged/estimator/factors/blocks.hpp"
+
+namespace edged {
+
+/// Where each block's tangent begins: those that leave in front, each part in the order of the keys.
+struct Layout {
+  explicit Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& leaving = {});
+
+  std::map<BlockKey, Eigen::Index> offset;
+  std::vector<BlockKey> staying;
+  Eigen::Index leaving = 0;  ///< columns of all that leaves
+  Eigen::Index size = 0;
+};
+
+/// A block's place in a term's own equations and in those of the window.
+struct Placed {
+  Eigen::Index local, size, global;
+};
+
+/// H d = -g over the tangent steps d. Of H the lower triangle counts.
+struct NormalEquations {
+  explicit NormalEquations(Eigen::Index size) : H(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
+
+  /// A term's own equations; `blocks` in the order of their local places.
+  void add(const Eigen::Ref<const Eigen::MatrixXd>& term_H, const Eigen::Ref<const Eigen::VectorXd>& term_g,
+           std::span<const Placed> blocks);
+
+  Eigen::MatrixXd H;
+  Eigen::VectorXd g;
+};
+
+/// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in
+/// information by ten orders of magnitude.
+Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H);
+
+/// A diagonal entry of H below this was not measured at all.
+inline constexpr double kNoInformation = 1e-9;
+
+}  // namespace edged

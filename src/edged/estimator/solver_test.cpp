@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The window's solver against Ceres, on the same terms.
+#include "edged/estimator/solver.hpp"
+
+#include <ceres/manifold.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <gtest/gtest.h>
+
+#include "edged/estimator/cost.hpp"
+#include "edged/estimator/factors/test_landmark_cost.hpp"
+#include "edged/estimator/landmarks.hpp"
+#include "edged/estimator/normal_equations.hpp"
+#include "edged/estimator/test_world.hpp"
+
+namespace edged {
+namespace {
+
+/// p' = p + d_p, q' = q * Exp(d_phi); derivatives by the tangent stand in the first six columns.
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    std::copy_n(x, 7, x_plus_delta);
+    plus(BlockKind::Pose, x_plus_delta, delta);
+    return true;
+  }
+  bool PlusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>>{jacobian}.setIdentity();
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    tangent_difference(BlockKind::Pose, y, x, y_minus_x);
+    return true;
+  }
+  bool MinusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>{jacobian}.setIdentity();
+    return true;
+  }
+};
+
+/// The term's residuals as cost functions of Ceres.
+void add_landmark(Window& window, const LandmarkTerm& term, ceres::Problem& problem) {
+  const auto pose = [&](StateId state) { return window.block({BlockKind::Pose, state}); };
+  const auto view = [&](StateId state, const Eigen::Vector2d& point) {
+    return LandmarkView{point, window.states.at(state).rate()};
+  };
+  const SE3& T_B_C = window.cameras[term.camera].T_B_C;
+  const LandmarkView anchor = view(term.anchor, term.point);
+  for (std::size_t i = 0; i < term.residuals.size(); ++i) {
+    const LandmarkResidual& at = term.residuals[i];
+    std::vector<double*> blocks = {pose(term.anchor), pose(at.seen)};
+    std::optional<LandmarkView> before;
+    if (at.correlation != 0.0) {
+      before = view(term.residuals[i - 1].seen, term.residuals[i - 1].point);
+      blocks.push_back(pose(term.residuals[i - 1].seen));
+    }
+    blocks.insert(blocks.end(), {window.block({BlockKind::Calibration, term.camera}), term.inverse_depth});
+    problem.AddResidualBlock(
+        new LandmarkCost(T_B_C, anchor, view(at.seen, at.point), 1.0 / at.weight, before, at.correlation),
+        window.visual_loss(), blocks);
+  }
+}
+
+double solve_with_ceres(Window& window, int iterations) {
+  Cost cost = cost_of(window);
+  PoseManifold manifold;
+  ceres::Problem::Options options;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(options);
+  for (auto& [id, state] : window.states) problem.AddParameterBlock(state.pose.data(), 7, &manifold);
+  for (Factor& factor : cost.factors) {
+    std::vector<double*> blocks;
+    for (const BlockKey& key : factor.blocks) blocks.push_back(window.block(key));
+    problem.AddResidualBlock(factor.cost.release(), factor.loss, blocks);
+  }
+  for (const LandmarkTerm& term : cost.landmarks) add_landmark(window, term, problem);
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_SCHUR;
+  solver.max_num_iterations = iterations;
+  solver.initial_trust_region_radius = 1e9;
+  solver.function_tolerance = 1e-15;
+  solver.gradient_tolerance = solver.parameter_tolerance = 0.0;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return summary.final_cost;
+}
+
+/// Landmarks and IMU, off by some; the errors of a track correlate, calibrations are free.
+Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
+  Window window = tracked_window(world, options);
+  triangulate_features(window, {});
+  window.track_noise = {0.95, 0.8, 2.0};
+  window.free_calibration({});
+  int i = 0;
+  for (auto& [id, state] : window.states) {
+    state.pose = to_block(state.T_W_B() * SE3(so3::exp({0.004, -0.002 * i, 0.002}), Eigen::Vector3d(0.004 * i, -0.01, 0.008)));
+    state.motion[0] += 0.02;
+    ++i;
+  }
+  for (auto& [id, feature] : window.features) feature.inverse_depth *= 1.03;
+  // Without it the scale is so weak a direction that two solvers need many steps to agree on it.
+  const auto first = window.states.begin();
+  window.soft_priors.push_back(
+      motion_prior({BlockKind::Motion, first->first}, first->second.motion, {0.02, 1e-3, 1e-2}));
+  return window;
+}
+
+TEST(Solve, ComesToWhereCeresComes) {
+  for (const int iterations : {1, 2, 20}) {
+    SCOPED_TRACE(iterations);
+    const TestWorldOptions options{.cameras = 2};
+    TestWorld world(options), same_world(options);
+    Window window = disturbed_window(world, options), other = disturbed_window(same_world, options);
+    const SolveSummary summary = solve(window, iterations);
+    const double by_ceres = solve_with_ceres(other, iterations);
+    ASSERT_TRUE(summary.usable);
+    EXPECT_NEAR(summary.final_cost / by_ceres, 1.0, 1e-4);
+    EXPECT_LT(summary.final_cost, 0.2 * summary.initial_cost);
+    if (iterations < 20) continue;
+    for (const auto& [id, state] : window.states) {
+      Vector6d difference;
+      tangent_difference(BlockKind::Pose, state.pose.data(), other.states.at(id).pose.data(), difference.data());
+      EXPECT_LT(difference.norm(), 3e-4) << id;  // the one stops where a step gains 1e-6 of the cost
+    }
+    for (const auto& [id, feature] : window.features) {
+      if (feature.anchor) {
+        EXPECT_NEAR(feature.inverse_depth, other.features.at(id).inverse_depth, 3e-4) << id;
+      }
+    }
+  }
+}
+
+TEST(Solve, HasTheValueOfTheCostThatCeresHas) {
+  const TestWorldOptions options{.cameras = 2};
+  TestWorld world(options);
+  Window window = disturbed_window(world, options);
+  const double value = value_of(window, cost_of(window));
+  EXPECT_NEAR(solve_with_ceres(window, 0) / value, 1.0, 1e-12);
+}
+
+TEST(Solve, IsNotUsableWithALandmarkBehindItsCamera) {
+  const TestWorldOptions options{};
+  TestWorld world(options);
+  Window window = disturbed_window(world, options);
+  const auto landmark =
+      std::ranges::find_if(window.features, [](const auto& f) { return f.second.anchor.has_value(); });
+  ASSERT_NE(landmark, window.features.end());
+  WindowState& seen = window.states.at(landmark->second.seen.rbegin()->first);
+  seen.pose = to_block(seen.T_W_B() * SE3(so3::exp({0.0, 3.1, 0.0}), Eigen::Vector3d::Zero()));
+  const PoseBlock turned = seen.pose;
+  EXPECT_FALSE(solve(window, 5).usable);
+  EXPECT_EQ(seen.pose, turned);
+}
+
+/// The gradient that the normal equations have against differences of the cost.
+TEST(NormalEquations, HaveTheGradientOfTheCost) {
+  const TestWorldOptions options{.cameras = 2};
+  TestWorld world(options);
+  Window window = disturbed_window(world, options);
+  Cost cost = cost_of(window);
+  for (LandmarkTerm& term : cost.landmarks) term.coupled = true;  // nothing eliminated
+  const Layout layout(blocks_of(cost));
+  const Eigen::VectorXd g = normal_equations(window, cost, layout, Linearisation::Present).g;
+  const double largest = g.cwiseAbs().maxCoeff();
+  for (const auto& [key, offset] : layout.offset) {
+    for (int i = 0; i < tangent_size(key.kind); ++i) {
+      double* block = window.block(key);
+      const std::vector<double> kept(block, block + block_size(key.kind));
+      const double step = 1e-7;
+      std::vector<double> d(static_cast<std::size_t>(tangent_size(key.kind)), 0.0);
+      double values[2];
+      for (const int side : {0, 1}) {
+        d[static_cast<std::size_t>(i)] = side == 0 ? -step : step;
+        plus(key.kind, block, d.data());
+        values[side] = value_of(window, cost);
+        std::copy(kept.begin(), kept.end(), block);
+      }
+      // The rates of states are constants of a landmark's term, but depend on motion blocks.
+      const double slack = key.kind == BlockKind::Motion ? 1e-3 : 1e-5;
+      EXPECT_NEAR(g[offset + i], (values[1] - values[0]) / (2.0 * step), slack * largest + 1e-3) << offset + i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace edged
