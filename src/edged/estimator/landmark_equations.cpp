@@ -18,24 +18,11 @@ Index view_column(std::size_t residual) { return kViews + 6 * static_cast<Index>
 
 }  // namespace
 
-CameraViews::CameraViews(Window& window, Linearisation at) : states_(window.states.size()) {
-  std::vector<SE3> poses;
-  for (const auto& [id, state] : window.states) {
-    const double* pose =
-        at == Linearisation::Present ? state.pose.data() : window.linearisation_point({BlockKind::Pose, id});
-    poses.push_back(pose_of(pose));
-    tangent_difference(BlockKind::Pose, state.pose.data(), pose, moved_.emplace_back().data());
-  }
-  views_.reserve(window.cameras.size() * states_);
-  for (std::size_t i = 0; i < window.cameras.size(); ++i) {
-    const CameraOnBody& camera = cameras_.emplace_back(window.cameras[i].T_B_C, window.calibration[i].data());
-    std::size_t place = 0;
-    for (const auto& [id, state] : window.states) views_.emplace_back(camera, poses[place++], state.rate());
-  }
-}
-
 LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linearisation at)
-    : layout_(layout), present_(window, Linearisation::Present), taken_(window, at), loss_(window.visual_loss()) {}
+    : layout_(layout),
+      present_(window),
+      taken_(at == Linearisation::Present ? present_ : CameraViews::at_first_estimates(window)),
+      loss_(window.visual_loss()) {}
 
 /// One residual of the term, at the weight of its loss.
 void LandmarkEquations::accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
@@ -80,13 +67,14 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
   const std::size_t c = term.camera;
   const AnchoredLandmark landmark(now.camera(c), now.at(c, term.anchor_place), term.point, *term.inverse_depth);
   const AnchoredLandmark first(taken.camera(c), taken.at(c, term.anchor_place), term.point, *term.inverse_depth);
+  const LandmarkDerivatives derivatives(first);
   ObservationError error, before;
   bool defined = false, before_defined = false;
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];
     before = error;
     before_defined = defined;
-    defined = first.error(taken.at(c, at.place), at.point, error) &&
+    defined = derivatives.error(taken.at(c, at.place), at.point, error) &&
               landmark.error(now.at(c, at.place), at.point, error.e);
     if (defined && (before_defined || at.correlation == 0.0)) accumulate(i, error, before, term);
   }

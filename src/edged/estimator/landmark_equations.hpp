@@ -3,26 +3,10 @@
 // What landmarks add to the normal equations and to the cost.
 #pragma once
 
+#include "edged/estimator/camera_views.hpp"
 #include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
-
-/// Every camera at every state of a window. Borrows from the window.
-class CameraViews {
- public:
-  CameraViews(Window& window, Linearisation at);
-  const CameraOnBody& camera(std::size_t camera) const { return cameras_[camera]; }
-  /// place: of the state in the window, the oldest being 0.
-  const CameraAt& at(std::size_t camera, std::size_t place) const { return views_[camera * states_ + place]; }
-  /// From the pose that was taken to the present one.
-  const Vector6d& moved(std::size_t place) const { return moved_[place]; }
-
- private:
-  std::size_t states_;
-  std::vector<CameraOnBody> cameras_;
-  std::vector<CameraAt> views_;
-  std::vector<Vector6d> moved_;
-};
 
 /// Adds one landmark after the other; keeps its memory in between.
 class LandmarkEquations {

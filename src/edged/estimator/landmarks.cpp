@@ -7,6 +7,7 @@
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/statistics.hpp"
+#include "edged/estimator/camera_views.hpp"
 #include "edged/estimator/cost.hpp"
 
 namespace edged {
@@ -42,36 +43,50 @@ bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig&
   return true;
 }
 
-/// Where a landmark is expected less where it was seen, on the unit plane; nothing when it is behind the camera.
-std::optional<Eigen::Vector2d> observation_error(const Window& window, const Feature& feature, StateId state) {
-  const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * window.position(feature);
-  if (p_C.z() <= 0.0) return std::nullopt;
-  return p_C.hnormalized() - feature.seen.at(state).point;
-}
-
-/// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
-double residual_sigmas(const Window& window, const Feature& feature, StateId state) {
-  const std::optional<Eigen::Vector2d> error = observation_error(window, feature, state);
-  return error ? error->norm() / feature.seen.at(state).sigma : std::numeric_limits<double>::infinity();
-}
-
-/// Root mean square of a landmark's residuals [sigma]; nothing when it has too few observations to be judged by.
-std::optional<double> rms_sigmas(const Window& window, const Feature& feature) {
-  constexpr std::size_t kFewestObservations = 4;
-  if (!feature.anchor || feature.seen.size() < kFewestObservations) return std::nullopt;
-  double sum = 0.0;
-  for (const auto& [state, observation] : feature.seen) {
-    if (state != *feature.anchor) sum += std::pow(residual_sigmas(window, feature, state), 2);
+/// How well observations fit the window as it stands.
+class Fit {
+ public:
+  explicit Fit(const Window& window) : views_(window) {
+    for (const auto& [id, state] : window.states) place_.emplace(id, place_.size());
   }
-  return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
-}
+
+  /// Where a landmark is expected less where it was seen, on the unit plane; false when it is behind the camera.
+  bool error(const Feature& feature, StateId state, Eigen::Vector2d& e) const {
+    const std::size_t camera = feature.camera;
+    const AnchoredLandmark landmark(views_.camera(camera), views_.at(camera, place_.at(*feature.anchor)),
+                                    feature.seen.at(*feature.anchor).point, feature.inverse_depth);
+    return landmark.error(views_.at(camera, place_.at(state)), feature.seen.at(state).point, e);
+  }
+
+  /// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
+  double sigmas(const Feature& feature, StateId state) const {
+    Eigen::Vector2d e;
+    if (!error(feature, state, e)) return std::numeric_limits<double>::infinity();
+    return e.norm() / feature.seen.at(state).sigma;
+  }
+
+  /// Root mean square of a landmark's residuals [sigma]; nothing when it has too few observations to be judged by.
+  std::optional<double> rms_sigmas(const Feature& feature) const {
+    constexpr std::size_t kFewestObservations = 4;
+    if (!feature.anchor || feature.seen.size() < kFewestObservations) return std::nullopt;
+    double sum = 0.0;
+    for (const auto& [state, observation] : feature.seen) {
+      if (state != *feature.anchor) sum += std::pow(sigmas(feature, state), 2);
+    }
+    return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
+  }
+
+ private:
+  CameraViews views_;
+  std::map<StateId, std::size_t> place_;  ///< of a state in the window
+};
 
 /// Takes out the observations beyond the limit. True when the track's newest is among them.
-bool take_out_observations(const Window& window, Feature& feature, double max_sigmas) {
+bool take_out_observations(const Fit& fit, Feature& feature, double max_sigmas) {
   bool newest = false;
   std::erase_if(feature.seen, [&](const auto& observation) {
     if (observation.first == *feature.anchor) return false;
-    const bool bad = residual_sigmas(window, feature, observation.first) > max_sigmas;
+    const bool bad = fit.sigmas(feature, observation.first) > max_sigmas;
     newest = newest || (bad && observation.first == feature.last_seen);
     return bad;
   });
@@ -79,12 +94,12 @@ bool take_out_observations(const Window& window, Feature& feature, double max_si
 }
 
 /// One a camera: what its landmarks may be off by, over all their views [sigma].
-std::vector<double> misfit_limits(const Window& window, double max_misfit) {
+std::vector<double> misfit_limits(const Window& window, const Fit& fit, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
   constexpr double kLeastMedian = 0.2;  // [sigma]: the best of fits condemns nothing
   std::vector<std::vector<double>> rms(window.cameras.size());
   for (const auto& [id, feature] : window.features) {
-    if (const auto value = rms_sigmas(window, feature)) rms[feature.camera].push_back(*value);
+    if (const auto value = fit.rms_sigmas(feature)) rms[feature.camera].push_back(*value);
   }
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
@@ -139,6 +154,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
 
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config) {
   const StateId newest = window.states.rbegin()->first;
+  const Fit fit(window);
   std::vector<FeatureId> unexpected;
   for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
     std::vector<FeatureId> far;
@@ -146,7 +162,7 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
     for (const auto& [id, feature] : window.features) {
       if (feature.camera != camera || !feature.anchor || !feature.seen.contains(newest)) continue;
       ++seen;
-      if (residual_sigmas(window, feature, newest) > config.max_innovation_sigma) far.push_back(id);
+      if (fit.sigmas(feature, newest) > config.max_innovation_sigma) far.push_back(id);
     }
     if (2 * far.size() > seen) continue;
     for (const FeatureId id : far) window.features.at(id).seen.erase(newest);
@@ -157,7 +173,8 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
 
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {
   std::vector<FeatureId> wrong;
-  const std::vector<double> limits = misfit_limits(window, config.max_misfit);
+  const Fit fit(window);
+  const std::vector<double> limits = misfit_limits(window, fit, config.max_misfit);
   for (auto it = window.features.begin(); it != window.features.end();) {
     Feature& feature = it->second;
     if (!feature.anchor) {
@@ -166,8 +183,8 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
     }
     // Before its worst observations are taken out: that it has some says more about it than those that are left.
     bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
-                   rms_sigmas(window, feature).value_or(0.0) > limits[feature.camera];
-    const bool newest_wrong = !dropped && take_out_observations(window, feature, config.max_residual_sigma);
+                   fit.rms_sigmas(feature).value_or(0.0) > limits[feature.camera];
+    const bool newest_wrong = !dropped && take_out_observations(fit, feature, config.max_residual_sigma);
     // Right after a change of anchor a landmark has one observation until its camera's next image.
     dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature));
     if (window.alive(feature) && (dropped || newest_wrong)) wrong.push_back(it->first);
@@ -180,18 +197,18 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   constexpr std::size_t kFewestObservations = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.states.rbegin()->first;
+  const Fit fit(window);
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features) {
     if (feature.camera != camera || !feature.anchor) continue;
-    Eigen::Vector2d before = Eigen::Vector2d::Zero();
+    Eigen::Vector2d before = Eigen::Vector2d::Zero(), error;
     for (const TrackStep& step : track_steps(window, feature)) {
       if (step.before == *feature.anchor) before.setZero();
-      const std::optional<Eigen::Vector2d> error = observation_error(window, feature, step.seen);
-      if (!error) break;
+      if (!fit.error(feature, step.seen, error)) break;
       if (newness == Newness::Any || step.seen == newest) {
-        residuals.push_back((*error - step.correlation * before).norm() / step.sigma);
+        residuals.push_back((error - step.correlation * before).norm() / step.sigma);
       }
-      before = *error;
+      before = error;
     }
   }
   if (residuals.size() < kFewestObservations) return std::nullopt;

@@ -90,7 +90,7 @@ NormalEquations normal_equations(Window& window, const Cost& cost, const Layout&
 double value_of(Window& window, const Cost& cost) {
   double sum = 0.0;
   for (const Factor& factor : cost.factors) sum += value_of(window, factor);
-  const CameraViews views(window, Linearisation::Present);
+  const CameraViews views(window);
   for (const LandmarkTerm& term : cost.landmarks) sum += value_of(term, views, *window.visual_loss());
   return sum;
 }

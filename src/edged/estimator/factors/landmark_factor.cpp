@@ -37,16 +37,13 @@ CameraAt::CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate&
   p_W_C = T_W_moved.translation() + R_W_B * camera.t_B_C;
 }
 
-AnchoredLandmark::AnchoredLandmark(const CameraOnBody& camera, const CameraAt& anchor, const Vector2d& point,
-                                   double rho)
-    : camera_(camera), anchor_(anchor), rho_(rho) {
-  const Vector3d bearing_C = point.homogeneous();
-  const Vector3d x_B = camera.R_B_C * bearing_C + rho * camera.t_B_C;
-  bearing_W_ = anchor.R_C_W.transpose() * bearing_C;
-  by_turn_ = -anchor.R_W_B * skew(x_B) * anchor.by_turn;
-  by_phi_ = -anchor.R_C_W.transpose() * skew(bearing_C);
-  by_time_ = anchor.R_W_B * anchor.rate.omega_B.cross(x_B) + rho * anchor.rate.v_W;
-}
+AnchoredLandmark::AnchoredLandmark(const CameraOnBody& camera_in, const CameraAt& anchor_in, const Vector2d& point,
+                                   double rho_in)
+    : camera(camera_in),
+      anchor(anchor_in),
+      rho(rho_in),
+      bearing_C(point.homogeneous()),
+      bearing_W(anchor.R_C_W.transpose() * bearing_C) {}
 
 bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Vector2d& e) const {
   const Vector3d x_C = in_camera(seen);
@@ -55,8 +52,18 @@ bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Vector
   return true;
 }
 
-bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, ObservationError& observation) const {
-  const Vector3d x_C = in_camera(seen);
+LandmarkDerivatives::LandmarkDerivatives(const AnchoredLandmark& landmark) : landmark_(landmark) {
+  const CameraAt& anchor = landmark.anchor;
+  const Vector3d x_B = landmark.camera.R_B_C * landmark.bearing_C + landmark.rho * landmark.camera.t_B_C;
+  by_turn_ = -anchor.R_W_B * skew(x_B) * anchor.by_turn;
+  by_phi_ = -anchor.R_C_W.transpose() * skew(landmark.bearing_C);
+  by_time_ = anchor.R_W_B * anchor.rate.omega_B.cross(x_B) + landmark.rho * anchor.rate.v_W;
+}
+
+bool LandmarkDerivatives::error(const CameraAt& seen, const Vector2d& point, ObservationError& observation) const {
+  const double rho = landmark_.rho;
+  const CameraOnBody& camera = landmark_.camera;
+  const Vector3d x_C = landmark_.in_camera(seen);
   if (x_C.z() < kMinDepthShare) return false;
   const double z_inv = 1.0 / x_C.z();
   const Vector2d predicted = x_C.head<2>() * z_inv;
@@ -65,15 +72,15 @@ bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Observ
   Eigen::Matrix<double, 2, 3> by_xC;
   by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;
   const Eigen::Matrix<double, 2, 3> by_xW = by_xC * seen.R_C_W, by_xB = by_xW * seen.R_W_B;
-  const Vector3d x_B = camera_.R_B_C * x_C + rho_ * camera_.t_B_C;
-  observation.by_anchor.leftCols<3>() = rho_ * by_xW;
+  const Vector3d x_B = camera.R_B_C * x_C + rho * camera.t_B_C;
+  observation.by_anchor.leftCols<3>() = rho * by_xW;
   observation.by_anchor.rightCols<3>() = by_xW * by_turn_;
-  observation.by_seen.leftCols<3>() = -rho_ * by_xW;
+  observation.by_seen.leftCols<3>() = -rho * by_xW;
   observation.by_seen.rightCols<3>() = by_xB * skew(x_B) * seen.by_turn;
-  observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera_.by_phi;
+  observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera.by_phi;
   observation.by_calibration.col(3) =
-      by_xW * (by_time_ - rho_ * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
-  observation.by_rho = by_xW * (anchor_.p_W_C - seen.p_W_C);
+      by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+  observation.by_rho = by_xW * (landmark_.anchor.p_W_C - seen.p_W_C);
   return true;
 }
 

@@ -3,7 +3,7 @@
 // The visual factor: a landmark, held as inverse depth in its anchor view, seen from other states by the same camera.
 //
 // A landmark has many views, and a view many landmarks: what depends on one of the two alone is worked out once
-// (CameraAt, AnchoredLandmark), and only what is left for each observation.
+// (CameraAt, AnchoredLandmark, LandmarkDerivatives), and only what is left for each observation.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,25 +52,35 @@ struct ObservationError {
 
 /// A landmark as its anchor has it. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
-class AnchoredLandmark {
- public:
+struct AnchoredLandmark {
   /// point: in the anchor view, on the unit plane. The camera and its view there must outlive this.
   AnchoredLandmark(const CameraOnBody& camera, const CameraAt& anchor, const Eigen::Vector2d& point, double rho);
 
-  /// Of an observation at `point` of the camera `seen`. False when the landmark is not in front of it.
+  /// e = predicted - seen of an observation at `point` of the camera `seen`. False when the landmark is not in front
+  /// of it.
   bool error(const CameraAt& seen, const Eigen::Vector2d& point, Eigen::Vector2d& e) const;
+
+  Eigen::Vector3d in_camera(const CameraAt& seen) const {
+    return seen.R_C_W * (bearing_W + rho * (anchor.p_W_C - seen.p_W_C));
+  }
+
+  const CameraOnBody& camera;
+  const CameraAt& anchor;
+  double rho;
+  Eigen::Vector3d bearing_C, bearing_W;
+};
+
+/// What the derivatives of all observations of a landmark share: that of its place in the world, times rho, by the
+/// anchor's turn, phi and the time.
+class LandmarkDerivatives {
+ public:
+  /// The landmark must outlive this.
+  explicit LandmarkDerivatives(const AnchoredLandmark& landmark);
+  /// As AnchoredLandmark::error, with derivatives.
   bool error(const CameraAt& seen, const Eigen::Vector2d& point, ObservationError& observation) const;
 
  private:
-  Eigen::Vector3d in_camera(const CameraAt& seen) const {
-    return seen.R_C_W * (bearing_W_ + rho_ * (anchor_.p_W_C - seen.p_W_C));
-  }
-
-  const CameraOnBody& camera_;
-  const CameraAt& anchor_;
-  double rho_;
-  Eigen::Vector3d bearing_W_;
-  // Of where it is in the world, times rho, by the anchor's turn, by phi, the time and rho.
+  const AnchoredLandmark& landmark_;
   Eigen::Matrix3d by_turn_, by_phi_;
   Eigen::Vector3d by_time_;
 };

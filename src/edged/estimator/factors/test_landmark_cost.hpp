@@ -35,7 +35,8 @@ class LandmarkCost final : public ceres::CostFunction {
       return CameraAt(camera, pose_of(blocks[pose]), view.rate);
     };
     const CameraAt anchor = at(0, anchor_);
-    const AnchoredLandmark landmark(camera, anchor, anchor_.point, *blocks[calibration + 1]);
+    const AnchoredLandmark anchored(camera, anchor, anchor_.point, *blocks[calibration + 1]);
+    const LandmarkDerivatives landmark(anchored);
     ObservationError now, before;
     if (!landmark.error(at(1, seen_), seen_.point, now)) return false;
     if (before_ && !landmark.error(at(2, *before_), before_->point, before)) return false;
