@@ -4,7 +4,8 @@
 #pragma once
 
 #include "edged/estimator/camera_views.hpp"
-#include "edged/estimator/normal_equations.hpp"
+#include "edged/estimator/cost.hpp"
+#include "edged/estimator/linear_system.hpp"
 
 namespace edged {
 
@@ -30,7 +31,7 @@ class LandmarkEquations {
   std::vector<Placed> blocks_;
 };
 
-/// Its share of value_of().
+/// Half the sum of its squares, the loss applied; infinite where it is behind a camera.
 double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss);
 
 }  // namespace edged

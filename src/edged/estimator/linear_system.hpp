@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Normal equations over blocks, and how terms are added to them.
+// Normal equations over blocks: where they are taken, how terms are added, what has been eliminated from them.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,6 +38,19 @@ struct NormalEquations {
 
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
+};
+
+/// Where Jacobians are taken; residuals always at the present values. FirstEstimates: at the
+/// Window::linearisation_point of each block, so that directions the measurements cannot see stay unseen; d then counts
+/// from there.
+enum class Linearisation { Present, FirstEstimates };
+
+/// What is needed to find a landmark's inverse depth again: its step is -(g + coupling^T d) / h.
+struct EliminatedDepth {
+  double* inverse_depth;
+  double h, g;
+  Eigen::VectorXd coupling;  ///< over the columns of `blocks`
+  std::vector<Placed> blocks;
 };
 
 /// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in

@@ -98,7 +98,8 @@ Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
   window.free_calibration({});
   int i = 0;
   for (auto& [id, state] : window.states) {
-    state.pose = to_block(state.T_W_B() * SE3(so3::exp({0.004, -0.002 * i, 0.002}), Eigen::Vector3d(0.004 * i, -0.01, 0.008)));
+    state.pose =
+        to_block(state.T_W_B() * SE3(so3::exp({0.004, -0.002 * i, 0.002}), Eigen::Vector3d(0.004 * i, -0.01, 0.008)));
     state.motion[0] += 0.02;
     ++i;
   }

@@ -78,8 +78,7 @@ bool LandmarkDerivatives::error(const CameraAt& seen, const Vector2d& point, Obs
   observation.by_seen.leftCols<3>() = -rho * by_xW;
   observation.by_seen.rightCols<3>() = by_xB * skew(x_B) * seen.by_turn;
   observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera.by_phi;
-  observation.by_calibration.col(3) =
-      by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+  observation.by_calibration.col(3) = by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
   observation.by_rho = by_xW * (landmark_.anchor.p_W_C - seen.p_W_C);
   return true;
 }
