@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include <opencv2/imgproc.hpp>
 
 namespace edged {
