@@ -28,7 +28,7 @@ struct PacketizerConfig {
   double window_per_pixel = 0.35;      ///< events a packet carries back in time, per pixel
   double max_age_s = 0.25;             ///< but none older than this: at standstill the old ones are noise
   double max_interval_s = 0.04;        ///< a cut at the latest after this time (the heartbeat at standstill)
-  double min_interval_s = 0.015;       ///< and never sooner than this after the last, but for a frame
+  double min_interval_s = 0.03;        ///< and never sooner than this after the last, but for a frame
   int max_waiting_events = 4'000'000;  ///< in packets that wait for the IMU; 16 bytes each
   void visit(ConfigFields& fields);
 };

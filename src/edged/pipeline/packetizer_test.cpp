@@ -57,7 +57,8 @@ struct Result {
   PacketizerCounters counters;
 };
 
-Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const PacketizerConfig& config = {}) {
+constexpr PacketizerConfig kQuick{.min_interval_s = 0.015};  // little data makes many packets
+Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const PacketizerConfig& config = kQuick) {
   const auto rank = [](const Measurement& m) {
     return std::holds_alternative<ImuSample>(m) ? 0 : std::holds_alternative<EventBatch>(m) ? 1 : 2;
   };
