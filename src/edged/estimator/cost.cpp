@@ -32,7 +32,7 @@ void add_motion_factors(const Window& window, std::vector<Factor>& out) {
   }
 }
 
-/// The inverse depths that share a factor with another.
+/// The inverse depths that factors hold: each ties several together.
 std::set<FeatureId> coupled_depths(const std::vector<Factor>& factors) {
   std::set<FeatureId> coupled;
   for (const Factor& factor : factors) {

@@ -10,11 +10,12 @@ namespace edged {
 
 std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks) {
   const Cost cost = cost_of(window);
-  std::set<BlockKey> others = blocks_of(cost);
+  const std::set<BlockKey> all = blocks_of(cost);
+  std::set<BlockKey> others = all;
   for (const BlockKey& block : blocks) {
     if (others.erase(block) == 0) return std::nullopt;
   }
-  const Layout layout(blocks_of(cost), others);
+  const Layout layout(all, others);
   const Eigen::MatrixXd H = normal_equations(window, cost, layout, Linearisation::FirstEstimates).H;
   const Eigen::Index m = layout.size - layout.leaving;
   const Eigen::VectorXd scale = unit_diagonal_scale(H);

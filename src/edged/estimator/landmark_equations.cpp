@@ -22,6 +22,7 @@ LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linea
     : layout_(layout),
       present_(window),
       taken_(at == Linearisation::Present ? present_ : CameraViews::at_first_estimates(window)),
+      at_present_(at == Linearisation::Present),
       loss_(window.visual_loss()) {}
 
 /// One residual of the term, at the weight of its loss.
@@ -75,7 +76,7 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
     before = error;
     before_defined = defined;
     defined = derivatives.error(taken.at(c, at.place), at.point, error) &&
-              landmark.error(now.at(c, at.place), at.point, error.e);
+              (at_present_ || landmark.error(now.at(c, at.place), at.point, error.e));
     if (defined && (before_defined || at.correlation == 0.0)) accumulate(i, error, before, term);
   }
 }

@@ -24,6 +24,7 @@ class LandmarkEquations {
 
   const Layout& layout_;
   CameraViews present_, taken_;
+  bool at_present_;  ///< the two are the same
   ceres::LossFunction* loss_;
   // Columns: the anchor's pose, the camera's calibration, the inverse depth, the pose of every residual's state.
   Eigen::MatrixXd H_;

@@ -3,7 +3,9 @@
 #include "edged/estimator/solver.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "edged/estimator/normal_equations.hpp"
 

@@ -67,7 +67,7 @@ bool LandmarkDerivatives::error(const CameraAt& seen, const Vector2d& point, Obs
   if (x_C.z() < kMinDepthShare) return false;
   const double z_inv = 1.0 / x_C.z();
   const Vector2d predicted = x_C.head<2>() * z_inv;
-  observation.e = predicted - point;
+  observation.e = x_C.head<2>() / x_C.z() - point;  // to the bit as AnchoredLandmark::error
 
   Eigen::Matrix<double, 2, 3> by_xC;
   by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;

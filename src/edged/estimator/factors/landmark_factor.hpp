@@ -44,7 +44,7 @@ struct CameraAt {
 
 /// e = predicted - seen on the unit plane, and its derivatives by the tangents of the blocks.
 struct ObservationError {
-  Eigen::Vector2d e;
+  Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
   Eigen::Matrix<double, 2, 4> by_calibration;
   Eigen::Vector2d by_rho;
