@@ -26,6 +26,8 @@ constexpr double kBetterStart = 0.8;  // a start that takes the place of another
 constexpr double kStartSigmaInflation = 2.5;
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
 constexpr double kMaxStandstillSpeed = 0.15;
+// [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
+constexpr double kRestGyroBiasSigma = 5e-4;
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
@@ -152,8 +154,11 @@ void Estimator::append(const EstimatorInput& input) {
   if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
   if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {
     window_.states.at(id).rested = true;
-    window_.soft_priors.push_back(
-        motion_prior({BlockKind::Motion, id}, MotionBlock{}, {config_.zero_velocity_sigma, kFree, kFree}));
+    NavState rest;
+    rest.bias_gyro = standstill_.mean_gyro_B();
+    const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;
+    window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, motion_block(rest),
+                                               {config_.zero_velocity_sigma, bias_sigma, kFree}));
   }
 }
 
