@@ -25,6 +25,7 @@
 #include "run_check.hpp"
 #include "run_folder.hpp"
 #include "run_many.hpp"
+#include "run_map.hpp"
 #include "run_mode.hpp"
 #include "run_summary.hpp"
 #include "source.hpp"
@@ -38,6 +39,7 @@ namespace {
 struct RunOptions {
   SourceOptions source;
   ConfigSource config;
+  MapOptions map;
   std::string mode = "auto";
   std::string frame = "auto";
   std::filesystem::path out;
@@ -73,6 +75,7 @@ class Run {
   std::filesystem::path folder_;
   StageTimings program_timings_;
   Odometry odometry_;
+  RunMap map_;
   QueueConfig queue_config_;
   CalibrationConfig calibration_config_;
   std::optional<RunWriter> writer_;
@@ -113,6 +116,7 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config.odometry,
                 {kInOrder, options.live ? Inference::OwnThread : Inference::Synchronous}),
+      map_(options.map, config.odometry.map.enabled, odometry_),
       queue_config_(config.live),
       calibration_config_(config.odometry.estimator.calibration),
       status_line_(options.quiet) {
@@ -143,6 +147,7 @@ void Run::check(const Measurement& measurement) {
 void Run::observe(const Step& step) {
   if (live_) live_->note_result(step.t);
   log_changes(step);
+  map_.observe(step);
   {
     const auto timer = program_timings_.measure("write");
     statistics_.add(step);
@@ -278,6 +283,7 @@ RunSummary Run::summarize() {
   summary.poses = writer_->poses();
   summary.calibration = compare_calibrations(source_.calibration.rig, odometry_, calibration_config_);
   summary.verdict = judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
+  summary.map = map_.finish(odometry_);
   summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);
   if (live_)
     summary.live =
@@ -343,6 +349,8 @@ int run_all(const RunOptions& given, const CLI::App& app) {
   RunOptions options = given;
   std::vector<std::string> recordings = {options.source.recording}, assignments;
   for (const std::string& word : options.more) (is_assignment(word) ? assignments : recordings).push_back(word);
+  if (recordings.size() > 1 && !options.map.save.empty())
+    throw InputError("--save-map is for one recording: each would replace the other's map");
   if (recordings.size() > 1)
     return run_many({recordings, arguments_for_each(app, assignments), options.out, options.force, options.quiet,
                      options.json, options.jobs});
@@ -357,6 +365,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
   add_source_options(*run_app, options->source);
   add_config_options(*run_app, options->config);
+  add_map_options(*run_app, options->map);
   run_app->add_option("MORE", options->more, "More recordings; options as KEY=VALUE, as with --set");
   run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))

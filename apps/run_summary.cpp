@@ -164,6 +164,8 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
+  if (s.map)
+    json["map"] = {{"loaded", s.map->loaded}, {"found_s", number_or_null(s.map->found_s)}, {"saved", s.map->saved}};
   json["calibration"] = nlohmann::ordered_json::array();
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
@@ -202,6 +204,12 @@ std::string to_table(const RunSummary& s) {
     table += line("depth source", fmt::format("x {:.3f}", std::exp(ln_s->value)),
                   fmt::format("its depths over the landmarks', +- {:.0f} %", 100.0 * ln_s->sigma));
   }
+  if (s.map && !s.map->loaded.empty()) {
+    table += line("map", s.map->found_s ? fmt::format("{:.1f} s", *s.map->found_s) : "not found",
+                  s.map->found_s ? "from the first pose until found in " + s.map->loaded
+                                 : "again: poses are in a frame of their own");
+  }
+  if (s.map && !s.map->saved.empty()) table += line("map kept", s.map->saved);
   if (s.live) table += live_table(*s.live);
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
   return table + verdict_text(s);

@@ -15,6 +15,7 @@
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
+#include "run_map.hpp"
 #include "run_statistics.hpp"
 #include "verdict.hpp"
 
@@ -39,6 +40,7 @@ struct RunSummary {
   std::size_t poses = 0;
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
   std::optional<LiveSummary> live;
+  std::optional<MapSummary> map;
   std::vector<CalibrationFound> calibration;
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth

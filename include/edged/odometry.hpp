@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "edged/core/timing.hpp"
 #include "edged/imu_noise.hpp"
@@ -48,6 +49,13 @@ class Odometry {
   /// What the next packet brought, once all that it needs has come; nothing: add more. Does not wait. Lost tracking is
   /// a status.
   std::optional<Step> next();
+
+  /// Goes on in a map that save_map of an earlier run gave, before the first measurement. Until a place of it has been
+  /// recognised the poses are in a frame of this run's own; with the step that says found_again they come into the
+  /// map's. Throws InputError where the bytes are damaged or of another version, or no camera of this mode fits.
+  void load_map(std::string_view bytes);
+  /// What has been seen so far, for load_map. Nothing while a map was loaded and has not been found again.
+  std::optional<std::string> save_map() const;
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
   /// have come since, in a few microseconds. Nothing while there is no estimate to go by, and a second after it.

@@ -61,11 +61,14 @@ void KeyframeMap::add(MapKeyframe keyframe) {
   keyframes_.push_back(std::move(keyframe));
 }
 
-std::optional<std::size_t> KeyframeMap::superfluous() const {
+std::optional<std::size_t> KeyframeMap::superfluous(TimeSpan made) const {
   if (static_cast<int>(keyframes_.size()) <= config_.max_keyframes) return std::nullopt;
-  const auto longest =
-      std::ranges::min_element(keyframes_.begin(), std::prev(keyframes_.end()), {}, &MapKeyframe::found_at);
-  return static_cast<std::size_t>(longest - keyframes_.begin());
+  const auto outside = [&](const MapKeyframe& keyframe) { return !made.contains(keyframe.t); };
+  const auto begin = std::find_if_not(keyframes_.begin(), keyframes_.end(), outside);
+  const auto end = std::prev(keyframes_.end());
+  if (begin >= end) return std::nullopt;
+  return static_cast<std::size_t>(std::ranges::min_element(begin, end, {}, &MapKeyframe::found_at) -
+                                  keyframes_.begin());
 }
 
 void KeyframeMap::remove(std::size_t keyframe) {
@@ -84,8 +87,7 @@ std::vector<std::size_t> KeyframeMap::near(const MapQuery& query, const SE3& T_M
   std::vector<std::pair<double, std::size_t>> found;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
     const MapKeyframe& keyframe = keyframes_[k];
-    if (keyframe.t >= query.before) break;  // in order of time
-    if (keyframe.camera != query.camera) continue;
+    if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
     const SE3 T_M_then = query.T_M_K[k] * keyframe.T_B_C;
     const double distance = (T_M_then.translation() - T_M_C.translation()).norm() / keyframe.scene_depth;
     const double cosine = T_M_then.R().col(2).dot(T_M_C.R().col(2));
@@ -139,8 +141,7 @@ std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const
     PlaceMatch match{points[i], {}};
     for (std::size_t k = 0; k < keyframes_.size(); ++k) {
       const MapKeyframe& keyframe = keyframes_[k];
-      if (keyframe.t >= query.before) break;
-      if (keyframe.camera != query.camera) continue;
+      if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
       for (const MapPoint& point : keyframe.points) {
         const int bits = point.descriptor ? distance(*descriptors[i], *point.descriptor) : kAlike;
         if (bits >= nearest) continue;

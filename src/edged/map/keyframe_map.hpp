@@ -38,10 +38,16 @@ struct MapKeyframe {
   double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
 };
 
+/// From `since` on, and before `before`.
+struct TimeSpan {
+  Timestamp since = Timestamp::min(), before = Timestamp::max();
+  bool contains(Timestamp t) const { return since <= t && t < before; }
+};
+
 /// What is asked of the map.
 struct MapQuery {
   std::string_view camera;     ///< its keyframes alone
-  Timestamp before;            ///< the older ones alone
+  TimeSpan made;               ///< those made then alone
   std::span<const SE3> T_M_K;  ///< where the body was at each keyframe of the map, in their order
 };
 
@@ -63,9 +69,9 @@ class KeyframeMap {
   /// Whether the map gains by the keyframe, which it wants. Points that are not worth keeping are taken out.
   bool gains_by(MapKeyframe& keyframe) const;
   void add(MapKeyframe keyframe);
-  /// The keyframe to be removed next, as there are too many: of all but the newest the one that was not found for
-  /// longest. Nothing while there is room.
-  std::optional<std::size_t> superfluous() const;
+  /// The keyframe to be removed next, as there are too many: of those made then, but for the newest, the one that was
+  /// not found for longest. Nothing while there is room.
+  std::optional<std::size_t> superfluous(TimeSpan made = {}) const;
   void remove(std::size_t keyframe);
 
   /// What should be in view of the camera at T_M_C, spread over the image, the most reliable first: at most `most`.

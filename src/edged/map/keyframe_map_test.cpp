@@ -18,7 +18,7 @@ Timestamp at(double t_s) { return timestamp_from_seconds(t_s); }
 /// All are where the map begins.
 MapQuery asked(double before_s, std::string_view camera = kName) {
   static const std::vector<SE3> kThere(3);
-  return {camera, at(before_s), kThere};
+  return {camera, {.before = at(before_s)}, kThere};
 }
 
 /// A wall 2 m ahead, its points 20 px apart.

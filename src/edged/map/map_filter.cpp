@@ -81,6 +81,14 @@ void MapFilter::add_keyframe(const SE3& T_O_K, Timestamp t) {
   P_ = std::move(grown);
 }
 
+void MapFilter::load(std::vector<SE3> T_M_K, const MatrixXd& covariance) {
+  T_M_K_ = std::move(T_M_K);
+  P_ = MatrixXd::Zero(6 + covariance.rows(), 6 + covariance.cols());
+  P_.bottomRightCorner(covariance.rows(), covariance.cols()) = covariance;
+}
+
+MatrixXd MapFilter::keyframe_covariance() const { return P_.bottomRightCorner(P_.rows() - 6, P_.cols() - 6); }
+
 void MapFilter::remove_keyframe(std::size_t keyframe) {
   const Eigen::Index k = block_of(keyframe), after = P_.rows() - k - 6;
   P_.middleRows(k, after) = P_.bottomRows(after).eval();

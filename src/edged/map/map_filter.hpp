@@ -40,6 +40,8 @@ class MapFilter {
   void predict(const SE3& T_O_B, Timestamp t);
   /// A keyframe of the odometry, at T_O_K: it comes last in keyframes().
   void add_keyframe(const SE3& T_O_K, Timestamp t);
+  /// The keyframes of another run, in place of those there are, and how well they are known: six rows each.
+  void load(std::vector<SE3> T_M_K, const Eigen::MatrixXd& covariance);
   /// The others' order stays.
   void remove_keyframe(std::size_t keyframe);
   /// Fits all poses to the sights; expected: how many could have been found. False where they do not agree: nothing has
@@ -51,6 +53,7 @@ class MapFilter {
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
   /// Of the body against the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
+  Eigen::MatrixXd keyframe_covariance() const;
   /// How far a sight may lie from where it is expected on the unit plane: one sigma.
   double expected_error(const MapSight& sight, const SE3& T_B_C) const;
 

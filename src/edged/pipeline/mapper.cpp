@@ -41,7 +41,7 @@ Corners corners_of(const ChannelView& view, const SE3& T_O_C) {
 Mapper::Mapper(const MapConfig& config) : config_(config), map_(config.keyframes), filter_(config.filter) {}
 
 void Mapper::restart(const SE3& T_M_O, const NavState& now) {
-  const bool first = map_.keyframes().empty();
+  const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
   filter_.restart(T_M_O, now.T_W_B, now.t, first ? 0.0 : kRestartPosition_m, first ? 0.0 : kRestartYaw_rad);
   started_ = now.t;
   blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : kUnnoticed_s) + to_seconds(now.t - predicted_);
@@ -52,16 +52,28 @@ void Mapper::restart(const SE3& T_M_O, const NavState& now) {
   found_px_.clear();
 }
 
+void Mapper::load(const SavedMap& map) {
+  map_ = KeyframeMap(config_.keyframes);
+  for (const MapKeyframe& keyframe : map.keyframes) map_.add(keyframe);
+  filter_.load(map.T_M_K, map.covariance);
+  if (!map.keyframes.empty()) elsewhere_before_ = Timestamp();
+}
+
+std::optional<SavedMap> Mapper::save() const {
+  if (elsewhere_before_) return std::nullopt;
+  return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
+}
+
 void Mapper::predict(const NavState& now) {
   filter_.predict(now.T_W_B, now.t);
   predicted_ = now.t;
 }
 
-Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Timestamp before) {
+Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, TimeSpan made) {
   const CameraModel& camera = view.channel->tracker.camera();
   Search search;
   search.T_B_C = filter.T_M_B().inverse() * filter.T_M_O() * T_O_C;
-  search.candidates = map_.visible({view.channel->camera.name, before, filter.keyframes()}, filter.T_M_O() * T_O_C,
+  search.candidates = map_.visible({view.channel->camera.name, made, filter.keyframes()}, filter.T_M_O() * T_O_C,
                                    camera, config_.max_sights);
   for (const Candidate& candidate : search.candidates) {
     MapSight sight{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K, camera.pixel_to_point(candidate.pixel),
@@ -92,13 +104,17 @@ bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   looked_at_ = t;
   found_px_.clear();
   const SE3 T_O_C = view.channel->T_W_C(T_O_B);
-  const Search here = search(filter_, view, T_O_C, t - duration_from_seconds(config_.keyframes.min_age_s));
+  const TimeSpan old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
+  const Search here = search(filter_, view, T_O_C, old_enough);
   const auto older = std::ranges::count_if(
       here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
   const bool agreed = update(filter_, here, t);
-  if (!searching_) return false;
-  searching_ = !(agreed && older >= config_.filter.min_sights) && !recognise(t, view, T_O_C);
-  return !searching_;
+  if (!searching_ && !elsewhere_before_) return false;
+  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_sights;
+  const bool found_by_looks = (elsewhere_before_ || !found_by_guess) && recognise(t, view, T_O_C);
+  if (found_by_looks) elsewhere_before_.reset();
+  if (found_by_guess || found_by_looks) searching_ = false;
+  return found_by_guess || found_by_looks;
 }
 
 /// Whether dead reckoning may have been so far off. Its heading is the gyro's, and good: of places that look alike most
@@ -109,26 +125,27 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
          so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * blind_s_;
 }
 
-/// By looks alone, of what was there before the newest start. Two images must agree on where that is, and the points
-/// that should then be in view be found. What has been mapped since, from a guess, goes.
+/// By looks alone, of what was there before the newest start, or of the map that was taken up. Two images must agree on
+/// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
 bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
   const Corners corners = corners_of(view, T_O_C);
   const double max_error = kAgreement_px / view.channel->tracker.camera().mean_focal();
-  const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, started_, filter_.keyframes()},
+  const TimeSpan before{Timestamp::min(), elsewhere_before_.value_or(started_)};
+  const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, before, filter_.keyframes()},
                                                   corners.descriptors, corners.points, T_O_C.rotation(), max_error);
-  const std::optional<SE3> before = std::exchange(recognised_, std::nullopt);
+  const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
   if (!T_M_C) return false;
   const SE3 T_M_O = *T_M_C * T_O_C.inverse(), T_O_B = filter_.T_M_O().inverse() * filter_.T_M_B();
-  if (!plausible(T_M_O, T_O_B)) return false;
+  if (!elsewhere_before_ && !plausible(T_M_O, T_O_B)) return false;
   recognised_ = T_M_O;
-  if (!before) return false;
-  const SE3 between = (*before * T_O_B).inverse() * (T_M_O * T_O_B);
+  if (!last) return false;
+  const SE3 between = (*last * T_O_B).inverse() * (T_M_O * T_O_B);
   if (between.translation().norm() > kSamePlace_m || so3::log(between.rotation()).norm() > kSamePlace_rad) return false;
   MapFilter there = filter_;
   there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
-  if (!update(there, search(there, view, T_O_C, started_), t)) return false;
+  if (!update(there, search(there, view, T_O_C, before), t)) return false;
   filter_ = std::move(there);
-  while (map_.keyframes().back().t >= started_) remove_keyframe(map_.keyframes().size() - 1);
+  while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
 }
 
@@ -174,7 +191,7 @@ void Mapper::take(const KeyframeRecord& record) {
   if (!map_.gains_by(keyframe)) return;
   map_.add(std::move(keyframe));
   filter_.add_keyframe(record.T_W_B, record.t);
-  if (const auto superfluous = map_.superfluous()) remove_keyframe(*superfluous);
+  if (const auto superfluous = map_.superfluous(known())) remove_keyframe(*superfluous);
 }
 
 void Mapper::remove_keyframe(std::size_t keyframe) {

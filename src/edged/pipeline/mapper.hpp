@@ -6,11 +6,13 @@
 
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "edged/estimator/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
+#include "edged/map/saved_map.hpp"
 #include "edged/pipeline/channel.hpp"
 
 namespace edged {
@@ -33,6 +35,13 @@ class Mapper {
 
   const SE3& T_M_O() const { return filter_.T_M_O(); }
 
+  /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
+  /// of it has been recognised: so long M is a frame of this run's own.
+  void load(const SavedMap& map);
+  /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
+  /// in another frame than that.
+  std::optional<SavedMap> save() const;
+
  private:
   /// How a keyframe of the window looked.
   struct Look {
@@ -53,7 +62,9 @@ class Mapper {
     std::vector<Eigen::Vector2d> pixels;  ///< one a sight
     SE3 T_B_C;
   };
-  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Timestamp before);
+  /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
+  TimeSpan known() const { return {.since = elsewhere_before_.value_or(Timestamp::min())}; }
+  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, TimeSpan made);
   bool update(MapFilter& filter, const Search& search, Timestamp t);
   bool recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
@@ -66,11 +77,13 @@ class Mapper {
   std::deque<Look> looks_;
   std::vector<Eigen::Vector2d> found_px_;  ///< points of the map in the newest image
   std::optional<Timestamp> looked_at_;
-  Timestamp predicted_;            ///< newest word of the odometry
-  Timestamp started_;              ///< the estimator's newest start
-  SE3 T_M_O_guess_;                ///< there, by dead reckoning
-  double blind_s_ = 0.0;           ///< how long it had gone on that alone, since what is older was last found
-  bool searching_ = false;         ///< since then nothing older has been found again
+  Timestamp predicted_;     ///< newest word of the odometry
+  Timestamp started_;       ///< the estimator's newest start
+  SE3 T_M_O_guess_;         ///< there, by dead reckoning
+  double blind_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
+  bool searching_ = false;  ///< since then nothing older has been found again
+  /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
+  std::optional<Timestamp> elsewhere_before_;
   std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
 };
 

@@ -301,6 +301,20 @@ bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views,
   return found_again;
 }
 
+void PacketOdometry::load_map(std::string_view bytes) {
+  const SavedMap map = saved_map_from_bytes(bytes);
+  check_fits(map, given_rig_);
+  mapper_.load(map);
+}
+
+std::optional<std::string> PacketOdometry::save_map() const {
+  std::optional<SavedMap> map = mapper_.save();
+  if (!map) return std::nullopt;
+  for (const auto& [name, modality, model, T_B_C, time_offset] : given_rig_.cameras)
+    map->cameras.push_back({name, model.width(), model.height(), model.mean_focal()});
+  return to_bytes(*map);
+}
+
 void PacketOdometry::calibrate() {
   for (std::size_t camera = 0; camera < channels_.size(); ++camera) {
     channels_[camera].camera = rig_.cameras[camera] = estimator_.window().calibrated(camera);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/core/timing.hpp"
@@ -42,6 +43,8 @@ class PacketOdometry {
   /// Of the stages; whoever calls may add his own.
   StageTimings& timings() { return timings_; }
   /// As of Odometry.
+  void load_map(std::string_view bytes);
+  std::optional<std::string> save_map() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 

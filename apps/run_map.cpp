@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run_map.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "edged/core/check.hpp"
+#include "run_folder.hpp"
+
+namespace edged {
+namespace {
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError::format("--map {}: cannot be read; --save-map of an earlier run makes one", file.string());
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Before an hour is spent on what can then not be kept.
+void check_writable(const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw InputError::format("--save-map {}: no such folder: {}", file.string(), folder.string());
+}
+
+}  // namespace
+
+void add_map_options(CLI::App& app, MapOptions& options) {
+  app.add_option("--map", options.load,
+                 "Go on in the map that --save-map of an earlier run wrote: poses are in its frame once a place of it "
+                 "has been recognised");
+  app.add_option("--save-map", options.save, "Keep what has been seen in this file, which may be that of --map");
+}
+
+RunMap::RunMap(MapOptions options, bool enabled, Odometry& odometry) : options_(std::move(options)) {
+  if (options_.load.empty() && options_.save.empty()) return;
+  if (!enabled) throw InputError("--map and --save-map want the map: leave out expert.map.enabled=false");
+  if (!options_.save.empty()) check_writable(options_.save);
+  if (options_.load.empty()) return;
+  try {
+    odometry.load_map(bytes_of(options_.load));
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    throw what.starts_with("--map") ? e : InputError::format("--map {}: {}", options_.load.string(), what);
+  }
+}
+
+void RunMap::observe(const Step& step) {
+  if (!is_tracking(step.status)) return;
+  if (!first_pose_) first_pose_ = step.t;
+  if (step.found_again && !found_s_) found_s_ = to_seconds(step.t - *first_pose_);
+}
+
+std::optional<MapSummary> RunMap::finish(const Odometry& odometry) {
+  if (options_.load.empty() && options_.save.empty()) return std::nullopt;
+  MapSummary summary{options_.load.string(), found_s_, {}};
+  if (!options_.load.empty() && !found_s_)
+    spdlog::warn("--map {}: not found again; the poses are in a frame of their own", options_.load.string());
+  if (options_.save.empty()) return summary;
+  const std::optional<std::string> map = odometry.save_map();
+  if (map) {
+    write_file(options_.save, *map);
+    summary.saved = options_.save.string();
+  } else {
+    spdlog::warn("--save-map {}: not written, as this run has not found its place in that of --map",
+                 options_.save.string());
+  }
+  return summary;
+}
+
+}  // namespace edged

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/saved_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+using std::chrono::seconds;
+
+SavedMap some_map() {
+  SavedMap map;
+  map.cameras = {{"frames", 240, 180, 200.0}, {"events", 240, 180, 205.0}};
+  for (int k = 0; k < 3; ++k) {
+    MapKeyframe keyframe{Timestamp() + seconds(10 + k),
+                         Timestamp() + seconds(40 - k),
+                         k == 1 ? "events" : "frames",
+                         SE3(so3::exp({0.1, 0.2, 0.3 * k}), {0.01, 0.02, 0.03}),
+                         {}};
+    for (int i = 0; i < 4; ++i) {
+      MapPoint point;
+      point.point = {0.1 * i, -0.2 * k};
+      point.inverse_depth = 0.5 + i;
+      point.sigma = 0.01;
+      point.patch.pixels.fill(static_cast<std::uint8_t>(10 * i + k));
+      if (i != 2) point.descriptor = Descriptor{1U + static_cast<unsigned>(i), 2, 3, ~std::uint64_t{0}};
+      point.pixel = {100.0 + i, 50.0};
+      point.tried = 7, point.found = 5;
+      keyframe.points.push_back(point);
+    }
+    map.keyframes.push_back(keyframe);
+    map.T_M_K.emplace_back(so3::exp({0.0, 0.1 * k, 0.5}), Eigen::Vector3d(k, 2.0, -1.0));
+  }
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(18, 18);
+  map.covariance = root * root.transpose();
+  return map;
+}
+
+Rig rig_with(const std::string& name, double focal) {
+  Rig rig;
+  rig.cameras.push_back({name, Modality::Frames, CameraModel(240, 180, focal, focal, 120, 90), SE3(), Duration(0)});
+  return rig;
+}
+
+std::string refusal(std::string_view bytes) {
+  try {
+    saved_map_from_bytes(bytes);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(SavedMap, ComesBackAsItWas) {
+  const SavedMap map = some_map(), back = saved_map_from_bytes(to_bytes(map));
+  ASSERT_EQ(back.keyframes.size(), map.keyframes.size());
+  EXPECT_EQ(back.cameras[1].name, "events");
+  EXPECT_EQ(back.covariance, map.covariance.selfadjointView<Eigen::Lower>().toDenseMatrix());
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const MapKeyframe &a = map.keyframes[k], &b = back.keyframes[k];
+    EXPECT_EQ(a.camera, b.camera);
+    EXPECT_EQ(map.T_M_K[k].matrix(), back.T_M_K[k].matrix());
+    EXPECT_EQ(a.T_B_C.matrix(), b.T_B_C.matrix());
+    for (std::size_t i = 0; i < a.points.size(); ++i) {
+      EXPECT_EQ(a.points[i].point, b.points[i].point);
+      EXPECT_EQ(a.points[i].patch.pixels, b.points[i].patch.pixels);
+      EXPECT_EQ(a.points[i].descriptor, b.points[i].descriptor);
+      EXPECT_EQ(a.points[i].found, b.points[i].found);
+    }
+  }
+  EXPECT_EQ(to_bytes(back), to_bytes(map));
+}
+
+TEST(SavedMap, LiesBeforeTheNextRun) {
+  const SavedMap back = saved_map_from_bytes(to_bytes(some_map()));
+  EXPECT_EQ(back.keyframes[0].found_at, Timestamp() - seconds(1));  // 40 s, the newest of all
+  EXPECT_EQ(back.keyframes[2].t, Timestamp() - seconds(29));
+}
+
+TEST(SavedMap, AnEmptyOneIsOne) { EXPECT_TRUE(saved_map_from_bytes(to_bytes(SavedMap())).keyframes.empty()); }
+
+TEST(SavedMap, DamagedOnesAreRefused) {
+  const std::string good = to_bytes(some_map());
+  for (std::size_t n = 0; n < good.size(); n += n < 100 ? 1 : 97) EXPECT_NE(refusal(good.substr(0, n)), "") << n;
+  EXPECT_NE(refusal(good + "x"), "");
+  for (std::size_t i = 0; i < good.size(); i += 61) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ 0x10);
+    EXPECT_NE(refusal(bad), "") << i;
+  }
+  std::string later = good;
+  later[10] = 2;
+  EXPECT_EQ(refusal(later), "a map of version 2, this program reads 1");
+}
+
+TEST(SavedMap, WhatMakesNoSenseIsRefused) {
+  SavedMap map = some_map();
+  map.keyframes[1].points[0].inverse_depth = -1.0;
+  EXPECT_NE(refusal(to_bytes(map)), "");
+  map = some_map();
+  map.T_M_K[0].translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal(to_bytes(map)), "");
+  map = some_map();
+  std::swap(map.keyframes[0], map.keyframes[2]);
+  EXPECT_NE(refusal(to_bytes(map)), "");
+}
+
+TEST(SavedMap, FitsTheLensItWasMadeWith) {
+  const SavedMap map = some_map();
+  EXPECT_NO_THROW(check_fits(map, rig_with("frames", 201.0)));
+  EXPECT_THROW(check_fits(map, rig_with("frames", 230.0)), InputError);
+  EXPECT_THROW(check_fits(map, rig_with("cam7", 200.0)), InputError);
+}
+
+}  // namespace
+}  // namespace edged
