@@ -33,6 +33,13 @@ class TimeGroup {
     this.view = this.full.slice();
     this.redraw();
   }
+  /** There is more to show; who sees the whole goes on seeing the whole. */
+  grow(end) {
+    const whole = this.view[0] === this.full[0] && this.view[1] === this.full[1];
+    this.full[1] = Math.max(this.full[1], end);
+    if (whole) this.view = this.full.slice();
+    this.redraw();
+  }
   point(t) {
     this.cursor = t === null ? null : Math.min(Math.max(t, this.full[0]), this.full[1]);
     this.tell();
