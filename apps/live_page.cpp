@@ -93,13 +93,18 @@ class LivePage::Server {
 LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
     : feed(std::move(frame)), page_(live_report_page(about)) {
   http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  http_.set_keep_alive_max_count(1);  // a connection that waits for its next request would hold a thread
-  http_.set_write_timeout(1);         // one who does not read is let go: a browser comes back by itself
+  // A connection that waits holds a thread, and the end of the program: browsers open some in advance.
+  http_.set_keep_alive_max_count(1);
+  http_.set_keep_alive_timeout(1);
+  http_.set_read_timeout(1);
+  http_.set_write_timeout(1);  // one who does not read is let go: a browser comes back by itself
   http_.set_tcp_nodelay(true);
-  // Not httplib's own, by which two programs could share a port and its viewers.
+  // Not httplib's own, by which two programs could share a port and its viewers. A system that holds megabytes for one
+  // who is slow would show that one what was long ago.
   http_.set_socket_options([](int socket) {
-    const int yes = 1;
+    const int yes = 1, held_bytes = 1 << 15;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &held_bytes, sizeof held_bytes);
   });
   answer();
   bind(address);

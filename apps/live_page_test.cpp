@@ -105,7 +105,7 @@ TEST_F(LiveRun, TellsTheMapOnce) {
   LiveFeed::Place place;
   feed.viewer_came();
   go_on(2);
-  EXPECT_EQ(news(place)["map"].size(), 3u);  // at the first step; the next one comes within the same second
+  EXPECT_EQ(news(place)["map"].size(), 3u);  // at the first step; the next one comes within the same two seconds
   EXPECT_FALSE(news(place).contains("map"));
 }
 

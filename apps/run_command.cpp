@@ -136,10 +136,8 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
-  if (!options.serve.empty()) {
+  if (!options.serve.empty())
     page_.emplace(*parse_serve_address(options.serve), about_run(source_, mode_, frame_), frame_);
-    fmt::print(stderr, "edged: watch at {}\n", page_->url());
-  }
   const std::filesystem::path wanted = folder_;
   folder_ = make_run_folder(wanted, options.force ? EarlierRun::Replace : EarlierRun::Keep);
   write_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
@@ -225,6 +223,7 @@ std::optional<Measurement> Run::next_measurement() {
 
 RunSummary Run::go() {
   catch_interrupts();
+  if (page_) fmt::print(stderr, "edged: watch at {}\n", page_->url());
   meter_ = ResourceMeter();
   if (options_.live) live_.emplace(*source_.dataset, queue_config_, [] { return interrupt_signal() != 0; });
   try {

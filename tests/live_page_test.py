@@ -117,16 +117,16 @@ class LivePage(WithFlight):
         for name in ("states.csv", "trajectory.tum"):
             self.assertEqual((self.folder / "run" / name).read_bytes(), (self.folder / "alone" / name).read_bytes())
 
-    def test_one_who_never_reads_holds_up_nothing(self):
+    def test_one_who_never_reads_and_one_who_never_asks_hold_up_nothing(self):
         with self.serving("--live", "--duration", 2) as (process, url):
-            deaf = socket.socket()
-            deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
-            deaf.connect(("127.0.0.1", int(re.search(r"\d+(?=/$)", url).group(0))))
-            deaf.sendall(b"GET /events HTTP/1.1\r\nHost: x\r\n\r\n")
-            listener = Listener(url)
-            listener.join()
-            process.wait(timeout=30)
-            deaf.close()
+            address = ("127.0.0.1", int(re.search(r"\d+(?=/$)", url).group(0)))
+            with socket.socket() as deaf, socket.create_connection(address):
+                deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
+                deaf.connect(address)
+                deaf.sendall(b"GET /events HTTP/1.1\r\nHost: x\r\n\r\n")
+                listener = Listener(url)
+                listener.join()
+                process.wait(timeout=30)
         self.assertEqual(self.metrics()["live"]["shed"], {"events": 0, "frames": 0, "packets": 0})
         self.assertEqual(listener.updates[-1]["progress"]["packets"], self.metrics()["packets"])
         self.assertIn("live page: 2 at once at most", (self.folder / "run" / "run.log").read_text())

@@ -38,7 +38,7 @@ class TimeGroup {
     const whole = this.view[0] === this.full[0] && this.view[1] === this.full[1];
     this.full[1] = Math.max(this.full[1], end);
     if (whole) this.view = this.full.slice();
-    this.redraw();
+    this.draw();
   }
   point(t) {
     this.cursor = t === null ? null : Math.min(Math.max(t, this.full[0]), this.full[1]);
@@ -53,9 +53,12 @@ class TimeGroup {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      for (const plot of this.plots) plot.draw();
-      this.tell();
+      this.draw();
     });
+  }
+  draw() {
+    for (const plot of this.plots) plot.draw();
+    this.tell();
   }
 }
 
