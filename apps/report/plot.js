@@ -151,6 +151,7 @@ class TimePlot {
     }
     if (low > high) return [0, 1];
     if (this.spec.zero) low = Math.min(low, 0), high = Math.max(high, 0);
+    if (this.spec.zero && low === high) return [0, 1];
     const room = high > low ? 0.06 * (high - low) : Math.max(1e-3, 0.1 * Math.abs(high));
     return [low - (this.spec.zero && low === 0 ? 0 : room), high + room];
   }

@@ -87,7 +87,13 @@ function plotSection() {
 
 function timelineSection() {
   const cards = section('Status, and why it changed').appendChild(make('div', {}));
-  const fill = () => { cards.replaceChildren(); fillTimeline(cards); };
+  const table = () => cards.querySelector('.scroll') || {scrollLeft: 0};
+  const fill = () => {
+    const at = table().scrollLeft;  // a narrow screen has moved it
+    cards.replaceChildren();
+    fillTimeline(cards);
+    table().scrollLeft = at;
+  };
   fill();
   return fill;
 }
