@@ -29,12 +29,12 @@ std::string script_safe(const nlohmann::ordered_json& data) {
   return safe;
 }
 
-}  // namespace
-
-std::string report_page(const nlohmann::ordered_json& data) {
+/// start: what begins once all is defined; sources: where pictures and data may come from.
+std::string filled_page(const nlohmann::ordered_json& data, const char* start, const char* sources) {
   const std::map<std::string_view, std::string> parts = {
-      {"css", kReportCss},   {"data", script_safe(data)}, {"tools", kToolsJs},      {"plot", kPlotJs},
-      {"view3d", kView3dJs}, {"report", kReportJs},       {"sections", kSectionsJs}};
+      {"css", kReportCss}, {"data", script_safe(data)}, {"tools", kToolsJs},   {"plot", kPlotJs},
+      {"start", start},    {"view3d", kView3dJs},       {"report", kReportJs}, {"sections", kSectionsJs},
+      {"sources", sources}};
   constexpr std::string_view kOpen = "{{", kClose = "}}";
   std::string page;
   std::string_view rest = kReportHtml;
@@ -46,6 +46,16 @@ std::string report_page(const nlohmann::ordered_json& data) {
     rest.remove_prefix(end + kClose.size());
   }
   return page += rest;
+}
+
+}  // namespace
+
+std::string report_page(const nlohmann::ordered_json& data) {
+  return filled_page(data, "begin(buildPage);", "img-src data:");
+}
+
+std::string live_report_page(const nlohmann::ordered_json& about) {
+  return filled_page(about, kLiveJs, "img-src data: 'self'; connect-src 'self'");
 }
 
 void write_run_report(const std::filesystem::path& folder) {

@@ -12,6 +12,10 @@ namespace edged {
 /// No text of the data can end the script that holds it.
 std::string report_page(const nlohmann::ordered_json& data);
 
+/// The page of a run that goes on, which asks where it comes from for what happens (apps/live_page). about: what is
+/// known before it begins.
+std::string live_report_page(const nlohmann::ordered_json& about);
+
 /// report.html of one run folder, into it.
 void write_run_report(const std::filesystem::path& folder);
 

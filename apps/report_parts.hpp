@@ -12,5 +12,6 @@ extern const char* const kSectionsJs;
 extern const char* const kPlotJs;
 extern const char* const kToolsJs;
 extern const char* const kView3dJs;
+extern const char* const kLiveJs;
 
 }  // namespace edged

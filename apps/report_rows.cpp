@@ -17,25 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// A number with so many decimals takes little room as text.
-Json rounded(double value, int decimals) {
-  if (!std::isfinite(value)) return nullptr;
-  const double unit = std::pow(10.0, decimals);
-  return std::round(value * unit) / unit;
-}
-
-/// Roll, pitch, yaw [deg] about x, y, z: R = Rz Ry Rx. Each without jumps against the one before.
-Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before) {
-  const Eigen::Matrix3d R = T.R();
-  Eigen::Vector3d angles(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
-                         std::atan2(R(1, 0), R(0, 0)));
-  angles *= kDegreesPerRadian;
-  for (int i = 0; i < 3; ++i) {
-    if (std::isfinite(before[i])) angles[i] += 360.0 * std::round((before[i] - angles[i]) / 360.0);
-  }
-  return angles;
-}
-
 /// Columns of the poses, by row of states.csv; NaN where a row has none.
 class PoseColumns {
  public:
@@ -107,6 +88,23 @@ constexpr std::array kStateColumns = {StateColumn{"vx_mps", "vx", 4},
                                       StateColumn{"scene_depth_m", "depth", 3}};
 
 }  // namespace
+
+Json rounded(double value, int decimals) {
+  if (!std::isfinite(value)) return nullptr;
+  const double unit = std::pow(10.0, decimals);
+  return std::round(value * unit) / unit;
+}
+
+Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before) {
+  const Eigen::Matrix3d R = T.R();
+  Eigen::Vector3d angles(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
+                         std::atan2(R(1, 0), R(0, 0)));
+  angles *= kDegreesPerRadian;
+  for (int i = 0; i < 3; ++i) {
+    if (std::isfinite(before[i])) angles[i] += 360.0 * std::round((before[i] - angles[i]) / 360.0);
+  }
+  return angles;
+}
 
 std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vector<double>& error, std::size_t most) {
   const std::size_t n = states.t.size(), stride = n / std::max<std::size_t>(1, most) + 1;

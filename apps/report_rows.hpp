@@ -12,6 +12,12 @@
 
 namespace edged {
 
+/// A number with so many decimals takes little room as text; null where it is none.
+nlohmann::ordered_json rounded(double value, int decimals);
+
+/// Roll, pitch, yaw [deg] about x, y, z: R = Rz Ry Rx. Each without jumps against the one before.
+Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before);
+
 /// Which rows stand for all: evenly chosen, but the largest error among them and, unless it flutters, each change of
 /// status.
 std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vector<double>& error, std::size_t most);

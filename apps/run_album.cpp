@@ -5,53 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "edged/camera/output_frame.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "run_folder.hpp"
+#include "track_picture.hpp"
 #include "verdict.hpp"
 
 namespace edged {
 namespace {
 
-constexpr int kWidest = 320, kQuality = 70;  // [px]; of JPEG
-const cv::Scalar kTrackColour(60, 200, 60), kNewTrackColour(60, 160, 255);
-
-/// The image made small, its corners on it, each with where it was one image ago.
-std::vector<unsigned char> draw_small(const cv::Mat& image, const std::vector<Track>& tracks) {
-  const double scale = std::min(1.0, static_cast<double>(kWidest) / image.cols);
-  cv::Mat sized, colour;
-  cv::resize(image, sized, {}, scale, scale, cv::INTER_AREA);
-  if (sized.depth() != CV_8U) sized.convertTo(sized, CV_8U, 1.0 / 256.0);
-  if (sized.channels() == 1) {
-    cv::cvtColor(sized, colour, cv::COLOR_GRAY2BGR);
-  } else {
-    colour = sized.clone();
-  }
-  for (const Track& track : tracks) {
-    const cv::Point2d now(scale * track.pixel.x(), scale * track.pixel.y());
-    const cv::Point2d before(scale * track.previous_pixel.x(), scale * track.previous_pixel.y());
-    const cv::Scalar& ink = track.age > 5 ? kTrackColour : kNewTrackColour;
-    if (track.age > 0) cv::line(colour, before, now, ink, 1, cv::LINE_AA);
-    cv::circle(colour, now, 2, ink, 1, cv::LINE_AA);
-  }
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", colour, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return jpeg;
-}
-
-std::string reason_of(const Step& step) {
-  switch (step.status) {
-    case TrackingStatus::Initializing:
-      return step.waiting_for.empty() ? "" : "waits for " + step.waiting_for;
-    case TrackingStatus::Lost:
-      return step.lost_because;
-    default:
-      return step.started.empty() ? "" : "started " + step.started;
-  }
-}
+constexpr int kWidest_px = 320;
 
 }  // namespace
 
@@ -70,17 +34,9 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 
 void RunAlbum::add(const Step& step) {
   last_ = step.t;
-  note_status(step);
+  changes_.add(step);
   take_picture(step);
   if (step.keyframe) note_points(step);
-}
-
-void RunAlbum::note_status(const Step& step) {
-  if (changes_.empty() || changes_.back().status != step.status) {
-    changes_.push_back({step.t, step.status, reason_of(step)});
-  } else if (const std::string reason = reason_of(step); !reason.empty() && !is_tracking(step.status)) {
-    changes_.back().reason = reason;  // what was missing last says most
-  }
 }
 
 void RunAlbum::take_picture(const Step& step) {
@@ -94,8 +50,9 @@ void RunAlbum::take_picture(const Step& step) {
   if ((events_come_ && !events) || (frames_come_ && !frame)) {
     if (step.t < *due_ + kPatience) return;
   }
-  pictures_.push_back({step.t, events ? draw_small(step.event_frame, step.event_tracks) : std::vector<unsigned char>{},
-                       frame ? draw_small(step.frame->image, step.frame_tracks) : std::vector<unsigned char>{}});
+  pictures_.push_back(
+      {step.t, events ? track_picture(step.event_frame, step.event_tracks, kWidest_px) : std::vector<unsigned char>{},
+       frame ? track_picture(step.frame->image, step.frame_tracks, kWidest_px) : std::vector<unsigned char>{}});
   if (pictures_.size() > kMostPictures) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pictures_.size(); i += 2) std::swap(pictures_[kept++], pictures_[i]);
@@ -123,7 +80,7 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame) const {
                                  {"changes", nlohmann::ordered_json::array()},
                                  {"points", nlohmann::ordered_json::array()},
                                  {"pictures", nlohmann::ordered_json::array()}};
-  for (const Change& change : changes_) {
+  for (const StatusChange& change : changes_.all()) {
     json["changes"].push_back(
         {{"t_ns", to_ns(change.t)}, {"status", to_string(change.status)}, {"reason", change.reason}});
   }
@@ -140,10 +97,10 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame) const {
 void RunAlbum::write(const std::filesystem::path& folder, const Calibration& given, const Rig& found,
                      const std::optional<GroundTruth>& truth) const {
   constexpr Duration kMargin = std::chrono::seconds(1);  // clocks of sensors differ by less
-  if (truth && !changes_.empty()) {
+  if (truth && !changes_.all().empty()) {
     Trajectory meanwhile;
     for (const StampedPose& pose : truth->trajectory) {
-      if (pose.t >= changes_.front().t - kMargin && pose.t <= last_ + kMargin) meanwhile.push_back(pose);
+      if (pose.t >= changes_.all().front().t - kMargin && pose.t <= last_ + kMargin) meanwhile.push_back(pose);
     }
     write_tum(folder / "groundtruth.tum", meanwhile,
               {"ground truth while the run lasted: " + OutputFrame(given.rig, truth->frame).describe()});

@@ -14,6 +14,7 @@
 #include "edged/core/dataset.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/odometry.hpp"
+#include "status_changes.hpp"
 
 namespace edged {
 
@@ -29,6 +30,9 @@ class RunAlbum {
 
   void add(const Step& step);
 
+  /// x, y, z [m] in the world of the estimate, by landmark.
+  const std::map<FeatureId, std::array<float, 3>>& points() const { return points_; }
+
   /// truth_frame: whose pose the ground truth is; "" where there is none.
   nlohmann::ordered_json to_json(const std::string& truth_frame) const;
 
@@ -43,13 +47,7 @@ class RunAlbum {
     Timestamp t;
     std::vector<unsigned char> events, frame;
   };
-  struct Change {
-    Timestamp t;
-    TrackingStatus status;
-    std::string reason;
-  };
 
-  void note_status(const Step& step);
   void take_picture(const Step& step);
   void note_points(const Step& step);
 
@@ -57,7 +55,7 @@ class RunAlbum {
   std::optional<Timestamp> due_;  ///< of the next picture
   Duration spacing_ = std::chrono::milliseconds(200);
   bool events_come_ = false, frames_come_ = false;
-  std::vector<Change> changes_;
+  StatusChanges changes_;
   Timestamp last_{};
   std::map<FeatureId, std::array<float, 3>> points_;
   FeatureId every_ = 1;  ///< only ids that it divides are kept

@@ -18,6 +18,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
+#include "live_page.hpp"
 #include "log.hpp"
 #include "overview.hpp"
 #include "report_page.hpp"
@@ -28,6 +29,7 @@
 #include "run_map.hpp"
 #include "run_mode.hpp"
 #include "run_summary.hpp"
+#include "serve_address.hpp"
 #include "source.hpp"
 #include "states_table.hpp"
 #include "status_line.hpp"
@@ -49,6 +51,7 @@ struct RunOptions {
   bool quiet = false;
   bool json = false;
   bool live = false;
+  std::string serve;  ///< where to; "true" where that is not said; "" without a live page
 };
 
 /// One run from the first measurement to the files' end.
@@ -64,6 +67,7 @@ class Run {
   void observe(const Step& step);
   void log_changes(const Step& step) const;
   void show_status(const Step& step);
+  RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s()}; }
   RunSummary summarize();
   void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
@@ -85,7 +89,8 @@ class Run {
   StatusLine status_line_;
   ResourceMeter meter_;
   std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
-  bool broken_off_ = false;         ///< an error ended the run
+  std::optional<LivePage> page_;
+  bool broken_off_ = false;  ///< an error ended the run
 };
 
 std::filesystem::path run_folder_path(const RunOptions& options, const DatasetInfo& info, Mode mode) {
@@ -98,6 +103,18 @@ std::string frame_name(const std::string& wanted, const Source& source) {
   const std::string& usual = source.dataset->info().pose_frame;
   const bool has_usual = std::ranges::count(source.calibration.rig.cameras, usual, &RigCamera::name) > 0;
   return wanted != "auto" ? wanted : has_usual ? usual : "body";
+}
+
+/// What the live page calls the run.
+nlohmann::ordered_json about_run(const Source& source, Mode mode, const OutputFrame& frame) {
+  const DatasetInfo& info = source.dataset->info();
+  const bool ends = info.begin && info.end;
+  return {{"version", kVersion},
+          {"recording", info.name},
+          {"format", info.format},
+          {"mode", mode_name(mode)},
+          {"frame", frame.name()},
+          {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nullptr}};
 }
 
 std::string config_text(RunConfig config, const DatasetInfo& info, Mode mode) {
@@ -123,6 +140,8 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
   const DatasetInfo& info = source_.dataset->info();
   if (options.live && source_.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
+  if (!options.serve.empty())
+    page_.emplace(*parse_serve_address(options.serve), about_run(source_, mode_, frame_), frame_);
   const std::filesystem::path wanted = folder_;
   folder_ = make_run_folder(wanted, options.force ? EarlierRun::Replace : EarlierRun::Keep);
   write_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
@@ -154,6 +173,10 @@ void Run::observe(const Step& step) {
     writer_->add(step);
     moment_.consider(step);
     album_.add(step);
+  }
+  if (page_) {
+    const auto timer = program_timings_.measure("serve");
+    page_->add(step, progress(), album_);
   }
   if (status_line_.due()) show_status(step);
 }
@@ -205,6 +228,7 @@ std::optional<Measurement> Run::next_measurement() {
 
 RunSummary Run::go() {
   catch_interrupts();
+  if (page_) fmt::print(stderr, "edged: watch at {}\n", page_->url());
   meter_ = ResourceMeter();
   if (options_.live) live_.emplace(*source_.dataset, queue_config_, [] { return interrupt_signal() != 0; });
   try {
@@ -222,31 +246,6 @@ RunSummary Run::go() {
     throw;
   }
   return summarize();
-}
-
-/// What the odometry could not use, in the words of a user.
-void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
-  const auto& [intake, packets] = counters;
-  const std::pair<const char*, std::size_t> dropped[] = {
-      {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
-      {"measurements dropped as too much waited", intake.no_room},
-      {"events outside the calibration's image dropped", intake.events_outside},
-      {"frames of another size than the calibration's dropped", intake.frames_unfit},
-      {"measurements with absurd stamps dropped", intake.absurd_stamps},
-      {"measurements with stamps far ahead dropped", intake.far_ahead},
-      {"clocks set back: began anew", intake.clocks_set_back},
-      {"packets before the first IMU sample dropped", packets.packets_before_imu},
-      {"packets after the last IMU sample dropped", packets.packets_after_imu},
-      {"packets dropped while the IMU stayed away", packets.packets_overflow},
-      {"late events dropped", packets.events_late},
-      {"late frames dropped", packets.frames_late},
-      {"times of 5 s without a frame", packets.frames_missing},
-      {"late IMU samples dropped", packets.imu_late},
-      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
-  };
-  for (const auto& [kind, count] : dropped) {
-    if (count > 0) repairs[kind] += count;
-  }
 }
 
 std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
@@ -303,6 +302,7 @@ RunSummary Run::summarize() {
   for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   write_run_report(folder_);  // the log is part of it
+  if (page_) page_->finish(progress(), to_json(summary), folder_);
   return summary;
 }
 
@@ -350,7 +350,9 @@ int run_all(const RunOptions& given, const CLI::App& app) {
   std::vector<std::string> recordings = {options.source.recording}, assignments;
   for (const std::string& word : options.more) (is_assignment(word) ? assignments : recordings).push_back(word);
   if (recordings.size() > 1 && !options.map.save.empty())
-    throw InputError("--save-map is for one recording: each would replace the other's map");
+    throw CLI::ValidationError("--save-map", "is for one recording; each would replace the map of the one before");
+  if (recordings.size() > 1 && !options.serve.empty())
+    throw CLI::ValidationError("--serve", "shows one run; give one recording (a port is written --serve=PORT)");
   if (recordings.size() > 1)
     return run_many({recordings, arguments_for_each(app, assignments), options.out, options.force, options.quiet,
                      options.json, options.jobs});
@@ -387,6 +389,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
                     "events (live.*); the "
                     "depth network in a thread of its own; not repeatable to the bit");
+  add_serve_option(*run_app, options->serve);
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as json");
   run_app->footer(
@@ -395,6 +398,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
       "  edged run data/boxes_6dof data/poster_6dof --rig davis240c_ecd --jobs 2    # ends with a table\n"
       "  edged run data/boxes_6dof --live --set depth.source=fused\n"
+      "  edged run tcp://127.0.0.1:7777 --calib head.yaml --serve    # a live camera, watched in a browser\n"
       "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
       "Of several recordings the exit code is that of the first whose is not 0.");
   run_app->callback(

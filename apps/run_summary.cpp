@@ -119,6 +119,30 @@ void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector
   }
 }
 
+void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
+  const auto& [intake, packets] = counters;
+  const std::pair<const char*, std::size_t> dropped[] = {
+      {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
+      {"measurements dropped as too much waited", intake.no_room},
+      {"events outside the calibration's image dropped", intake.events_outside},
+      {"frames of another size than the calibration's dropped", intake.frames_unfit},
+      {"measurements with absurd stamps dropped", intake.absurd_stamps},
+      {"measurements with stamps far ahead dropped", intake.far_ahead},
+      {"clocks set back: began anew", intake.clocks_set_back},
+      {"packets before the first IMU sample dropped", packets.packets_before_imu},
+      {"packets after the last IMU sample dropped", packets.packets_after_imu},
+      {"packets dropped while the IMU stayed away", packets.packets_overflow},
+      {"late events dropped", packets.events_late},
+      {"late frames dropped", packets.frames_late},
+      {"times of 5 s without a frame", packets.frames_missing},
+      {"late IMU samples dropped", packets.imu_late},
+      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
+  };
+  for (const auto& [kind, count] : dropped) {
+    if (count > 0) repairs[kind] += count;
+  }
+}
+
 nlohmann::ordered_json to_json(const CalibrationFound& c) {
   return {{"camera", c.camera},
           {"rotation_off_deg", c.rotation_deg},

@@ -53,6 +53,9 @@ struct RunSummary {
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
                   const GroundTruth& truth);
 
+/// What the odometry could not use, in the words of a user.
+void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters);
+
 nlohmann::ordered_json to_json(const RunSummary& summary);
 nlohmann::ordered_json to_json(const CalibrationFound& found);
 std::string to_table(const RunSummary& summary);

@@ -33,6 +33,13 @@ class TimeGroup {
     this.view = this.full.slice();
     this.redraw();
   }
+  /** There is more to show; who sees the whole goes on seeing the whole. */
+  grow(end) {
+    const whole = this.view[0] === this.full[0] && this.view[1] === this.full[1];
+    this.full[1] = Math.max(this.full[1], end);
+    if (whole) this.view = this.full.slice();
+    this.draw();
+  }
   point(t) {
     this.cursor = t === null ? null : Math.min(Math.max(t, this.full[0]), this.full[1]);
     this.tell();
@@ -46,9 +53,12 @@ class TimeGroup {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      for (const plot of this.plots) plot.draw();
-      this.tell();
+      this.draw();
     });
+  }
+  draw() {
+    for (const plot of this.plots) plot.draw();
+    this.tell();
   }
 }
 
@@ -141,6 +151,7 @@ class TimePlot {
     }
     if (low > high) return [0, 1];
     if (this.spec.zero) low = Math.min(low, 0), high = Math.max(high, 0);
+    if (this.spec.zero && low === high) return [0, 1];
     const room = high > low ? 0.06 * (high - low) : Math.max(1e-3, 0.1 * Math.abs(high));
     return [low - (this.spec.zero && low === 0 ? 0 : room), high + room];
   }

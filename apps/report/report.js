@@ -3,8 +3,8 @@
 // The page: verdict, path, pictures, plots, timeline, options, calibration. All text of recordings goes in as text.
 'use strict';
 
-const report = JSON.parse(document.getElementById('data').textContent);
-const runs = report.runs;
+let report = null, runs = [], time = null, space = null;
+const show = {error: true, truth: true, map: true, whole: false, keyframes: false};
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
 const kSays = {
   'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
@@ -38,9 +38,11 @@ function length(value) {
 }
 const runColour = i => 'run' + i % 6;
 const nameOf = run => runs.filter(other => other.name === run.name).length > 1 ? run.folder : run.name;
-const runName = run => nameOf(run) + (run.metrics && !run.name.includes(run.metrics.mode) ? ', ' + run.metrics.mode : '');
+/** What is known of a run as a whole, of one that goes on as well; null of a file. */
+const about = run => run.metrics || run.live || null;
+const runName = run => nameOf(run) + (about(run) && !run.name.includes(about(run).mode) ? ', ' + about(run).mode : '');
 /** With the recording, where the folder's name does not tell it. */
-const fullName = run => (run.metrics && !run.name.includes(run.metrics.recording) ? run.metrics.recording + ': ' : '') + runName(run);
+const fullName = run => (about(run) && !run.name.includes(about(run).recording) ? about(run).recording + ': ' : '') + runName(run);
 
 function section(title, ...children) {
   const element = make('section', {}, make('h2', {}, title), ...children);
@@ -111,11 +113,15 @@ function verdictCard(run, i) {
 
 // ---- path and pictures ----
 
-const begin = Math.min(...runs.map(run => run.rows.t.length ? run.rows.t[0] : Infinity));
-const end = Math.max(...runs.map(run => run.rows.t.length ? run.rows.t[run.rows.t.length - 1] : -Infinity));
-const time = new TimeGroup(isFinite(begin) ? begin : 0, isFinite(end) ? end : 1);
-const show = {error: runs.length === 1, truth: true, map: true, whole: false, keyframes: false};
-let space = null;
+/** From here on the page is about this report. */
+function take(data) {
+  report = data;
+  runs = data.runs;
+  const begin = Math.min(...runs.map(run => run.rows.t.length ? run.rows.t[0] : Infinity));
+  const end = Math.max(...runs.map(run => run.rows.t.length ? run.rows.t[run.rows.t.length - 1] : -Infinity));
+  time = new TimeGroup(isFinite(begin) ? begin : 0, isFinite(end) ? end : 1);
+  show.error = runs.length === 1;
+}
 
 function axisOf(flat, k) {
   return flat.filter((value, i) => i % 3 === k);
@@ -147,7 +153,7 @@ function moveMarks() {
   space.marks = runs.flatMap((run, i) => {
     const rows = run.rows;
     if (!rows.x || !rows.t.length) return [];
-    const start = rows.x.findIndex(value => value !== null), now = time.cursor === null ? -1 : rowAt(rows.t, time.cursor);
+    const start = rows.x.findIndex(value => value !== null), last = run.live ? rows.t.length - 1 : -1, now = time.cursor === null ? last : rowAt(rows.t, time.cursor);
     const marks = start < 0 ? [] : [{p: [rows.x[start], rows.y[start], rows.z[start]], colour: runColour(i), size: 4}];
     if (now >= 0) marks.push({p: [rows.x[now], rows.y[now], rows.z[now]], colour: runColour(i), size: 7});
     return marks;
@@ -171,7 +177,7 @@ function pathCard() {
     }
     moveMarks();
   };
-  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), map: runs.some(run => run.map.length), whole: runs.some(run => run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
   for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});

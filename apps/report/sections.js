@@ -14,8 +14,8 @@ function columnPlot(parent, title, unit, key, more) {
     if (more && more.truth && !truth && rows['true_' + key]) {
       truth = {t: rows.t, y: rows['true_' + key], label: 'truth', colour: 'truth', dash: true};
     }
-    if (!rows[key] || !rows[key].some(value => value !== null)) return;
-    if (run.metrics && run.metrics.mode === (more && more.notIn)) return;
+    if (!rows[key] || !(run.live || rows[key].some(value => value !== null))) return;
+    if (about(run) && about(run).mode === (more && more.notIn)) return;
     series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i)});
   });
   if (!series.length) return;
@@ -64,7 +64,8 @@ function plotSection() {
   const errors = group('Errors, and how sure the estimate is');
   columnPlot(errors, 'position error, aligned', 'm', 'error_m', {zero: true});
   columnPlot(errors, 'rotation error, aligned', '°', 'rotation_error_deg', {zero: true});
-  errorPlots(errors);
+  if (runs.some(run => run.live)) triple(errors, ['3 σ of x', '3 σ of y', '3 σ of z'], 'm', ['sigma3_x', 'sigma3_y', 'sigma3_z'], {zero: true});
+  else errorPlots(errors);
   triple(group('Velocity of the body, in the world of the estimate'), ['v x', 'v y', 'v z'], 'm/s', ['vx', 'vy', 'vz']);
   const biases = group('Biases of the IMU');
   triple(biases, ['gyro x', 'gyro y', 'gyro z'], 'rad/s', ['bgx', 'bgy', 'bgz']);
@@ -85,7 +86,19 @@ function plotSection() {
 // ---- timeline, options, calibration ----
 
 function timelineSection() {
-  const all = section('Status, and why it changed');
+  const cards = section('Status, and why it changed').appendChild(make('div', {}));
+  const table = () => cards.querySelector('.scroll') || {scrollLeft: 0};
+  const fill = () => {
+    const at = table().scrollLeft;  // a narrow screen has moved it
+    cards.replaceChildren();
+    fillTimeline(cards);
+    table().scrollLeft = at;
+  };
+  fill();
+  return fill;
+}
+
+function fillTimeline(all) {
   runs.forEach((run, i) => {
     if (run.is_file || !run.changes.length) return;
     const last = run.rows.t[run.rows.t.length - 1];
@@ -103,7 +116,7 @@ function timelineSection() {
       const status = make('td', {class: 'status', c: kStatusColours[span.status]}, span.status);
       const at = rowAt(run.rows.t, span.t), n = key => run.rows[key] ? run.rows[key][at] : 0;
       const tracks = n('event_tracks') + ' on events, ' + n('frame_tracks') + ' on frames, ' + n('landmarks') + ' landmarks';
-      return [cell(span.t.toFixed(2), 'n'), cell(span.length.toFixed(2), 'n'), status, cell(span.reason || ''), cell(tracks)];
+      return [cell(span.t.toFixed(2), 'n'), cell(span.length.toFixed(2), 'n'), status, cell(span.reason || '', 'why'), cell(tracks)];
     });
     all.append(make('div', {class: 'card'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), runName(run)), bar,
                     table(['from [s]', 'for [s]', 'status', 'why', 'tracks then'], rows)));
@@ -174,10 +187,17 @@ function applyTheme() {
   for (const plot of time.plots) plot.draw(), plot.showCursor();
 }
 
-function buildPage() {
+/** An empty page about these runs. */
+function clearPage(data) {
+  take(data);
+  document.getElementById('main').replaceChildren();
   const title = runs.map(fullName).join(' · ');
   document.title = title + ' – Edged report';
   document.getElementById('title').textContent = title;
+}
+
+function buildPage(data) {
+  clearPage(data);
   section('In plain words', make('div', {class: 'cards'}, ...runs.map(verdictCard)));
   const [path, refresh] = pathCard(), pictures = picturesCard();
   section('Path', make('div', {class: pictures ? 'pair' : 'pair alone'}, path, pictures));
@@ -189,14 +209,18 @@ function buildPage() {
   document.getElementById('footer').textContent = 'Written by edged ' + report.version + '. Times count from the first packet of the first run.';
   refresh();
   time.listeners.push(moveMarks);
-  document.getElementById('theme').addEventListener('click', () => { theme = (theme + 1) % 3; applyTheme(); });
-  dark.addEventListener('change', applyTheme);
   applyTheme();
   time.tell();
+}
+
+/** build(data) fills the page, and whatever it holds follows the theme, the window and the printer. */
+function begin(build) {
+  build(JSON.parse(document.getElementById('data').textContent));
+  document.getElementById('theme').addEventListener('click', () => { theme = (theme + 1) % 3; applyTheme(); });
+  dark.addEventListener('change', applyTheme);
   let width = innerWidth;
   addEventListener('resize', () => { if (innerWidth !== width) width = innerWidth, applyTheme(); });
   addEventListener('beforeprint', () => { printing = true; applyTheme(); });
   addEventListener('afterprint', () => { printing = false; applyTheme(); });
   document.documentElement.dataset.ready = 'yes';
 }
-buildPage();

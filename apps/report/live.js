@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The page of a run that goes on: the same sections, filled by what the program sends, until its report takes their place.
+'use strict';
+
+const kLiveSays = {
+  Good: ['It runs, and knows where it is.', 'good'],
+  Degraded: ['It runs; its poses are less certain now.', 'degraded'],
+  Lost: ['It has lost its way, and starts again.', 'lost'],
+  Initializing: ['It has not started to estimate yet.', 'initializing'],
+};
+const kPictures = {frame: 'frame', events: 'events, motion-compensated'};
+
+/** A run of which nothing has come yet, in the shape of the report's. */
+function emptyRun(about) {
+  const columns = ['t', 'status', 'x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'bgx', 'bgy', 'bgz', 'bax', 'bay', 'baz', 'keyframe',
+                   'event_tracks', 'frame_tracks', 'landmarks', 'event_rate', 'depth', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
+  return {name: about.recording, folder: '', is_file: false, metrics: null, live: about, frame: about.frame, evaluation: null,
+          rows: Object.fromEntries(columns.map(name => [name, []])), claimed: {}, truth: [], map: [], changes: [], pictures: []};
+}
+
+/** Rows and changes that are new; the newest row goes along even where it is not one of those that are kept. */
+function takeUpdate(run, update) {
+  const rows = run.rows, from = update.rows_from;
+  for (const [name, values] of Object.entries(update.rows)) rows[name].splice(from, Infinity, ...values);
+  const last = rows.t[rows.t.length - 1];
+  if (last !== undefined && update.t > last) {
+    for (const [name, values] of Object.entries(update.newest)) rows[name].push(values[0]);
+  }
+  run.changes.splice(update.changes_from, Infinity, ...update.changes);
+  if (update.map) run.map.splice(0, Infinity, ...update.map);
+}
+
+/** Name by name; null is left out. */
+function liveFacts(run, update) {
+  const p = update.progress, now = name => update.newest[name][0];
+  const three = (names, decimals) => now(names[0]) === null ? null : names.map(name => now(name).toFixed(decimals)).join(', ');
+  const tracks = [];
+  if (run.live.mode !== 'frames') tracks.push(now('event_tracks') + ' on events');
+  if (run.live.mode !== 'events') tracks.push(now('frame_tracks') + ' on frames');
+  return [
+    ['time', number(update.t, 's', 1) + (run.live.whole_s ? ' of ' + number(run.live.whole_s, 's', 1) : '')],
+    ['position [m]', three(['x', 'y', 'z'], 3)],
+    ['velocity [m/s]', three(['vx', 'vy', 'vz'], 2)],
+    ['tracks', tracks.join(', ') + ', ' + now('landmarks') + ' landmarks'],
+    ['event rate', run.live.mode === 'frames' ? null : valueText(now('event_rate')) + ' 1/s'],
+    ['scene depth', number(now('depth'), 'm', 2)],
+    ['poses, keyframes', p.poses + ', ' + p.keyframes],
+    ['losses', p.times_lost === 0 ? 'none' : String(p.times_lost)],
+    ['coverage', number(100 * p.coverage, '% of the time Good', 1)],
+    ['first good pose', p.first_good_s === null ? 'not yet' : 'after ' + number(p.first_good_s, 's', 2)],
+    ['speed', number(p.real_time_factor, '× real time', 2)],
+    ['pose of', run.frame === 'body' ? 'the body (IMU)' : 'camera ' + run.frame],
+    ['left out here', update.left_out === 0 ? null : update.left_out + ' updates: this browser was too slow for them'],
+  ];
+}
+
+/** What it does now; returns the card and what fills it. */
+function liveCard(run) {
+  const says = make('p', {class: 'says', role: 'status'}, 'It begins.'), why = make('p', {}), list = make('dl', {class: 'facts'});
+  const card = make('article', {class: 'card verdict', id: 'live'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(0)}), fullName(run)), says, why, list);
+  const say = (text, ink) => {
+    if (says.textContent !== text) says.textContent = text;
+    card.style.setProperty('--verdict', 'var(--' + ink + ')');
+  };
+  return [card, say, update => {
+    say(...kLiveSays[update.status]);
+    why.textContent = update.reason;
+    list.replaceChildren(...liveFacts(run, update).flatMap(([name, value]) => value === null ? [] : [make('div', {}, make('dt', {}, name), make('dd', {}, value))]));
+  }];
+}
+
+/** The newest pictures: each is asked for when the one before has come. */
+function livePictures() {
+  const figures = make('div', {class: 'shots'}), shown = {};
+  const card = make('div', {class: 'card'}, make('h3', {}, 'What the cameras see, with tracks'), figures,
+                    make('p', {class: 'hint'}, 'Orange: new corners, green: those followed for more than five images.'));
+  return [card, update => {
+    for (const [key, name] of Object.entries(kPictures)) {
+      const number = update.pictures[key];
+      if (number === 0 || (shown[key] && (shown[key].number === number || !shown[key].image.complete))) continue;
+      if (!shown[key]) {
+        shown[key] = {image: make('img', {alt: name})};
+        figures.append(make('figure', {class: 'shot'}, shown[key].image, make('figcaption', {}, name)));
+      }
+      shown[key].number = number;
+      shown[key].image.src = key + '.jpg?' + number;
+    }
+  }];
+}
+
+/** The report that the run has left takes the place of all this. */
+async function showReport(say, metrics) {
+  try {
+    const answer = await fetch('report.html');
+    if (!answer.ok) throw new Error(answer.statusText);
+    const page = new DOMParser().parseFromString(await answer.text(), 'text/html');
+    buildPage(JSON.parse(page.getElementById('data').textContent));
+    document.getElementById('footer').textContent += ' The run is over; this page stays, and lies in ' + metrics.folder + '/report.html.';
+  } catch (error) {
+    say('It is over (' + metrics.status + '); its report lies in ' + metrics.folder + '/report.html.', (kSays[metrics.status] || ['', 'degraded'])[1]);
+  }
+}
+
+function buildLive(data) {
+  const run = emptyRun(data);
+  clearPage({version: data.version, runs: [run]});
+  const [card, say, fillCard] = liveCard(run), [path, refresh] = pathCard(), [pictures, fillPictures] = livePictures();
+  section('In plain words', make('div', {class: 'cards'}, card));
+  section('Path', make('div', {class: 'pair'}, path, pictures));
+  plotSection();
+  const fillTimes = timelineSection();
+  document.getElementById('footer').textContent = 'Sent by edged ' + data.version + '. Times count from the first packet.';
+  refresh();
+  time.listeners.push(moveMarks);
+  applyTheme();
+  let rested = 0;
+  watch(run, say, update => {
+    fillCard(update);
+    fillPictures(update);
+    const begin = performance.now();
+    if (begin < rested) return;
+    fillTimes();
+    refresh();
+    time.grow(update.t);
+    rested = performance.now() + 5 * (performance.now() - begin);  // plots take a sixth of the browser's time at most
+  });
+}
+
+/** Takes what comes; who is looked at by nobody draws nothing, and asks for no pictures. */
+function watch(run, say, draw) {
+  const source = new EventSource('events');
+  let newest = null;
+  const drawNewest = () => { if (newest && !document.hidden) draw(newest); };
+  source.addEventListener('message', event => {
+    newest = JSON.parse(event.data);
+    takeUpdate(run, newest);
+    drawNewest();
+  });
+  document.addEventListener('visibilitychange', () => { if (source.readyState !== EventSource.CLOSED) drawNewest(); });
+  source.addEventListener('end', async event => {
+    const metrics = JSON.parse(event.data);
+    await showReport(say, metrics);
+    source.close();
+  });
+  source.addEventListener('error', () => {
+    say('The program does not answer any more; what it said last is below. This page goes on when it does.', 'lost');
+  });
+}
+
+begin(buildLive);
