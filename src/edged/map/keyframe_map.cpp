@@ -76,7 +76,9 @@ void KeyframeMap::note(const Candidate& candidate, bool found, Timestamp t) {
   ++candidate.point->tried;
   if (!found) return;
   ++candidate.point->found;
-  keyframes_[candidate.keyframe].found_at = t;
+  MapKeyframe& keyframe = keyframes_[candidate.keyframe];
+  keyframe.times_found += keyframe.found_at == t ? 0 : 1;
+  keyframe.found_at = t;
 }
 
 std::vector<std::size_t> KeyframeMap::near(const MapQuery& query, const SE3& T_M_C) const {

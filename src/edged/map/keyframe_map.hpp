@@ -35,7 +35,9 @@ struct MapKeyframe {
   std::string camera;     ///< whose image it was: others show the same place otherwise
   SE3 T_B_C;
   std::vector<MapPoint> points;
+  std::size_t number = 0;    ///< in FlightRecord
   double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
+  int times_found = 0;       ///< images in which points of it were found
 };
 
 /// What is asked of the map.
