@@ -9,6 +9,7 @@
 #include <string>
 
 #include "edged/core/timing.hpp"
+#include "edged/hindsight.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
@@ -53,6 +54,11 @@ class Odometry {
   /// have come since, in a few microseconds. Nothing while there is no estimate to go by, and a second after it.
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
+
+  /// Path and map as they are known by now, best asked for when all steps have come: poses held to all places that
+  /// were seen again, before and after. Without the map, or where nothing was seen again, the poses are those of the
+  /// steps. Not causal. Takes seconds for an hour of flight; what it needs takes half a megabyte a minute.
+  Hindsight hindsight() const;
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "edged/estimator/keyframe_record.hpp"
+#include "edged/hindsight.hpp"
+#include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/pipeline/channel.hpp"
@@ -31,7 +33,14 @@ class Mapper {
   /// A keyframe has left the window: kept where the map gains by it.
   void take(const KeyframeRecord& record);
 
+  /// That pose of the odometry has been given out.
+  void note(const NavState& now) { record_.add({now.t, now.T_W_B}); }
+
   const SE3& T_M_O() const { return filter_.T_M_O(); }
+  /// What was found in the image of that instant.
+  std::vector<FoundPoint> found(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<FoundPoint>(); }
+  /// In M.
+  Hindsight hindsight() const;
 
  private:
   /// How a keyframe of the window looked.
@@ -63,8 +72,9 @@ class Mapper {
   MapConfig config_;
   KeyframeMap map_;
   MapFilter filter_;
+  FlightRecord record_;
   std::deque<Look> looks_;
-  std::vector<Eigen::Vector2d> found_px_;  ///< points of the map in the newest image
+  std::vector<FoundPoint> found_;  ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;            ///< newest word of the odometry
   Timestamp started_;              ///< the estimator's newest start

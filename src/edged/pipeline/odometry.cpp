@@ -79,6 +79,7 @@ std::optional<Step> Odometry::next() {
 
 std::optional<NavState> Odometry::newest_state() const { return impl_->prediction.newest(); }
 std::optional<NavState> Odometry::state_at(Timestamp t) const { return impl_->prediction.at(t); }
+Hindsight Odometry::hindsight() const { return impl_->packet_odometry.hindsight(); }
 Rig Odometry::rig() const { return impl_->packet_odometry.rig(); }
 std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) {
   return impl_->packet_odometry.calibration_covariance(camera);

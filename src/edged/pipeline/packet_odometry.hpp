@@ -11,6 +11,7 @@
 #include "edged/core/timing.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/frontend/dim_image.hpp"
+#include "edged/hindsight.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
@@ -42,6 +43,7 @@ class PacketOdometry {
   /// Of the stages; whoever calls may add his own.
   StageTimings& timings() { return timings_; }
   /// As of Odometry.
+  Hindsight hindsight() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
@@ -84,6 +86,7 @@ class PacketOdometry {
 
   WorldFrame world_;
   Mapper mapper_;
+  Hindsight before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised
