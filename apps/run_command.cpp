@@ -24,6 +24,7 @@
 #include "run_album.hpp"
 #include "run_check.hpp"
 #include "run_folder.hpp"
+#include "run_hindsight.hpp"
 #include "run_many.hpp"
 #include "run_mode.hpp"
 #include "run_summary.hpp"
@@ -63,6 +64,7 @@ class Run {
   void log_changes(const Step& step) const;
   void show_status(const Step& step);
   RunSummary summarize();
+  std::vector<std::string> headed(const std::string& known_when) const;
   void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
   const RunOptions& options_;
@@ -128,9 +130,13 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
     spdlog::warn("{}: holds an earlier run; this one goes to {} (--force replaces)", wanted.string(), folder_.string());
   spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
   spdlog::info("{}", describe(source_.calibration));
-  writer_.emplace(folder_, frame_,
-                  std::vector{frame_.describe(),
-                              fmt::format("edged {}, recording {}, mode {}", kVersion, info.name, mode_name(mode_))});
+  writer_.emplace(folder_, frame_, headed("causal: each as it was known at its time"));
+}
+
+/// Comments at the head of a trajectory file.
+std::vector<std::string> Run::headed(const std::string& known_when) const {
+  return {fmt::format("{}; {}", frame_.describe(), known_when),
+          fmt::format("edged {}, recording {}, mode {}", kVersion, source_.dataset->info().name, mode_name(mode_))};
 }
 
 /// What contradicts is told as soon as it is known: who watches can stop there.
@@ -219,31 +225,6 @@ RunSummary Run::go() {
   return summarize();
 }
 
-/// What the odometry could not use, in the words of a user.
-void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
-  const auto& [intake, packets] = counters;
-  const std::pair<const char*, std::size_t> dropped[] = {
-      {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
-      {"measurements dropped as too much waited", intake.no_room},
-      {"events outside the calibration's image dropped", intake.events_outside},
-      {"frames of another size than the calibration's dropped", intake.frames_unfit},
-      {"measurements with absurd stamps dropped", intake.absurd_stamps},
-      {"measurements with stamps far ahead dropped", intake.far_ahead},
-      {"clocks set back: began anew", intake.clocks_set_back},
-      {"packets before the first IMU sample dropped", packets.packets_before_imu},
-      {"packets after the last IMU sample dropped", packets.packets_after_imu},
-      {"packets dropped while the IMU stayed away", packets.packets_overflow},
-      {"late events dropped", packets.events_late},
-      {"late frames dropped", packets.frames_late},
-      {"times of 5 s without a frame", packets.frames_missing},
-      {"late IMU samples dropped", packets.imu_late},
-      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
-  };
-  for (const auto& [kind, count] : dropped) {
-    if (count > 0) repairs[kind] += count;
-  }
-}
-
 std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
   if (interrupt_signal() != 0) return "interrupted";
   if (!statistics.first_good_s()) return "never good";
@@ -285,9 +266,12 @@ RunSummary Run::summarize() {
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
+  const Hindsight known = odometry_.hindsight();
+  write_hindsight(folder_, frame_, known, headed("final: each by all that was found again before and after"));
   const StatesTable states = read_states(folder_);
   const Trajectory body = body_poses(states);
   if (truth && !body.empty()) evaluate_run(summary, body, claims_of(states), source_.calibration.rig, *truth);
+  if (summary.evaluation) evaluate_final(summary, known.poses, source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");

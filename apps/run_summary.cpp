@@ -119,6 +119,34 @@ void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector
   }
 }
 
+void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth) {
+  summary.final_evaluation = evaluate(associate(truth.trajectory, OutputFrame(rig, truth.frame)(body)), protocol("P3"));
+}
+
+void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
+  const auto& [intake, packets] = counters;
+  const std::pair<const char*, std::size_t> dropped[] = {
+      {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
+      {"measurements dropped as too much waited", intake.no_room},
+      {"events outside the calibration's image dropped", intake.events_outside},
+      {"frames of another size than the calibration's dropped", intake.frames_unfit},
+      {"measurements with absurd stamps dropped", intake.absurd_stamps},
+      {"measurements with stamps far ahead dropped", intake.far_ahead},
+      {"clocks set back: began anew", intake.clocks_set_back},
+      {"packets before the first IMU sample dropped", packets.packets_before_imu},
+      {"packets after the last IMU sample dropped", packets.packets_after_imu},
+      {"packets dropped while the IMU stayed away", packets.packets_overflow},
+      {"late events dropped", packets.events_late},
+      {"late frames dropped", packets.frames_late},
+      {"times of 5 s without a frame", packets.frames_missing},
+      {"late IMU samples dropped", packets.imu_late},
+      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
+  };
+  for (const auto& [kind, count] : dropped) {
+    if (count > 0) repairs[kind] += count;
+  }
+}
+
 nlohmann::ordered_json to_json(const CalibrationFound& c) {
   return {{"camera", c.camera},
           {"rotation_off_deg", c.rotation_deg},
@@ -143,6 +171,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
                                  {"waiting_for", s.verdict.waiting_for},
                                  {"next", s.verdict.next}};
   json.update(accuracy_json(s.evaluation));
+  json["final_not_causal"] = accuracy_json(s.final_evaluation);
   json.update({{"poses", s.poses},
                {"keyframes", s.statistics.keyframes()},
                {"packets", s.statistics.packets()},
@@ -184,6 +213,10 @@ std::string to_table(const RunSummary& s) {
                   fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
                               e.path_length_m));
     table += line("local error", local_error_text(e.local));
+    if (s.final_evaluation) {
+      table += line("final, not causal", fmt::format("{:.4f} m", s.final_evaluation->ate_m.rmse),
+                    "ATE once all was known; local error " + local_error_text(s.final_evaluation->local));
+    }
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);
     table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);

@@ -73,6 +73,8 @@ function facts(run) {
   }
   list.push(['path', number(e ? e.path_length_m : run.path_m, e ? 'm (true)' : 'm (estimated)', 2)]);
   if (!m) return list;
+  const final = m.final_not_causal;
+  if (final && final.ate_rmse_m !== null) list.push(['ATE once all was known', length(final.ate_rmse_m) + ' (final path, not causal)']);
   list.push(['duration', number(m.duration_s, 's', 1)]);
   list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in all', 1)]);
   if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
@@ -114,7 +116,7 @@ function verdictCard(run, i) {
 const begin = Math.min(...runs.map(run => run.rows.t.length ? run.rows.t[0] : Infinity));
 const end = Math.max(...runs.map(run => run.rows.t.length ? run.rows.t[run.rows.t.length - 1] : -Infinity));
 const time = new TimeGroup(isFinite(begin) ? begin : 0, isFinite(end) ? end : 1);
-const show = {error: runs.length === 1, truth: true, map: true, whole: false, keyframes: false};
+const show = {error: runs.length === 1, truth: true, final: false, map: true, whole: false, keyframes: false};
 let space = null;
 
 function axisOf(flat, k) {
@@ -134,6 +136,9 @@ function fillSpace() {
     }
     if (show.truth && run.truth.length) {
       space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'truth', width: 4, dash: true});
+    }
+    if (show.final && run.final.length) {
+      space.paths.push({x: axisOf(run.final, 0), y: axisOf(run.final, 1), z: axisOf(run.final, 2), colour: 'ink', width: 1});
     }
     if (!rows.x) return;
     const shade = show.error && rows.error_m ? rows.error_m : null;
@@ -171,8 +176,8 @@ function pathCard() {
     }
     moveMarks();
   };
-  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), map: runs.some(run => run.map.length), whole: runs.some(run => run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
-  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final.length), map: runs.some(run => run.map.length), whole: runs.some(run => run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['final', 'final path (thin)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
     box.checked = show[key];
