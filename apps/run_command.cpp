@@ -64,6 +64,7 @@ class Run {
   void log_changes(const Step& step) const;
   void show_status(const Step& step);
   RunSummary summarize();
+  Hindsight hindsight();
   std::vector<std::string> headed(const std::string& known_when) const;
   void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
@@ -242,6 +243,11 @@ std::string run_status(const RunStatistics& statistics, const Verdict& verdict) 
   EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
 }
 
+Hindsight Run::hindsight() {
+  const auto timer = program_timings_.measure("hindsight");
+  return odometry_.hindsight();
+}
+
 RunSummary Run::summarize() {
   if (live_) live_->stop();
   status_line_.clear();
@@ -266,7 +272,7 @@ RunSummary Run::summarize() {
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
   const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
-  const Hindsight known = odometry_.hindsight();
+  const Hindsight known = hindsight();
   write_hindsight(folder_, frame_, known, headed("final: each by all that was found again before and after"));
   const StatesTable states = read_states(folder_);
   const Trajectory body = body_poses(states);
