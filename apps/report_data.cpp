@@ -64,6 +64,21 @@ std::string output_frame(const LoadedRun& run) {
   return run.metrics.is_null() ? "body" : run.metrics.value("output_frame", "body");
 }
 
+/// As known in the end, in the world that is shown: laid onto the truth as the poses are that were known at their time.
+Trajectory final_path(const LoadedRun& run) {
+  const fs::path file = run.path / "trajectory_final.tum";
+  if (!run.given || !fs::exists(file)) return {};
+  HeldWarnings said_by_the_run;
+  Trajectory path = read_tum(file);
+  said_by_the_run.take();
+  const OutputFrame written(run.given->rig, output_frame(run)), shown(run.given->rig, run.poses.frame);
+  for (StampedPose& pose : path) {
+    pose = shown(written.to_body(pose));
+    pose.T = run.poses.alignment * pose.T;
+  }
+  return path;
+}
+
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   if (!fs::exists(folder / "states.csv") || !fs::exists(folder / "calibration.yaml")) {
     throw InputError::format(
@@ -213,7 +228,8 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
   if (run.poses.evaluation) json["evaluation"] = to_json(*run.poses.evaluation);
   json["rows"] = rows_json(run.states, run.poses, origin, rows);
   json["claimed"] = claimed_json(run.poses.claimed, origin, rows);
-  json["truth"] = true_path_json(run.poses.true_path, rows);
+  json["truth"] = path_json(run.poses.true_path, rows);
+  json["final"] = path_json(final_path(run), rows);
   json["map"] = map_json(run.album, run.poses.alignment);
   json["changes"] = changes_json(run.states, run.album, origin);
   json["options"] = changed_options(run.path / "config_resolved.yaml");

@@ -159,11 +159,11 @@ Json claimed_json(const std::vector<ClaimedError>& claimed, Timestamp origin, st
   return json;
 }
 
-Json true_path_json(const Trajectory& truth, std::size_t most) {
+Json path_json(const Trajectory& path, std::size_t most) {
   Json json = Json::array();
-  const std::size_t stride = truth.size() / std::max<std::size_t>(1, most) + 1;
-  for (std::size_t i = 0; i < truth.size(); i += stride) {
-    for (int k = 0; k < 3; ++k) json.push_back(rounded(truth[i].T.translation()[k], 4));
+  const std::size_t stride = path.size() / std::max<std::size_t>(1, most) + 1;
+  for (std::size_t i = 0; i < path.size(); i += stride) {
+    for (int k = 0; k < 3; ++k) json.push_back(rounded(path[i].T.translation()[k], 4));
   }
   return json;
 }

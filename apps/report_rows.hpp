@@ -25,8 +25,8 @@ std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vecto
 /// Times [s] since origin; null where a row has no pose.
 nlohmann::ordered_json rows_json(const StatesTable& states, const ReportPath& path, Timestamp origin, std::size_t most);
 nlohmann::ordered_json claimed_json(const std::vector<ClaimedError>& claimed, Timestamp origin, std::size_t most);
-nlohmann::ordered_json true_path_json(const Trajectory& truth, std::size_t most);
 /// x, y, z of point after point in the world that is shown.
+nlohmann::ordered_json path_json(const Trajectory& path, std::size_t most);
 nlohmann::ordered_json map_json(const nlohmann::ordered_json& album, const Similarity& alignment);
 /// As noted while it ran; without an album those that states.csv tells. The first 300.
 nlohmann::ordered_json changes_json(const StatesTable& states, const nlohmann::ordered_json& album, Timestamp origin);

@@ -124,6 +124,22 @@ TEST_F(Report, HoldsTheNumbersOfTheRun) {
   EXPECT_EQ(run["claimed"]["t"].size(), metrics["consistency"]["poses"].get<std::size_t>());
 }
 
+TEST_F(Report, LaysTheFinalPathOntoTheTruthAsTheCausalOneIs) {
+  const fs::path folder = make_run("circle", true);
+  EXPECT_TRUE(report_data({folder})["runs"][0]["final"].empty()) << "of an earlier version";
+  fs::copy_file(folder / "trajectory.tum", folder / "trajectory_final.tum");
+  const nlohmann::json run = report_data({folder})["runs"][0];
+  const nlohmann::json &rows = run["rows"], &path = run["final"];
+  ASSERT_EQ(path.size(), 3 * 189u);
+  std::size_t pose = 0;
+  for (std::size_t i = 0; i < rows["x"].size(); ++i) {
+    if (rows["x"][i].is_null()) continue;
+    EXPECT_NEAR(path[3 * pose].get<double>(), rows["x"][i].get<double>(), 1e-4);
+    EXPECT_NEAR(path[3 * pose + 2].get<double>(), rows["z"][i].get<double>(), 1e-4);
+    ++pose;
+  }
+}
+
 TEST_F(Report, SaysWhyTheStatusChangedWhatWasSetAndWhatTheCalibrationWasFoundToBe) {
   const nlohmann::json run = report_data({make_run("circle", true)})["runs"][0];
   ASSERT_EQ(run["changes"].size(), 4u);

@@ -15,11 +15,23 @@ namespace edged {
 namespace {
 
 // The first is written before anything else and marks a folder as a run's.
-constexpr std::array kRunFiles = {
-    "config_resolved.yaml",   "calibration.yaml", "trajectory.tum", "trajectory_euroc.csv",
-    "trajectory.kitti",       "states.csv",       "metrics.json",   "timing.json",
-    "overview.png",           "run.log",          "album.json",     "groundtruth.tum",
-    "calibration_found.yaml", "report.html"};
+constexpr std::array kRunFiles = {"config_resolved.yaml",
+                                  "calibration.yaml",
+                                  "trajectory.tum",
+                                  "trajectory_euroc.csv",
+                                  "trajectory.kitti",
+                                  "states.csv",
+                                  "metrics.json",
+                                  "timing.json",
+                                  "overview.png",
+                                  "run.log",
+                                  "album.json",
+                                  "groundtruth.tum",
+                                  "calibration_found.yaml",
+                                  "report.html",
+                                  "trajectory_final.tum",
+                                  "keyframes.csv",
+                                  "map.ply"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"

@@ -6,6 +6,8 @@
 
 #include <fstream>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "run_folder.hpp"
@@ -49,16 +51,17 @@ RunMap::RunMap(MapOptions options, bool enabled, Odometry& odometry) : options_(
   }
 }
 
-void RunMap::observe(const Step& step) {
+void RunMap::observe(const Step& step, const Odometry& odometry) {
   if (!is_tracking(step.status)) return;
   if (!first_pose_) first_pose_ = step.t;
-  if (step.found_again && !found_s_) found_s_ = to_seconds(step.t - *first_pose_);
+  if (!options_.load.empty() && !found_ && !odometry.elsewhere()) found_ = step.t;
 }
 
 std::optional<MapSummary> RunMap::finish(const Odometry& odometry) {
   if (options_.load.empty() && options_.save.empty()) return std::nullopt;
-  MapSummary summary{options_.load.string(), found_s_, {}};
-  if (!options_.load.empty() && !found_s_)
+  MapSummary summary{options_.load.string(), {}, {}};
+  if (found_) summary.found_s = to_seconds(*found_ - *first_pose_);
+  if (!options_.load.empty() && !found_)
     spdlog::warn("--map {}: not found again; the poses are in a frame of their own", options_.load.string());
   if (options_.save.empty()) return summary;
   const std::optional<std::string> map = odometry.save_map();
@@ -70,6 +73,11 @@ std::optional<MapSummary> RunMap::finish(const Odometry& odometry) {
                  options_.save.string());
   }
   return summary;
+}
+
+Trajectory RunMap::in_one_frame(Trajectory poses) const {
+  if (found_) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t < *found_; });
+  return poses;
 }
 
 }  // namespace edged

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "edged/odometry.hpp"
+#include "edged/state.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 
@@ -30,14 +32,15 @@ class RunMap {
   /// other could not be written in the end.
   RunMap(MapOptions options, bool enabled, Odometry& odometry);
 
-  void observe(const Step& step);
+  void observe(const Step& step, const Odometry& odometry);
   /// Writes the map that is to be kept. Nothing where no map was asked for.
   std::optional<MapSummary> finish(const Odometry& odometry);
+  /// The poses of one frame: where a map was given and found, those in it.
+  Trajectory in_one_frame(Trajectory poses) const;
 
  private:
   MapOptions options_;
-  std::optional<Timestamp> first_pose_;
-  std::optional<double> found_s_;
+  std::optional<Timestamp> first_pose_, found_;
 };
 
 }  // namespace edged

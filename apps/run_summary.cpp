@@ -119,6 +119,10 @@ void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector
   }
 }
 
+void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth) {
+  summary.final_evaluation = evaluate(associate(truth.trajectory, OutputFrame(rig, truth.frame)(body)), protocol("P3"));
+}
+
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
   const auto& [intake, packets] = counters;
   const std::pair<const char*, std::size_t> dropped[] = {
@@ -167,6 +171,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
                                  {"waiting_for", s.verdict.waiting_for},
                                  {"next", s.verdict.next}};
   json.update(accuracy_json(s.evaluation));
+  json["final_not_causal"] = accuracy_json(s.final_evaluation);
   json.update({{"poses", s.poses},
                {"keyframes", s.statistics.keyframes()},
                {"packets", s.statistics.packets()},
@@ -210,6 +215,10 @@ std::string to_table(const RunSummary& s) {
                   fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
                               e.path_length_m));
     table += line("local error", local_error_text(e.local));
+    if (s.final_evaluation) {
+      table += line("final, not causal", fmt::format("{:.4f} m", s.final_evaluation->ate_m.rmse),
+                    "ATE once all was known; local error " + local_error_text(s.final_evaluation->local));
+    }
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);
     table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);

@@ -15,6 +15,7 @@
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
+#include "edged/pipeline/counters.hpp"
 #include "run_map.hpp"
 #include "run_statistics.hpp"
 #include "verdict.hpp"
@@ -44,6 +45,7 @@ struct RunSummary {
   std::vector<CalibrationFound> calibration;
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
+  std::optional<Evaluation> final_evaluation;  ///< the same of the poses as known in the end, not causal
   std::optional<Consistency> consistency;      ///< nothing without ground truth
   std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
 };
@@ -52,6 +54,9 @@ struct RunSummary {
 /// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
                   const GroundTruth& truth);
+
+/// The same of its poses as known in the end, which are as many.
+void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
 
 /// What the odometry could not use, in the words of a user.
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters);

@@ -47,6 +47,26 @@ class Run(WithFlight):
         self.assertEqual([local["windows"] for local in evaluated["local_error"]],
                          [local["windows"] for local in summary["evaluation"]["local_error"]])
 
+        final = json.loads(edged("eval", self.flight / "groundtruth.txt", a / "trajectory_final.tum", "--json").stdout)
+        self.assertAlmostEqual(final["ate_rmse_m"], summary["final_not_causal"]["ate_rmse_m"], places=9)
+        self.assertEqual(final["pairs"], evaluated["pairs"])
+        self.assertIn("final, not causal", again.stdout)
+        for name in ("trajectory_final.tum", "keyframes.csv", "map.ply"):
+            self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
+
+    def test_without_a_map_the_final_path_is_the_causal_one(self):
+        out = self.folder / "run"
+        result = edged("run", self.flight, "--out", out, "--quiet", "map.enabled=false")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        causal, final = ((out / name).read_text().splitlines() for name in ("trajectory.tum", "trajectory_final.tum"))
+        self.assertIn("; causal", causal[0])
+        self.assertIn("; final", final[0])
+        self.assertEqual(causal[1:], final[1:])
+        keyframes = (out / "keyframes.csv").read_text().splitlines()
+        self.assertEqual(len(keyframes), 2)
+        self.assertTrue(keyframes[1].startswith("t_ns,px_m,"))
+        self.assertIn("element vertex 0\n", (out / "map.ply").read_text())
+
     def test_every_mode_runs_into_its_default_folder(self):
         for mode in ("events", "frames"):
             result = edged("run", self.flight, "--mode", mode, cwd=self.folder)

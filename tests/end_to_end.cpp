@@ -65,6 +65,7 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
     return true;
   });
   run.rig = odometry.rig();
+  run.hindsight = odometry.hindsight();
   return run;
 }
 

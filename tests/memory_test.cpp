@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Long runs: what the program holds in memory does not grow with the time it runs.
+// Long runs: what the program holds in memory does not grow with the time it runs, but for what it remembers of the
+// path.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -121,7 +122,8 @@ TEST_F(Memory, StaysTheSameOverALongRun) {
   std::printf("%.1f MB after a third, %.1f MB at the end, coverage %.3f, lost %zu times\n", after_a_third_mb,
               at_the_end_mb, statistics.coverage(), statistics.times_lost());
   EXPECT_GT(statistics.coverage(), 0.9) << "a run that does not track tells little";
-  EXPECT_LT(at_the_end_mb - after_a_third_mb, 6.0);
+  const double remembered_mb = 0.5 * duration_s / 60.0;  // for the path in the end
+  EXPECT_LT(at_the_end_mb - after_a_third_mb, 6.0 + remembered_mb);
 }
 
 TEST(EventStorm, OfTwentyMillionASecondIsSurvivedLiveWithinTheBoundsOfTheQueue) {

@@ -16,7 +16,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ["EDGED_BUILD"])
 # Of the public headers, and of those in src/edged that they lean on.
-MOST_OF_OURS = 20
+MOST_OF_OURS = 21
 
 
 def include_flags():

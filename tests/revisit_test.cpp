@@ -14,35 +14,66 @@ namespace {
 
 constexpr double kDuration_s = 40.0;
 
-/// ATE [m] of the poses as they were known at their time.
-double causal_error(const Flight& flight, Mode mode, bool with_map) {
+FlightRun run_with(const Flight& flight, Mode mode, bool with_map) {
   OdometryConfig config;
   config.map.enabled = with_map;
-  const FlightRun run = run_flight(flight.calibration, flight.measurements, mode, config);
+  return run_flight(flight.calibration, flight.measurements, mode, config);
+}
+
+/// ATE [m] of the poses as they were known at their time, and as they were in the end.
+struct Errors {
+  double causal, final;
+};
+
+Errors errors(const Flight& flight, Mode mode, bool with_map) {
+  const FlightRun run = run_with(flight, mode, with_map);
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
-  return score(flight, run).evaluation.ate_m.rmse;
+  return {score(flight, run).evaluation.ate_m.rmse,
+          evaluate(associate(flight.truth->trajectory, run.hindsight.poses), protocol("P3")).ate_m.rmse};
 }
 
 TEST(Revisits, HoldTheDriftOfTheOdometry) {
-  std::map<Mode, double> log_ratio;
+  std::map<Mode, double> log_ratio, log_final;
   for (const int seed : {5, 7}) {
     const Flight flight = simulate_flight("room", seed, kDuration_s);
     for (const Mode mode : {Mode::Frames, Mode::Events}) {
-      const double without = causal_error(flight, mode, false), with = causal_error(flight, mode, true);
-      std::cout << mode_name(mode) << " " << seed << ": " << 1e3 * without << " -> " << 1e3 * with << " mm\n";
-      log_ratio[mode] += std::log(with / without) / 2.0;
+      const Errors without = errors(flight, mode, false), with = errors(flight, mode, true);
+      std::cout << mode_name(mode) << " " << seed << ": " << 1e3 * without.causal << " -> " << 1e3 * with.causal
+                << " mm, final " << 1e3 * with.final << " mm\n";
+      EXPECT_EQ(without.final, without.causal) << "nothing more is known without a map";
+      log_ratio[mode] += std::log(with.causal / without.causal) / 2.0;
+      log_final[mode] += std::log(with.final / with.causal) / 2.0;
     }
   }
   EXPECT_LT(std::exp(log_ratio[Mode::Frames]), 0.8);   // 0.68
   EXPECT_LT(std::exp(log_ratio[Mode::Events]), 0.95);  // 0.87
+  for (const auto& [mode, log] : log_final) EXPECT_LT(std::exp(log), 1.0) << mode_name(mode);
+}
+
+TEST(Revisits, AreFoundAndKnownInTheEndToTheSameBitEachTime) {
+  const Flight flight = simulate_flight("room", 5, 14.0);
+  const FlightRun run = run_with(flight, Mode::Frames, true), again = run_with(flight, Mode::Frames, true);
+  const Hindsight &one = run.hindsight, &two = again.hindsight;
+  ASSERT_GT(one.poses.size(), 100U);
+  ASSERT_EQ(one.poses.size(), two.poses.size());
+  for (std::size_t i = 0; i < one.poses.size(); ++i) {
+    EXPECT_EQ(one.poses[i].T.translation(), two.poses[i].T.translation());
+    EXPECT_EQ(one.poses[i].T.rotation().coeffs(), two.poses[i].T.rotation().coeffs());
+  }
+  ASSERT_FALSE(one.keyframes.empty());
+  ASSERT_EQ(one.keyframes.size(), two.keyframes.size());
+  EXPECT_GT(one.keyframes.front().times_found, 0);
+  for (const MappedKeyframe& keyframe : one.keyframes) EXPECT_FALSE(keyframe.points.empty());
+  // A step tells what it has found, and how far back that reaches.
+  const auto found = std::ranges::find_if(run.steps, [](const Step& step) { return !step.found.empty(); });
+  ASSERT_NE(found, run.steps.end());
+  EXPECT_LT(found->found.front().keyframe, found->t - std::chrono::seconds(1));
 }
 
 /// Of a flight whose lens is covered for 4 s while it goes on: the mean position error of the last 5 s, once the first
 /// 12 s are laid onto the truth [m].
 double error_after_cover(const Flight& flight, Mode mode, bool with_map) {
-  OdometryConfig config;
-  config.map.enabled = with_map;
-  const FlightRun run = run_flight(flight.calibration, flight.measurements, mode, config);
+  const FlightRun run = run_with(flight, mode, with_map);
   EXPECT_GE(run.statistics.times_lost(), 1U);
   // A better start that takes the place of a provisional one is found again, too.
   EXPECT_EQ(std::ranges::any_of(run.steps, &Step::found_again), with_map);

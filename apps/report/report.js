@@ -4,7 +4,7 @@
 'use strict';
 
 let report = null, runs = [], time = null, space = null;
-const show = {error: true, truth: true, map: true, whole: false, keyframes: false};
+const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false};
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
 const kSays = {
   'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
@@ -75,6 +75,8 @@ function facts(run) {
   }
   list.push(['path', number(e ? e.path_length_m : run.path_m, e ? 'm (true)' : 'm (estimated)', 2)]);
   if (!m) return list;
+  const final = m.final_not_causal;
+  if (final && final.ate_rmse_m !== null) list.push(['ATE once all was known', length(final.ate_rmse_m) + ' (final path, not causal)']);
   list.push(['duration', number(m.duration_s, 's', 1)]);
   list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in all', 1)]);
   if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
@@ -141,6 +143,9 @@ function fillSpace() {
     if (show.truth && run.truth.length) {
       space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'truth', width: 4, dash: true});
     }
+    if (show.final && run.final && run.final.length) {
+      space.paths.push({x: axisOf(run.final, 0), y: axisOf(run.final, 1), z: axisOf(run.final, 2), colour: 'ink', width: 1});
+    }
     if (!rows.x) return;
     const shade = show.error && rows.error_m ? rows.error_m : null;
     space.paths.push({x: rows.x, y: rows.y, z: rows.z, colour: runColour(i), width: 2, shade, shadeMax});
@@ -177,8 +182,8 @@ function pathCard() {
     }
     moveMarks();
   };
-  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
-  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['final', 'final path (thin)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
     box.checked = show[key];

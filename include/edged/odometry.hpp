@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "edged/core/timing.hpp"
+#include "edged/hindsight.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
@@ -54,13 +55,20 @@ class Odometry {
   /// recognised the poses are in a frame of this run's own; with the step that says found_again they come into the
   /// map's. Throws InputError where the bytes are damaged or of another version, or no camera of this mode fits.
   void load_map(std::string_view bytes);
-  /// What has been seen so far, for load_map. Nothing while a map was loaded and has not been found again.
+  /// A map was loaded, and no place of it has been recognised yet.
+  bool elsewhere() const;
+  /// What has been seen so far, for load_map. Nothing while elsewhere().
   std::optional<std::string> save_map() const;
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
   /// have come since, in a few microseconds. Nothing while there is no estimate to go by, and a second after it.
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
+
+  /// Path and map as they are known by now, best asked for when all steps have come: poses held to all places that
+  /// were seen again, before and after. Without the map, or where nothing was seen again, the poses are those of the
+  /// steps. Not causal. Takes seconds for an hour of flight; what it needs takes half a megabyte a minute.
+  Hindsight hindsight() const;
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;

@@ -12,7 +12,9 @@
 #include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/frontend/track.hpp"
+#include "edged/hindsight.hpp"
 #include "edged/measurement.hpp"
+#include "edged/se3.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"
 
@@ -41,6 +43,11 @@ struct Step {
   /// After a loss the body has been found in the map: the pose has gone to where it is there, and what covariance is
   /// against has gone along.
   bool found_again = false;
+
+  /// Where the estimator's own frame O lies in W: state.T_W_B = T_W_O * T_O_B. T_O_B goes on without jumps from one
+  /// start to the next; T_W_O is what the map moves.
+  SE3 T_W_O;
+  std::vector<FoundPoint> found;  ///< of the map, in an image of this packet; the pose has been held to them
 
   std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers
   std::string started;       ///< the estimator has started with this packet: how, with numbers

@@ -157,8 +157,8 @@ void Estimator::append(const EstimatorInput& input) {
     NavState rest;
     rest.bias_gyro = standstill_.mean_gyro_B();
     const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;
-    window_.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, motion_block(rest),
-                                               {config_.zero_velocity_sigma, bias_sigma, kFree}));
+    window_.soft_priors.push_back(
+        motion_prior({BlockKind::Motion, id}, motion_block(rest), {config_.zero_velocity_sigma, bias_sigma, kFree}));
   }
 }
 

@@ -61,7 +61,7 @@ void KeyframeMap::add(MapKeyframe keyframe) {
   keyframes_.push_back(std::move(keyframe));
 }
 
-std::optional<std::size_t> KeyframeMap::superfluous(TimeSpan made) const {
+std::optional<std::size_t> KeyframeMap::superfluous(Period made) const {
   if (static_cast<int>(keyframes_.size()) <= config_.max_keyframes) return std::nullopt;
   const auto outside = [&](const MapKeyframe& keyframe) { return !made.contains(keyframe.t); };
   const auto begin = std::find_if_not(keyframes_.begin(), keyframes_.end(), outside);
@@ -79,7 +79,9 @@ void KeyframeMap::note(const Candidate& candidate, bool found, Timestamp t) {
   ++candidate.point->tried;
   if (!found) return;
   ++candidate.point->found;
-  keyframes_[candidate.keyframe].found_at = t;
+  MapKeyframe& keyframe = keyframes_[candidate.keyframe];
+  keyframe.times_found += keyframe.found_at == t ? 0 : 1;
+  keyframe.found_at = t;
 }
 
 std::vector<std::size_t> KeyframeMap::near(const MapQuery& query, const SE3& T_M_C) const {

@@ -35,11 +35,13 @@ struct MapKeyframe {
   std::string camera;     ///< whose image it was: others show the same place otherwise
   SE3 T_B_C;
   std::vector<MapPoint> points;
+  std::size_t number = 0;    ///< in FlightRecord
   double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
+  int times_found = 0;       ///< images in which points of it were found
 };
 
 /// From `since` on, and before `before`.
-struct TimeSpan {
+struct Period {
   Timestamp since = Timestamp::min(), before = Timestamp::max();
   bool contains(Timestamp t) const { return since <= t && t < before; }
 };
@@ -47,7 +49,7 @@ struct TimeSpan {
 /// What is asked of the map.
 struct MapQuery {
   std::string_view camera;     ///< its keyframes alone
-  TimeSpan made;               ///< those made then alone
+  Period made;                 ///< those made then alone
   std::span<const SE3> T_M_K;  ///< where the body was at each keyframe of the map, in their order
 };
 
@@ -71,7 +73,7 @@ class KeyframeMap {
   void add(MapKeyframe keyframe);
   /// The keyframe to be removed next, as there are too many: of those made then, but for the newest, the one that was
   /// not found for longest. Nothing while there is room.
-  std::optional<std::size_t> superfluous(TimeSpan made = {}) const;
+  std::optional<std::size_t> superfluous(Period made = {}) const;
   void remove(std::size_t keyframe);
 
   /// What should be in view of the camera at T_M_C, spread over the image, the most reliable first: at most `most`.

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "edged/core/angles.hpp"
 #include "edged/core/statistics.hpp"
 
 namespace edged {
@@ -16,22 +15,9 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Matrix23d = Eigen::Matrix<double, 2, 3>;
 
 constexpr double kCauchy = 2.0;             // [sigma]
 constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
-
-/// How the error of a pose becomes that of another that is known against it: T_M_A to T_M_A * T_A_B.
-Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B) {
-  Matrix6d F = Matrix6d::Identity();
-  F.topRightCorner<3, 3>() = -T_M_A.R() * skew(T_A_B.translation());
-  F.bottomRightCorner<3, 3>() = T_A_B.R().transpose();
-  return F;
-}
-
-SE3 corrected(const SE3& T, const Eigen::Ref<const VectorXd>& error) {
-  return {T.rotation() * so3::exp(error.tail<3>()), T.translation() + error.head<3>()};
-}
 
 Eigen::Index block_of(std::size_t keyframe) { return 6 * static_cast<Eigen::Index>(keyframe + 1); }
 
@@ -48,23 +34,12 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
   P_.block<3, 3>(3, 3) = yaw_sigma * yaw_sigma * up_B * up_B.transpose();
 }
 
-/// What the odometry may be off by after dt [s].
-Matrix6d MapFilter::drift(const SE3& T_M_B, double dt) const {
-  const double yaw = config_.drift_yaw_deg * kDegree, tilt = config_.drift_tilt_deg * kDegree;
-  const Eigen::Vector3d up_B = T_M_B.R().transpose() * Eigen::Vector3d::UnitZ();
-  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
-  Matrix6d Q = Matrix6d::Zero();
-  Q.diagonal().head<3>().setConstant(config_.drift_m * config_.drift_m * dt);
-  Q.bottomRightCorner<3, 3>() = dt * (yaw * yaw * along_up + tilt * tilt * (Eigen::Matrix3d::Identity() - along_up));
-  return Q;
-}
-
 void MapFilter::predict(const SE3& T_O_B, Timestamp t) {
   const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_B);
   P_.topRows<6>() = F * P_.topRows<6>().eval();
   P_.leftCols<6>() = P_.leftCols<6>().eval() * F.transpose();
   T_O_B_ = T_O_B;
-  P_.topLeftCorner<6, 6>() += drift(T_M_B(), std::max(to_seconds(t - t_), 0.0));
+  P_.topLeftCorner<6, 6>() += drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
   t_ = t;
 }
 
@@ -76,8 +51,8 @@ void MapFilter::add_keyframe(const SE3& T_O_K, Timestamp t) {
   grown.bottomLeftCorner(6, n) = F * P_.topRows<6>();
   grown.topRightCorner(n, 6) = grown.bottomLeftCorner(6, n).transpose();
   T_M_K_.push_back(T_M_O_ * T_O_K);
-  grown.bottomRightCorner<6, 6>() =
-      F * P_.topLeftCorner<6, 6>() * F.transpose() + drift(T_M_K_.back(), std::abs(to_seconds(t_ - t)));
+  grown.bottomRightCorner<6, 6>() = F * P_.topLeftCorner<6, 6>() * F.transpose() +
+                                    drift_covariance(config_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
   P_ = std::move(grown);
 }
 
@@ -97,25 +72,11 @@ void MapFilter::remove_keyframe(std::size_t keyframe) {
   T_M_K_.erase(T_M_K_.begin() + static_cast<std::ptrdiff_t>(keyframe));
 }
 
-std::optional<MapFilter::Row> MapFilter::linearise(const MapSight& sight, const SE3& T_B_C) const {
-  const SE3 T_B_M = T_M_B().inverse(), T_C_B = T_B_C.inverse();
-  const SE3& T_M_K = T_M_K_[sight.keyframe];
-  const Eigen::Vector3d p_B = T_B_M * (T_M_K * sight.p_K), p_C = T_C_B * p_B;
-  if (p_C.z() <= 0.0) return std::nullopt;
-  Matrix23d of_p_B;
-  of_p_B << 1.0 / p_C.z(), 0.0, -p_C.x() / (p_C.z() * p_C.z()), 0.0, 1.0 / p_C.z(), -p_C.y() / (p_C.z() * p_C.z());
-  of_p_B *= T_C_B.R();
-  const Matrix23d of_p_M = of_p_B * T_B_M.R();
-  Row row;
-  row.r = p_C.hnormalized() - sight.seen;
-  row.by_body << -of_p_M, of_p_B * skew(p_B);
-  row.by_keyframe << of_p_M, -of_p_M * T_M_K.R() * skew(sight.p_K);
-  const Eigen::Vector2d along = of_p_M * T_M_K.R() * sight.depth_sigma_K;
-  row.R = sight.sigma * sight.sigma * Eigen::Matrix2d::Identity() + along * along.transpose();
-  return row;
+std::optional<SightRow> MapFilter::linearise(const MapSight& sight, const SE3& T_B_C) const {
+  return linearised(sight, T_M_B(), T_M_K_[sight.keyframe], T_B_C);
 }
 
-Eigen::Matrix2d MapFilter::expected_covariance(const Row& row, std::size_t keyframe) const {
+Eigen::Matrix2d MapFilter::expected_covariance(const SightRow& row, std::size_t keyframe) const {
   const Eigen::Index k = block_of(keyframe);
   const Eigen::Matrix2d cross = row.by_body * P_.block<6, 6>(0, k) * row.by_keyframe.transpose();
   return row.R + row.by_body * P_.topLeftCorner<6, 6>() * row.by_body.transpose() + cross + cross.transpose() +
@@ -123,7 +84,7 @@ Eigen::Matrix2d MapFilter::expected_covariance(const Row& row, std::size_t keyfr
 }
 
 double MapFilter::expected_error(const MapSight& sight, const SE3& T_B_C) const {
-  const std::optional<Row> row = linearise(sight, T_B_C);
+  const std::optional<SightRow> row = linearise(sight, T_B_C);
   return row ? std::sqrt(expected_covariance(*row, sight.keyframe).trace()) : 0.0;
 }
 
@@ -133,7 +94,7 @@ void MapFilter::correct(const VectorXd& error) {
 }
 
 /// The rows' part of the normal equations on the body and the keyframes that they touch, far ones weighed down.
-MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::span<const Row> rows) const {
+MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::span<const SightRow> rows) const {
   Information sum;
   for (const MapSight& sight : sights) sum.place.try_emplace(sight.keyframe, 0);
   Eigen::Index m = 6;
@@ -141,7 +102,7 @@ MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::
   sum.H = MatrixXd::Zero(m, m);
   sum.g = VectorXd::Zero(m);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = rows[i];
+    const SightRow& row = rows[i];
     const double squared = row.r.dot(expected_covariance(row, sights[i].keyframe).inverse() * row.r);
     const Eigen::Matrix2d W = row.R.inverse() / (1.0 + squared / (kCauchy * kCauchy));
     const Eigen::Index k = sum.place.at(sights[i].keyframe);
@@ -158,7 +119,8 @@ MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::
 }
 
 /// Root of the median squared residual that is left of the rows once the poses are corrected [sigma of each].
-double MapFilter::misfit(std::span<const MapSight> sights, std::span<const Row> rows, const VectorXd& error) const {
+double MapFilter::misfit(std::span<const MapSight> sights, std::span<const SightRow> rows,
+                         const VectorXd& error) const {
   std::vector<double> squared;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Eigen::Vector2d left = rows[i].r + rows[i].by_body * error.head<6>() +
@@ -172,9 +134,9 @@ bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, c
   if (static_cast<int>(sights.size()) < config_.min_sights ||
       static_cast<double>(sights.size()) < config_.min_found_share * static_cast<double>(expected))
     return false;
-  std::vector<Row> rows;
+  std::vector<SightRow> rows;
   for (const MapSight& sight : sights) {
-    std::optional<Row> row = linearise(sight, T_B_C);
+    std::optional<SightRow> row = linearise(sight, T_B_C);
     if (!row) return false;
     rows.push_back(*row);
   }

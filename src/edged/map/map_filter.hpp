@@ -13,23 +13,12 @@
 #include <vector>
 
 #include "edged/map/map_config.hpp"
+#include "edged/map/map_errors.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
 
-/// A point of a keyframe that was found again in the present image.
-struct MapSight {
-  std::size_t keyframe = 0;                                 ///< index into MapFilter::keyframes
-  Eigen::Vector3d p_K = Eigen::Vector3d::Zero();            ///< in the body frame of the keyframe
-  Eigen::Vector3d depth_sigma_K = Eigen::Vector3d::Zero();  ///< by how much p_K moves with one sigma of its depth
-  Eigen::Vector2d seen = Eigen::Vector2d::Zero();           ///< on the unit plane of the camera
-  double sigma = 0.0;                                       ///< of seen, each coordinate
-};
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-/// Errors of a pose T_M_B are (position in M [m], rotation in B [rad]): p_true = p + dp, R_true = R Exp(phi).
 class MapFilter {
  public:
   explicit MapFilter(const MapFilterConfig& config) : config_(config) {}
@@ -58,23 +47,16 @@ class MapFilter {
   double expected_error(const MapSight& sight, const SE3& T_B_C) const;
 
  private:
-  /// Of a sight: residual, Jacobians by the body and by its keyframe, and noise.
-  struct Row {
-    Eigen::Vector2d r;
-    Eigen::Matrix<double, 2, 6> by_body, by_keyframe;
-    Eigen::Matrix2d R;
-  };
-  std::optional<Row> linearise(const MapSight& sight, const SE3& T_B_C) const;
-  Eigen::Matrix2d expected_covariance(const Row& row, std::size_t keyframe) const;
-  Matrix6d drift(const SE3& T_M_B, double dt) const;
+  std::optional<SightRow> linearise(const MapSight& sight, const SE3& T_B_C) const;
+  Eigen::Matrix2d expected_covariance(const SightRow& row, std::size_t keyframe) const;
   /// Normal equations of the body and of the keyframes in `place`, by where those begin.
   struct Information {
     std::map<std::size_t, Eigen::Index> place;
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
   };
-  Information gather(std::span<const MapSight> sights, std::span<const Row> rows) const;
-  double misfit(std::span<const MapSight> sights, std::span<const Row> rows, const Eigen::VectorXd& error) const;
+  Information gather(std::span<const MapSight> sights, std::span<const SightRow> rows) const;
+  double misfit(std::span<const MapSight> sights, std::span<const SightRow> rows, const Eigen::VectorXd& error) const;
   void correct(const Eigen::VectorXd& error);
 
   MapFilterConfig config_;

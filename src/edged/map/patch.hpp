@@ -17,6 +17,9 @@ namespace edged {
 struct Patch {
   static constexpr int kSize = 14;
   std::array<std::uint8_t, kSize * kSize> pixels{};
+
+  /// One of the four around the corner.
+  std::uint8_t middle() const { return pixels[(kSize / 2) * kSize + kSize / 2]; }
 };
 
 /// Nothing where it would reach beyond the image. image: CV_8UC1.

@@ -38,23 +38,31 @@ Corners corners_of(const ChannelView& view, const SE3& T_O_C) {
 
 }  // namespace
 
-Mapper::Mapper(const MapConfig& config) : config_(config), map_(config.keyframes), filter_(config.filter) {}
+Mapper::Mapper(const MapConfig& config)
+    : config_(config), map_(config.keyframes), filter_(config.filter), record_(config.filter) {}
 
 void Mapper::restart(const SE3& T_M_O, const NavState& now) {
   const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
-  filter_.restart(T_M_O, now.T_W_B, now.t, first ? 0.0 : kRestartPosition_m, first ? 0.0 : kRestartYaw_rad);
+  const double position_sigma = first ? 0.0 : kRestartPosition_m, yaw_sigma = first ? 0.0 : kRestartYaw_rad;
+  filter_.restart(T_M_O, now.T_W_B, now.t, position_sigma, yaw_sigma);
+  record_.restart({now.t, now.T_W_B}, T_M_O, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
   blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : kUnnoticed_s) + to_seconds(now.t - predicted_);
   searching_ = !first;
   T_M_O_guess_ = T_M_O;
   recognised_.reset();
   looks_.clear();
-  found_px_.clear();
+  found_.clear();
 }
 
 void Mapper::load(const SavedMap& map) {
   map_ = KeyframeMap(config_.keyframes);
-  for (const MapKeyframe& keyframe : map.keyframes) map_.add(keyframe);
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    MapKeyframe keyframe = map.keyframes[k];
+    keyframe.number = k;
+    map_.add(std::move(keyframe));
+  }
+  record_.load(map.T_M_K);
   filter_.load(map.T_M_K, map.covariance);
   if (!map.keyframes.empty()) elsewhere_before_ = Timestamp();
 }
@@ -69,7 +77,7 @@ void Mapper::predict(const NavState& now) {
   predicted_ = now.t;
 }
 
-Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, TimeSpan made) {
+Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Period made) {
   const CameraModel& camera = view.channel->tracker.camera();
   Search search;
   search.T_B_C = filter.T_M_B().inverse() * filter.T_M_O() * T_O_C;
@@ -93,18 +101,26 @@ Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, 
 
 /// The filter takes what was found, where that agrees.
 bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
+  const SE3 T_O_B = filter.T_M_O().inverse() * filter.T_M_B();
   if (!filter.update(search.sights, search.candidates.size(), search.T_B_C)) return false;
   for (std::size_t i = 0; i < search.candidates.size(); ++i) map_.note(search.candidates[i], search.found[i], t);
-  found_px_ = search.pixels;
+  std::vector<MapSight> sights = search.sights;
+  found_.clear();
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const MapKeyframe& keyframe = map_.keyframes()[sights[i].keyframe];
+    found_.push_back({keyframe.t, search.pixels[i], filter.keyframes()[sights[i].keyframe] * sights[i].p_K});
+    sights[i].keyframe = keyframe.number;
+  }
+  record_.add_sights({t, T_O_B}, search.T_B_C, sights, filter.T_M_O());
   return true;
 }
 
 bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   if (looked_at_ && to_seconds(t - *looked_at_) < config_.min_interval_s) return false;
   looked_at_ = t;
-  found_px_.clear();
+  found_.clear();
   const SE3 T_O_C = view.channel->T_W_C(T_O_B);
-  const TimeSpan old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
+  const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const Search here = search(filter_, view, T_O_C, old_enough);
   const auto older = std::ranges::count_if(
       here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
@@ -130,7 +146,7 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
 bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
   const Corners corners = corners_of(view, T_O_C);
   const double max_error = kAgreement_px / view.channel->tracker.camera().mean_focal();
-  const TimeSpan before{Timestamp::min(), elsewhere_before_.value_or(started_)};
+  const Period before{Timestamp::min(), elsewhere_before_.value_or(started_)};
   const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, before, filter_.keyframes()},
                                                   corners.descriptors, corners.points, T_O_C.rotation(), max_error);
   const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
@@ -144,6 +160,8 @@ bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
   MapFilter there = filter_;
   there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
   if (!update(there, search(there, view, T_O_C, before), t)) return false;
+  record_.forget_guess();
+  if (elsewhere_before_) record_.move_before(T_M_O * filter_.T_M_O().inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
@@ -157,8 +175,8 @@ double Mapper::covered_share(const FeatureTracker& tracker) const {
   };
   std::set<std::pair<int, int>> textured, shown;
   for (const Track& track : tracker.tracks()) textured.insert(cell(track.pixel));
-  for (const Eigen::Vector2d& pixel : found_px_) {
-    if (textured.contains(cell(pixel))) shown.insert(cell(pixel));
+  for (const FoundPoint& point : found_) {
+    if (textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
   }
   return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
 }
@@ -177,6 +195,7 @@ void Mapper::keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
 }
 
 void Mapper::take(const KeyframeRecord& record) {
+  record_.settle({record.t, record.T_W_B});
   while (!looks_.empty() && looks_.front().t < record.t) looks_.pop_front();
   if (looks_.empty() || looks_.front().t != record.t) return;
   const Look& look = looks_.front();
@@ -189,6 +208,7 @@ void Mapper::take(const KeyframeRecord& record) {
                                corner->second.descriptor, corner->second.pixel, 0, 0});
   }
   if (!map_.gains_by(keyframe)) return;
+  keyframe.number = record_.add_keyframe({record.t, record.T_W_B});
   map_.add(std::move(keyframe));
   filter_.add_keyframe(record.T_W_B, record.t);
   if (const auto superfluous = map_.superfluous(known())) remove_keyframe(*superfluous);
@@ -197,6 +217,21 @@ void Mapper::take(const KeyframeRecord& record) {
 void Mapper::remove_keyframe(std::size_t keyframe) {
   map_.remove(keyframe);
   filter_.remove_keyframe(keyframe);
+}
+
+Hindsight Mapper::hindsight() const {
+  FlightRecord::Path path = record_.path();
+  Hindsight known{std::move(path.poses), {}};
+  for (const MapKeyframe& keyframe : map_.keyframes()) {
+    const SE3& T_M_K = path.keyframes[keyframe.number];
+    MappedKeyframe mapped{keyframe.t, T_M_K, keyframe.camera, keyframe.times_found, keyframe.found_at, {}};
+    for (const MapPoint& point : keyframe.points) {
+      const Eigen::Vector3d p_K = keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth);
+      mapped.points.push_back({T_M_K * p_K, point.patch.middle(), point.tried, point.found});
+    }
+    known.keyframes.push_back(std::move(mapped));
+  }
+  return known;
 }
 
 }  // namespace edged

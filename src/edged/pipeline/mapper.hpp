@@ -10,6 +10,8 @@
 #include <string>
 
 #include "edged/estimator/keyframe_record.hpp"
+#include "edged/hindsight.hpp"
+#include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/map/saved_map.hpp"
@@ -33,7 +35,14 @@ class Mapper {
   /// A keyframe has left the window: kept where the map gains by it.
   void take(const KeyframeRecord& record);
 
+  /// That pose of the odometry has been given out.
+  void note(const NavState& now) { record_.add({now.t, now.T_W_B}); }
+
   const SE3& T_M_O() const { return filter_.T_M_O(); }
+  /// What was found in the image of that instant.
+  std::vector<FoundPoint> found(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<FoundPoint>(); }
+  /// In M.
+  Hindsight hindsight() const;
 
   /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
   /// of it has been recognised: so long M is a frame of this run's own.
@@ -41,6 +50,7 @@ class Mapper {
   /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
   /// in another frame than that.
   std::optional<SavedMap> save() const;
+  bool elsewhere() const { return elsewhere_before_.has_value(); }
 
  private:
   /// How a keyframe of the window looked.
@@ -63,8 +73,8 @@ class Mapper {
     SE3 T_B_C;
   };
   /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
-  TimeSpan known() const { return {.since = elsewhere_before_.value_or(Timestamp::min())}; }
-  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, TimeSpan made);
+  Period known() const { return {.since = elsewhere_before_.value_or(Timestamp::min())}; }
+  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Period made);
   bool update(MapFilter& filter, const Search& search, Timestamp t);
   bool recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
@@ -74,8 +84,9 @@ class Mapper {
   MapConfig config_;
   KeyframeMap map_;
   MapFilter filter_;
+  FlightRecord record_;
   std::deque<Look> looks_;
-  std::vector<Eigen::Vector2d> found_px_;  ///< points of the map in the newest image
+  std::vector<FoundPoint> found_;  ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;     ///< newest word of the odometry
   Timestamp started_;       ///< the estimator's newest start

@@ -3,6 +3,7 @@
 #include "edged/pipeline/packet_odometry.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -76,6 +77,7 @@ void PacketOdometry::begin_time() {
   estimator_ = fresh_estimator();
   make_channels();
   depth_ = SceneDepth(config_.depth, depth_camera(rig_), config_.estimator.depth_factor.enabled, inference_);
+  before_ = hindsight();
   mapper_ = Mapper(config_.map);  // its keyframes are of the time before
   judge_.lose("a clock was set back");
   last_keyframe_.reset();
@@ -98,6 +100,7 @@ Step PacketOdometry::process(Packet packet) {
   const TrackingStatus status = judge_.judge(result, estimator_.initialized(), packet.t);
   const bool found_again = follow_map(packet.t, views, result, keyframe);
   update_covariance(packet.t);
+  if (is_tracking(status)) mapper_.note(body_.now());
   Step step = describe(std::move(packet), drawn, result, status);
   step.keyframe = keyframe;
   step.found_again = found_again;
@@ -121,6 +124,8 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
   for (const Channel& channel : channels_) {
     (channel.camera.modality == Modality::Events ? step.event_tracks : step.frame_tracks) = channel.tracker.tracks();
   }
+  step.T_W_O = world_.T_W_S();
+  step.found = mapper_.found(packet.t);
   step.landmarks = world_.of(result.landmarks);
   step.left = world_.of(result.left);
   step.event_frame = drawn.frame;
@@ -283,10 +288,11 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration mo
 /// the body has been found in it after a loss.
 bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result,
                                 bool keyframe) {
-  if (!config_.map.enabled || !estimator_.initialized()) return false;
+  if (!estimator_.initialized()) return false;
+  if (result.new_frame) mapper_.restart(world_.T_W_S(), body_.now());
+  if (!config_.map.enabled) return false;
   const auto timer = timings_.measure("map");
   bool found_again = false;
-  if (result.new_frame) mapper_.restart(world_.T_W_S(), body_.now());
   mapper_.predict(body_.now());
   const Channel* frames = find_channel(Modality::Frames);
   const bool by_frames = mode_ == Mode::Frames || (frames && frames->carried() >= kCornersForMap);
@@ -313,6 +319,13 @@ std::optional<std::string> PacketOdometry::save_map() const {
   for (const auto& [name, modality, model, T_B_C, time_offset] : given_rig_.cameras)
     map->cameras.push_back({name, model.width(), model.height(), model.mean_focal()});
   return to_bytes(*map);
+}
+
+Hindsight PacketOdometry::hindsight() const {
+  Hindsight all = before_, now = mapper_.hindsight();
+  std::ranges::move(now.poses, std::back_inserter(all.poses));
+  std::ranges::move(now.keyframes, std::back_inserter(all.keyframes));
+  return all;
 }
 
 void PacketOdometry::calibrate() {

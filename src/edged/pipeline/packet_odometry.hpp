@@ -12,6 +12,7 @@
 #include "edged/core/timing.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/frontend/dim_image.hpp"
+#include "edged/hindsight.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
@@ -45,6 +46,8 @@ class PacketOdometry {
   /// As of Odometry.
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
+  bool elsewhere() const { return mapper_.elsewhere(); }
+  Hindsight hindsight() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
 
@@ -87,6 +90,7 @@ class PacketOdometry {
 
   WorldFrame world_;
   Mapper mapper_;
+  Hindsight before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/flight_record.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "edged/core/angles.hpp"
+#include "edged/map/pose_graph.hpp"
+
+namespace edged {
+namespace {
+
+// Of the odometry's drift as the filter has it: looks at both ends of a stretch tell more of it than those behind.
+constexpr double kDriftInHindsight = 3.0;
+constexpr double kTiltAtStart_rad = 0.2 * kDegree;
+constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
+
+/// Of where the odometry starts, against where it ended.
+Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
+  Matrix6d P = Matrix6d::Zero();
+  P.diagonal().head<3>().setConstant(position_sigma * position_sigma);
+  P.diagonal().tail<3>().setConstant(yaw_sigma * yaw_sigma + kTiltAtStart_rad * kTiltAtStart_rad);
+  return P;
+}
+
+}  // namespace
+
+/// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
+class FlightRecord::Fit {
+ public:
+  explicit Fit(const FlightRecord& record) : config_(record.config_), keyframes_(record.keyframes_) {
+    config_.drift_m *= kDriftInHindsight;
+    config_.drift_yaw_deg *= kDriftInHindsight;
+    config_.drift_tilt_deg *= kDriftInHindsight;
+    for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
+    for (const Session& session : record.sessions_) add_session(session);
+    for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
+    if (std::ranges::any_of(record.sessions_, [](const Session& s) { return !s.views.empty(); })) graph_.solve();
+  }
+
+  const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
+  std::vector<Moved> T_M_O(std::size_t session) const {
+    std::vector<Moved> found;
+    for (const auto& [t, node] : nodes_[session])
+      found.push_back({t, graph_.poses()[node.number] * node.T_O_B.inverse()});
+    return found;
+  }
+
+ private:
+  void add_loaded(std::size_t k, std::span<const SE3> T_M_K) {
+    keyframes_[k] = graph_.add_pose(T_M_K[k]);
+    if (k > 0) graph_.add_step(k - 1, k, T_M_K[k - 1].inverse() * T_M_K[k], kRigid * kRigid * Matrix6d::Identity());
+  }
+
+  void add_session(const Session& session) {
+    Nodes nodes;
+    for (const StampedPose* told : instants(session))
+      nodes[told->t].T_O_B = between(session.settled, told->t) * told->T;
+    for (const Keyframe& keyframe : session.keyframes) nodes[keyframe.T_O_K.t].T_O_B = keyframe.T_O_K.T;
+    for (auto node = nodes.begin(); node != nodes.end(); ++node) {
+      const auto& [t, at] = *node;
+      const SE3 T_M_B = newest(session.T_M_O, t) * at.T_O_B;
+      const std::size_t number = node->second.number = graph_.add_pose(T_M_B);
+      if (node != nodes.begin()) {
+        const auto& [t_before, before] = *std::prev(node);
+        graph_.add_step(number - 1, number, before.T_O_B.inverse() * at.T_O_B,
+                        drift_covariance(config_, T_M_B, to_seconds(t - t_before)));
+      } else if (number > 0) {
+        graph_.add_step(number - 1, number, graph_.poses()[number - 1].inverse() * T_M_B,
+                        start_covariance(session.position_sigma, session.yaw_sigma));
+      }
+    }
+    for (const Keyframe& keyframe : session.keyframes) keyframes_[keyframe.number] = nodes[keyframe.T_O_K.t].number;
+    nodes_.push_back(std::move(nodes));
+  }
+
+  static std::vector<const StampedPose*> instants(const Session& session) {
+    std::vector<const StampedPose*> told = {&session.start};
+    for (const View& view : session.views) told.push_back(&view.T_O_B);
+    return told;
+  }
+
+  void add_sights(const Session& session, const Nodes& nodes) {
+    for (const View& view : session.views) {
+      std::vector<MapSight> sights;
+      for (const Sight& s : view.sights)
+        sights.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
+                          s.seen.cast<double>(), view.sigma});
+      graph_.add_sights(nodes.at(view.T_O_B.t).number, view.T_B_C, sights);
+    }
+  }
+
+  MapFilterConfig config_;
+  PoseGraph graph_;
+  std::vector<std::size_t> keyframes_;  ///< their numbers in the graph
+  std::vector<Nodes> nodes_;            ///< by session
+};
+
+/// Between the two around t; the first and the last hold beyond.
+SE3 FlightRecord::between(const std::vector<Moved>& moved, Timestamp t) {
+  const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
+  if (after == moved.begin()) return after->T;
+  const auto before = std::prev(after);
+  if (after == moved.end()) return before->T;
+  return interpolate(before->T, after->T, to_seconds(t - before->t) / to_seconds(after->t - before->t));
+}
+
+/// The newest at t, without one the first.
+SE3 FlightRecord::newest(const std::vector<Moved>& moved, Timestamp t) {
+  const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
+  return after == moved.begin() ? after->T : std::prev(after)->T;
+}
+
+void FlightRecord::load(std::span<const SE3> T_M_K) {
+  loaded_.assign(T_M_K.begin(), T_M_K.end());
+  keyframes_ = loaded_.size();
+}
+
+void FlightRecord::restart(const StampedPose& T_O_B, const SE3& T_M_O, double position_sigma, double yaw_sigma) {
+  sessions_.push_back({T_O_B, position_sigma, yaw_sigma, {{T_O_B.t, T_M_O}}, {}, {{T_O_B.t, SE3()}}, {}, {}});
+}
+
+void FlightRecord::forget_guess() {
+  std::vector<Moved>& T_M_O = sessions_.back().T_M_O;
+  T_M_O.erase(T_M_O.begin(), std::prev(T_M_O.end()));
+}
+
+void FlightRecord::move_before(const SE3& T_M_before) {
+  for (auto session = sessions_.begin(); session != std::prev(sessions_.end()); ++session) {
+    for (Moved& moved : session->T_M_O) moved.T = T_M_before * moved.T;
+  }
+}
+
+void FlightRecord::add(const StampedPose& T_O_B) { sessions_.back().told.push_back(T_O_B); }
+
+void FlightRecord::settle(const StampedPose& T_O_K) {
+  Session& session = sessions_.back();
+  const auto told = std::ranges::lower_bound(session.told, T_O_K.t, {}, &StampedPose::t);
+  if (told == session.told.end() || told->t != T_O_K.t || session.settled.back().t >= T_O_K.t) return;
+  session.settled.push_back({T_O_K.t, T_O_K.T * told->T.inverse()});
+}
+
+std::size_t FlightRecord::add_keyframe(const StampedPose& T_O_K) {
+  sessions_.back().keyframes.push_back({T_O_K, keyframes_});
+  return keyframes_++;
+}
+
+void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights,
+                              const SE3& T_M_O) {
+  View view{T_O_B, T_B_C, sights.front().sigma, {}};
+  for (const MapSight& s : sights)
+    view.sights.push_back({static_cast<std::uint32_t>(s.keyframe), s.p_K.cast<float>(), s.depth_sigma_K.cast<float>(),
+                           s.seen.cast<float>()});
+  sessions_.back().T_M_O.push_back({T_O_B.t, T_M_O});
+  sessions_.back().views.push_back(std::move(view));
+}
+
+FlightRecord::Path FlightRecord::path() const {
+  const Fit fit(*this);
+  const bool as_told = std::ranges::all_of(sessions_, [](const Session& s) { return s.views.empty(); });
+  Path path;
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    const Session& session = sessions_[i];
+    const std::vector<Moved> T_M_O = fit.T_M_O(i);
+    for (const auto& [t, T_O_B] : session.told) {
+      path.poses.push_back(
+          {t, as_told ? newest(session.T_M_O, t) * T_O_B : between(T_M_O, t) * between(session.settled, t) * T_O_B});
+    }
+  }
+  for (std::size_t k = 0; k < keyframes_; ++k) path.keyframes.push_back(fit.keyframe(k));
+  return path;
+}
+
+}  // namespace edged

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A body that goes round a wall of points, and odometry that drifts by the same each step.
+#include "edged/map/flight_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace edged {
+namespace {
+
+constexpr double kTick_s = 0.1, kOnceRound_s = 8.0;
+
+Timestamp instant(double t_s) { return timestamp_from_seconds(t_s); }
+
+SE3 true_pose(double t) {
+  const double a = 2.0 * M_PI * t / kOnceRound_s;
+  return {so3::exp({0.0, 0.0, 0.2 * std::sin(a)}), {0.5 * std::sin(a), 0.5 - 0.5 * std::cos(a), 0.0}};
+}
+
+class FlightRecordTest : public testing::Test {
+ protected:
+  void restart(double t, const SE3& T_M_O) {
+    T_O_B_ = T_M_O.inverse() * true_pose(t);
+    T_M_O_ = T_M_O;
+    record_.restart({instant(t), T_O_B_}, T_M_O, 0.1, 0.05);
+  }
+  /// Steps of odometry that drifts to the side, up to that time.
+  void fly(double from, double to, double drift_m = 0.001) {
+    for (double t = from + kTick_s; t < to + 1e-6; t += kTick_s) {
+      T_O_B_ = T_O_B_ * (true_pose(t - kTick_s).inverse() * true_pose(t)) *
+               SE3(Eigen::Quaterniond::Identity(), {drift_m, 0, 0});
+      add(t);
+    }
+  }
+  void add(double t) {
+    record_.add({instant(t), T_O_B_});
+    told_.push_back({instant(t), T_M_O_ * T_O_B_});
+  }
+  /// The wall as that keyframe has it, seen from where the body is in truth.
+  void look(double t, double made_at, std::size_t keyframe) {
+    std::vector<MapSight> sights;
+    for (const double x : {-1.2, 0.1, 1.3}) {
+      for (const double y : {-1.1, 0.0, 1.0}) {
+        const Eigen::Vector3d p(x, y, 3.0 + x + 0.8 * y);  // no plane across: turns are told from shifts
+        const Eigen::Vector3d p_K = true_pose(made_at).inverse() * p, p_B = true_pose(t).inverse() * p;
+        sights.push_back({keyframe, p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
+      }
+    }
+    record_.add_sights({instant(t), T_O_B_}, SE3(), sights, T_M_O_);
+  }
+  static double error(const StampedPose& pose) {
+    const double t = to_seconds(pose.t - Timestamp{});
+    return (pose.T.translation() - true_pose(t).translation()).norm();
+  }
+
+  FlightRecord record_{MapFilterConfig{}};
+  SE3 T_O_B_, T_M_O_;
+  Trajectory told_;
+};
+
+TEST_F(FlightRecordTest, GivesBackWhatWasToldWhereNothingWasFoundAgain) {
+  restart(0.0, SE3());
+  fly(0.0, 4.0);
+  record_.settle({instant(2.0), SE3()});
+  record_.add_keyframe({instant(2.0), told_[19].T});
+  restart(5.0, SE3(so3::exp({0, 0, 0.3}), {0.1, 0.2, 0.3}));
+  fly(5.0, 7.0);
+  const FlightRecord::Path path = record_.path();
+  ASSERT_EQ(path.poses.size(), told_.size());
+  for (std::size_t i = 0; i < told_.size(); ++i) {
+    EXPECT_EQ(path.poses[i].t, told_[i].t);
+    EXPECT_EQ(path.poses[i].T.translation(), told_[i].T.translation());
+    EXPECT_EQ(path.poses[i].T.rotation().coeffs(), told_[i].T.rotation().coeffs());
+  }
+  EXPECT_EQ(path.keyframes.size(), 1U);
+}
+
+TEST_F(FlightRecordTest, IsEmptyBeforeAnything) {
+  EXPECT_TRUE(record_.path().poses.empty());
+  restart(0.0, SE3());
+  EXPECT_TRUE(record_.path().poses.empty());
+}
+
+TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) {
+  restart(0.0, SE3());
+  fly(0.0, 0.5, 0.0);
+  const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
+  fly(0.5, 8.5);
+  ASSERT_GT(error(told_.back()), 0.06);
+  look(8.5, 0.5, keyframe);
+  const Trajectory poses = record_.path().poses;
+  EXPECT_LT(error(poses.back()), 0.005);
+  for (const StampedPose& pose : poses) EXPECT_LT(error(pose), 0.01);
+}
+
+TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
+  restart(0.0, SE3());
+  fly(0.0, 0.5, 0.0);
+  const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
+  fly(0.5, 4.0, 0.0);
+  T_O_B_.translation().z() += 0.01;  // one pose that was told wrong, and mended within the window
+  fly(4.0, 4.1, 0.0);
+  T_O_B_.translation().z() -= 0.01;
+  fly(4.1, 8.5, 0.0);
+  for (const double t : {4.0, 4.1, 4.2}) record_.settle({instant(t), true_pose(t)});
+  look(8.5, 0.5, keyframe);
+  for (const StampedPose& pose : record_.path().poses) EXPECT_LT(error(pose), 1e-3);
+}
+
+TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
+  restart(0.0, SE3());
+  fly(0.0, 0.5, 0.0);
+  const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
+  fly(0.5, 3.0, 0.0);
+  look(3.0, 0.5, keyframe);
+  // The new frame lies where dead reckoning puts it, half a metre off, and is turned besides.
+  const SE3 off(Eigen::Quaterniond::Identity(), {0.5, -0.2, 0.0}), O(so3::exp({0, 0, 1.0}), {1.0, 2.0, 0.5});
+  T_O_B_ = O.inverse() * true_pose(5.0);
+  T_M_O_ = off * O;
+  record_.restart({instant(5.0), T_O_B_}, T_M_O_, 0.1, 0.05);
+  fly(5.0, 8.0, 0.0);
+  EXPECT_GT(error(told_.back()), 0.5);
+  T_M_O_ = O;
+  look(8.0, 0.5, keyframe);
+  record_.forget_guess();
+  fly(8.0, 8.5, 0.0);
+  for (const StampedPose& pose : record_.path().poses)
+    EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
+}
+
+}  // namespace
+}  // namespace edged

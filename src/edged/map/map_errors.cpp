@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/map_errors.hpp"
+
+#include "edged/core/angles.hpp"
+
+namespace edged {
+
+std::optional<SightRow> linearised(const MapSight& sight, const SE3& T_M_B, const SE3& T_M_K, const SE3& T_B_C) {
+  using Matrix23d = Eigen::Matrix<double, 2, 3>;
+  const SE3 T_B_M = T_M_B.inverse(), T_C_B = T_B_C.inverse();
+  const Eigen::Vector3d p_B = T_B_M * (T_M_K * sight.p_K), p_C = T_C_B * p_B;
+  if (p_C.z() <= 0.0) return std::nullopt;
+  Matrix23d of_p_B;
+  of_p_B << 1.0 / p_C.z(), 0.0, -p_C.x() / (p_C.z() * p_C.z()), 0.0, 1.0 / p_C.z(), -p_C.y() / (p_C.z() * p_C.z());
+  of_p_B *= T_C_B.R();
+  const Matrix23d of_p_M = of_p_B * T_B_M.R();
+  SightRow row;
+  row.r = p_C.hnormalized() - sight.seen;
+  row.by_body << -of_p_M, of_p_B * skew(p_B);
+  row.by_keyframe << of_p_M, -of_p_M * T_M_K.R() * skew(sight.p_K);
+  const Eigen::Vector2d along = of_p_M * T_M_K.R() * sight.depth_sigma_K;
+  row.R = sight.sigma * sight.sigma * Eigen::Matrix2d::Identity() + along * along.transpose();
+  return row;
+}
+
+Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B) {
+  Matrix6d F = Matrix6d::Identity();
+  F.topRightCorner<3, 3>() = -T_M_A.R() * skew(T_A_B.translation());
+  F.bottomRightCorner<3, 3>() = T_A_B.R().transpose();
+  return F;
+}
+
+Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt) {
+  const double yaw = config.drift_yaw_deg * kDegree, tilt = config.drift_tilt_deg * kDegree;
+  const Eigen::Vector3d up_B = T_M_B.R().transpose() * Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
+  Matrix6d Q = Matrix6d::Zero();
+  Q.diagonal().head<3>().setConstant(config.drift_m * config.drift_m * dt);
+  Q.bottomRightCorner<3, 3>() = dt * (yaw * yaw * along_up + tilt * tilt * (Eigen::Matrix3d::Identity() - along_up));
+  return Q;
+}
+
+SE3 corrected(const SE3& T, const Vector6d& error) {
+  return {T.rotation() * so3::exp(error.tail<3>()), T.translation() + error.head<3>()};
+}
+
+}  // namespace edged

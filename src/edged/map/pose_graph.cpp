@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/pose_graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace edged {
+namespace {
+
+constexpr double kFarSigmas = 2.0;  // Cauchy's scale
+constexpr int kIterations = 12;
+constexpr int kTrusting = 3;       // of them that believe all sights: after a long drift, right ones are far off, too
+constexpr double kSettled = 1e-6;  // largest step of an iteration, metres and radians
+constexpr double kHeld = 1e18;     // information on the first pose
+
+}  // namespace
+
+/// H dx = -g, of which only blocks that are not zero are kept: of each pair of poses that one for which a >= b.
+class PoseGraph::Equations {
+ public:
+  explicit Equations(std::size_t poses) : g_(Eigen::VectorXd::Zero(6 * static_cast<Eigen::Index>(poses))) {
+    block(0, 0) = kHeld * Matrix6d::Identity();
+  }
+
+  void add(std::size_t a, std::size_t b, const Matrix6d& aa, const Matrix6d& ab, const Matrix6d& bb) {
+    block(a, a) += aa;
+    block(b, b) += bb;
+    if (a > b) {
+      block(a, b) += ab;
+    } else {
+      block(b, a) += ab.transpose();
+    }
+  }
+  void add(std::size_t a, const Vector6d& g) { g_.segment<6>(6 * static_cast<Eigen::Index>(a)) += g; }
+
+  std::optional<Eigen::VectorXd> solved() const {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [at, H] : blocks_) {
+      for (int column = 0; column < 6; ++column) {
+        for (int row = at.first == at.second ? column : 0; row < 6; ++row)
+          entries.emplace_back(6 * static_cast<int>(at.second) + row, 6 * static_cast<int>(at.first) + column,
+                               H(row, column));
+      }
+    }
+    Eigen::SparseMatrix<double> H(g_.size(), g_.size());
+    H.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(H);
+    if (factors.info() != Eigen::Success) return std::nullopt;
+    return factors.solve(-g_);
+  }
+
+ private:
+  Matrix6d& block(std::size_t a, std::size_t b) { return blocks_.try_emplace({b, a}, Matrix6d::Zero()).first->second; }
+
+  std::map<std::pair<std::size_t, std::size_t>, Matrix6d> blocks_;  ///< by column, then row
+  Eigen::VectorXd g_;
+};
+
+std::size_t PoseGraph::add_pose(const SE3& T_M_B) {
+  T_M_B_.push_back(T_M_B);
+  return T_M_B_.size() - 1;
+}
+
+void PoseGraph::add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance) {
+  steps_.push_back({a, b, T_A_B, covariance.inverse()});
+}
+
+void PoseGraph::add_sights(std::size_t body, const SE3& T_B_C, std::span<const MapSight> sights) {
+  views_.push_back({body, T_B_C, {sights.begin(), sights.end()}});
+}
+
+void PoseGraph::take(const Step& step, Equations& equations) const {
+  const SE3 &T_M_A = T_M_B_[step.a], expected = T_M_A * step.T_A_B, &found = T_M_B_[step.b];
+  Vector6d r;
+  r << found.translation() - expected.translation(), so3::log(expected.rotation().conjugate() * found.rotation());
+  const Matrix6d by_a = -transport(T_M_A, step.T_A_B), weighed = by_a.transpose() * step.information;
+  equations.add(step.a, step.b, weighed * by_a, weighed, step.information);
+  equations.add(step.a, weighed * r);
+  equations.add(step.b, step.information * r);
+}
+
+void PoseGraph::take(const View& view, bool trusting, Equations& equations) const {
+  for (const MapSight& sight : view.sights) {
+    const auto row = linearised(sight, T_M_B_[view.body], T_M_B_[sight.keyframe], view.T_B_C);
+    if (!row) continue;
+    const Eigen::Matrix2d information = row->R.inverse();
+    const double far = trusting ? 0.0 : row->r.dot(information * row->r) / (kFarSigmas * kFarSigmas);
+    const Eigen::Matrix2d W = information / (1.0 + far);
+    const Eigen::Matrix<double, 6, 2> body = row->by_body.transpose() * W, keyframe = row->by_keyframe.transpose() * W;
+    equations.add(view.body, sight.keyframe, body * row->by_body, body * row->by_keyframe, keyframe * row->by_keyframe);
+    equations.add(view.body, body * row->r);
+    equations.add(sight.keyframe, keyframe * row->r);
+  }
+}
+
+void PoseGraph::solve() {
+  for (int i = 0; i < kIterations; ++i) {
+    Equations equations(T_M_B_.size());
+    for (const Step& step : steps_) take(step, equations);
+    for (const View& view : views_) take(view, i < kTrusting, equations);
+    const std::optional<Eigen::VectorXd> errors = equations.solved();
+    if (!errors || !errors->allFinite()) return;
+    for (std::size_t k = 0; k < T_M_B_.size(); ++k)
+      T_M_B_[k] = corrected(T_M_B_[k], errors->segment<6>(6 * static_cast<Eigen::Index>(k)));
+    if (i >= kTrusting && errors->lpNorm<Eigen::Infinity>() < kSettled) return;
+  }
+}
+
+}  // namespace edged

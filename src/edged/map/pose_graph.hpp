@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Poses of the body that hang together by the odometry's steps from one to the next and by points of the one that were
+// found again from the other: where all of them fit best. What MapFilter does with the past alone, with the future too.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "edged/map/map_config.hpp"
+#include "edged/map/map_errors.hpp"
+#include "edged/se3.hpp"
+
+namespace edged {
+
+class PoseGraph {
+ public:
+  /// A first guess; returns its number. The first one stays where it is.
+  std::size_t add_pose(const SE3& T_M_B);
+  /// B was seen to lie at T_A_B from A; the covariance is that of B's error then.
+  void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);
+  /// What was found in the image of a body, of keyframes by their numbers.
+  void add_sights(std::size_t body, const SE3& T_B_C, std::span<const MapSight> sights);
+  /// Gauss-Newton; sights that lie far off are weighed down by Cauchy's function, but for the first steps.
+  /// Deterministic.
+  void solve();
+
+  const std::vector<SE3>& poses() const { return T_M_B_; }
+
+ private:
+  struct Step {
+    std::size_t a, b;
+    SE3 T_A_B;
+    Matrix6d information;
+  };
+  struct View {
+    std::size_t body;
+    SE3 T_B_C;
+    std::vector<MapSight> sights;
+  };
+  class Equations;
+  void take(const Step& step, Equations& equations) const;
+  void take(const View& view, bool trusting, Equations& equations) const;
+
+  std::vector<SE3> T_M_B_;
+  std::vector<Step> steps_;
+  std::vector<View> views_;
+};
+
+}  // namespace edged
