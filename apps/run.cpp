@@ -232,7 +232,7 @@ RunSummary Run::summarize() {
   const StatesTable states = read_states(folder_);
   const Trajectory body = map_.in_one_frame(body_poses(states));
   if (truth && !body.empty()) evaluate_run(summary, body, claims_of(states), source_.calibration.rig, *truth);
-  if (summary.evaluation) evaluate_final(summary, known.poses, source_.calibration.rig, *truth);
+  if (summary.evaluation) evaluate_final(summary, map_.in_one_frame(known.poses), source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");

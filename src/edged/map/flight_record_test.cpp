@@ -130,5 +130,36 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
     EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
+TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
+  const std::vector<SE3> loaded = {true_pose(7.0), true_pose(7.5)};
+  record_.load(loaded);
+  // Two starts in a frame of this run's own, before its place in the map is known.
+  const SE3 own(so3::exp({0, 0, -0.7}), {2.0, 1.0, 0.0});
+  restart(0.0, own);
+  fly(0.0, 3.0, 0.0);
+  restart(5.0, own);
+  fly(5.0, 8.0, 0.0);
+  look(8.0, 7.5, 1);
+  record_.forget_guess();
+  const FlightRecord::Path path = record_.path();
+  EXPECT_EQ(path.poses.size(), told_.size());
+  for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
+    EXPECT_LT((path.keyframes[k].inverse() * loaded[k]).log().norm(), 1e-6);
+  }
+}
+
+TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
+  const SE3 own(so3::exp({0, 0, -0.7}), {2.0, 1.0, 0.0});
+  restart(0.0, own);
+  fly(0.0, 1.0, 0.0);
+  restart(2.0, own);
+  fly(2.0, 3.0, 0.0);
+  record_.move_before(own.inverse());
+  const Trajectory moved = record_.path().poses;
+  EXPECT_LT((moved.front().T.inverse() * own.inverse() * told_.front().T).log().norm(), 1e-12);
+  EXPECT_EQ(moved.back().T.matrix(), told_.back().T.matrix()) << "the present start has been moved by the map";
+}
+
 }  // namespace
 }  // namespace edged
