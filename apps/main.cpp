@@ -15,6 +15,7 @@
 #include "eval_command.hpp"
 #include "info_command.hpp"
 #include "manual_command.hpp"
+#include "map_command.hpp"
 #include "program.hpp"
 #include "report_command.hpp"
 #include "run_command.hpp"
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
   add_simulate_command(app, chosen);
   add_eval_command(app, chosen);
   add_report_command(app, chosen);
+  add_map_command(app, chosen);
   add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);

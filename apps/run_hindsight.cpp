@@ -24,6 +24,8 @@ std::string keyframes_csv(const std::vector<MappedKeyframe>& keyframes) {
   return text;
 }
 
+}  // namespace
+
 std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
   std::size_t count = 0;
   std::string vertices;
@@ -44,8 +46,6 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
              count) +
          vertices;
 }
-
-}  // namespace
 
 void write_hindsight(const std::filesystem::path& folder, const OutputFrame& frame, const Hindsight& known,
                      const std::vector<std::string>& comments) {

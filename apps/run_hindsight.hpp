@@ -17,4 +17,7 @@ namespace edged {
 void write_hindsight(const std::filesystem::path& folder, const OutputFrame& frame, const Hindsight& known,
                      const std::vector<std::string>& comments);
 
+/// Their points, for viewers of point clouds.
+std::string map_ply(const std::vector<MappedKeyframe>& keyframes);
+
 }  // namespace edged

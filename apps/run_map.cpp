@@ -4,33 +4,14 @@
 
 #include <spdlog/spdlog.h>
 
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "map_file.hpp"
 #include "run_folder.hpp"
 
 namespace edged {
-namespace {
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError::format("--map {}: cannot be read; --save-map of an earlier run makes one", file.string());
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Before an hour is spent on what can then not be kept.
-void check_writable(const std::filesystem::path& file) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored))
-    throw InputError::format("--save-map {}: no such folder: {}", file.string(), folder.string());
-}
-
-}  // namespace
-
 void add_map_options(CLI::App& app, MapOptions& options) {
   app.add_option("--map", options.load,
                  "Go on in the map that --save-map of an earlier run wrote: poses are in its frame once a place of it "
@@ -40,14 +21,14 @@ void add_map_options(CLI::App& app, MapOptions& options) {
 
 RunMap::RunMap(MapOptions options, bool enabled, Odometry& odometry) : options_(std::move(options)) {
   if (options_.load.empty() && options_.save.empty()) return;
-  if (!enabled) throw InputError("--map and --save-map want the map: leave out expert.map.enabled=false");
-  if (!options_.save.empty()) check_writable(options_.save);
+  if (!enabled) throw InputError("--map and --save-map want the map: leave out map.enabled=false");
+  if (!options_.save.empty()) check_folder_of(options_.save);
   if (options_.load.empty()) return;
+  const std::string bytes = read_map_bytes(options_.load);
   try {
-    odometry.load_map(bytes_of(options_.load));
+    odometry.load_map(bytes);
   } catch (const InputError& e) {
-    const std::string what = e.what();
-    throw what.starts_with("--map") ? e : InputError::format("--map {}: {}", options_.load.string(), what);
+    throw InputError::format("{}: {}", options_.load.string(), e.what());
   }
 }
 

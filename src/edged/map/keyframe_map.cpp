@@ -41,6 +41,15 @@ std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_no
 
 }  // namespace
 
+MappedKeyframe mapped(const MapKeyframe& keyframe, const SE3& T_M_K) {
+  MappedKeyframe seen{keyframe.t, T_M_K, keyframe.camera, keyframe.times_found, keyframe.found_at, {}};
+  for (const MapPoint& point : keyframe.points) {
+    const Eigen::Vector3d p_K = keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth);
+    seen.points.push_back({T_M_K * p_K, point.patch.middle(), point.tried, point.found});
+  }
+  return seen;
+}
+
 bool KeyframeMap::gains_by(MapKeyframe& keyframe) const {
   const bool soon = !keyframes_.empty() && to_seconds(keyframe.t - keyframes_.back().t) < config_.min_interval_s;
   if (soon) return false;

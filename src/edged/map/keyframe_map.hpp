@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/hindsight.hpp"
 #include "edged/map/map_config.hpp"
 #include "edged/map/patch.hpp"
 #include "edged/map/place.hpp"
@@ -39,6 +40,9 @@ struct MapKeyframe {
   double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
   int times_found = 0;       ///< images in which points of it were found
 };
+
+/// As those who use the map see it.
+MappedKeyframe mapped(const MapKeyframe& keyframe, const SE3& T_M_K);
 
 /// From `since` on, and before `before`.
 struct Period {

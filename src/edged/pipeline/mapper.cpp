@@ -223,13 +223,7 @@ Hindsight Mapper::hindsight() const {
   FlightRecord::Path path = record_.path();
   Hindsight known{std::move(path.poses), {}};
   for (const MapKeyframe& keyframe : map_.keyframes()) {
-    const SE3& T_M_K = path.keyframes[keyframe.number];
-    MappedKeyframe mapped{keyframe.t, T_M_K, keyframe.camera, keyframe.times_found, keyframe.found_at, {}};
-    for (const MapPoint& point : keyframe.points) {
-      const Eigen::Vector3d p_K = keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth);
-      mapped.points.push_back({T_M_K * p_K, point.patch.middle(), point.tried, point.found});
-    }
-    known.keyframes.push_back(std::move(mapped));
+    known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
   }
   return known;
 }

@@ -14,7 +14,6 @@ namespace edged {
 namespace {
 
 constexpr std::size_t kCut = 35;
-
 Timestamp at_ms(double ms) { return timestamp_from_seconds(1e-3 * ms); }
 ImuSample imu_at(double ms) {
   // Linear in time, so that interpolation can be checked.
