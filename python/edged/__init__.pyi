@@ -151,6 +151,19 @@ class Measurement:
         """An array of EVENT, an image, or an array of IMU of one row; read-only, without a copy."""
 
 
+class Hindsight:
+    """Not causal: what came later has its part in it."""
+    @property
+    def poses(self) -> NDArray[np.void]:
+        """POSE, one a Good or Degraded step."""
+    @property
+    def keyframes(self) -> NDArray[np.void]:
+        """POSE, those that the map has kept; negative stamps: of a map that was loaded."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Of the map, one row a point, in W [m]."""
+
+
 class Odometry:
     """One rig, one mode, from the first measurement to the last. Without the GIL while it works."""
     def __init__(self, calibration: Calibration | Path, mode: Mode = "fused", options: Mapping[str, Option] = {},
@@ -171,6 +184,15 @@ class Odometry:
     def newest_state(self) -> State | None:
         """At the newest IMU sample; any thread."""
     def state_at(self, t: int) -> State | None: ...
+    def load_map(self, map: bytes) -> None:
+        """What save_map of another gave, before the first measurement. Poses are in its frame once a place of it is recognised."""
+    def save_map(self) -> bytes | None:
+        """What has been seen; None while elsewhere."""
+    @property
+    def elsewhere(self) -> bool:
+        """A map was loaded, and no place of it has been recognised yet."""
+    def hindsight(self) -> Hindsight:
+        """Path and map as known by now."""
     @property
     def rig(self) -> dict[str, Camera]:
         """The cameras of the mode as calibrated so far."""

@@ -97,6 +97,39 @@ py::dict rig(PyOdometry& self) {
   return cameras(guarded(self.mutex, [&] { return self.odometry.rig(); }));
 }
 
+void load_map(PyOdometry& self, const py::bytes& map) {
+  const std::string bytes = map;
+  guarded(self.mutex, [&] { self.odometry.load_map(bytes); });
+}
+
+std::optional<py::bytes> save_map(PyOdometry& self) {
+  const std::optional<std::string> bytes = guarded(self.mutex, [&] { return self.odometry.save_map(); });
+  return bytes ? std::optional(py::bytes(*bytes)) : std::nullopt;
+}
+
+bool elsewhere(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return self.odometry.elsewhere(); });
+}
+
+Hindsight hindsight(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return self.odometry.hindsight(); });
+}
+
+Trajectory keyframe_poses(const Hindsight& known) {
+  Trajectory poses;
+  for (const MappedKeyframe& keyframe : known.keyframes) poses.push_back({keyframe.t, keyframe.T_W_B});
+  return poses;
+}
+
+py::array_t<double> map_points(const Hindsight& known) {
+  std::vector<double> rows;
+  for (const MappedKeyframe& keyframe : known.keyframes) {
+    for (const MappedKeyframe::Point& point : keyframe.points)
+      rows.insert(rows.end(), point.p_W.data(), point.p_W.data() + 3);
+  }
+  return py::array_t<double>({static_cast<py::ssize_t>(rows.size() / 3), py::ssize_t{3}}, rows.data());
+}
+
 std::map<std::string, double> timings(PyOdometry& self) {
   const StageTimings timings = guarded(self.mutex, [&] { return self.odometry.timings(); });
   std::map<std::string, double> total_s;
@@ -112,6 +145,10 @@ PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const OptionVa
 
 void bind_odometry(py::module_& module) {
   using Free = py::call_guard<py::gil_scoped_release>;
+  py::class_<Hindsight>(module, "Hindsight")
+      .def_property_readonly("poses", [](const Hindsight& known) { return poses_array(known.poses); })
+      .def_property_readonly("keyframes", [](const Hindsight& known) { return poses_array(keyframe_poses(known)); })
+      .def_property_readonly("points", &map_points);
   py::class_<PyOdometry>(module, "Odometry")
       .def(py::init(&make_odometry), py::arg("calibration"), py::arg("mode") = "fused",
            py::arg("options") = OptionValues{}, py::arg("in_order") = false,
@@ -132,6 +169,10 @@ void bind_odometry(py::module_& module) {
       .def(
           "state_at", [](const PyOdometry& self, Timestamp t) { return self.odometry.state_at(t); }, py::arg("t"),
           Free())
+      .def("load_map", &load_map, py::arg("map"))
+      .def("save_map", &save_map)
+      .def_property_readonly("elsewhere", &elsewhere)
+      .def("hindsight", &hindsight)
       .def_property_readonly("rig", &rig)
       .def_property_readonly("counters", &counters)
       .def_property_readonly("timings", &timings);

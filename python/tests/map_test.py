@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""Maps as bytes, and what is known in the end."""
+import pytest
+
+import edged
+
+
+def follow(recording, the_map=None):
+    odometry = edged.Odometry(recording.calibration, "frames", in_order=True)
+    if the_map is not None:
+        odometry.load_map(the_map)
+        assert odometry.elsewhere and odometry.save_map() is None
+    steps = []
+    for measurement in recording:
+        odometry.add(measurement)
+        steps += odometry
+    odometry.finish()
+    return odometry, steps + list(odometry)
+
+
+def test_a_map_of_one_odometry_is_gone_on_in_by_another():
+    first, steps = follow(edged.simulate("room", 5, duration_s=9))
+    known = first.hindsight()
+    assert len(known.poses) == sum(step.is_tracking for step in steps)
+    assert known.points.shape[1] == 3 and len(known.points) > 15 * len(known.keyframes) > 0
+    second, steps = follow(edged.simulate("room", 5, duration_s=9, begin_s=4), first.save_map())
+    assert not second.elsewhere and any(step.found_again for step in steps)
+    assert (second.hindsight().keyframes["t"] < 0).any()
+
+
+def test_what_is_no_map_is_refused():
+    odometry = edged.Odometry("davis240c_ecd")
+    with pytest.raises(edged.InputError, match="no map"):
+        odometry.load_map(b"garbage")
+    with pytest.raises(TypeError):
+        odometry.load_map(3)
