@@ -53,7 +53,8 @@ class Odometry {
 
   /// Goes on in a map that save_map of an earlier run gave, before the first measurement. Until a place of it has been
   /// recognised the poses are in a frame of this run's own; with the step that says found_again they come into the
-  /// map's. Throws InputError where the bytes are damaged or of another version, or no camera of this mode fits.
+  /// map's. Throws InputError where the bytes are damaged or of another version, no camera of this mode fits, or it is
+  /// too late.
   void load_map(std::string_view bytes);
   /// A map was loaded, and no place of it has been recognised yet.
   bool elsewhere() const;

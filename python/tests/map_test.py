@@ -27,6 +27,8 @@ def test_a_map_of_one_odometry_is_gone_on_in_by_another():
     second, steps = follow(edged.simulate("room", 5, duration_s=9, begin_s=4), first.save_map())
     assert not second.elsewhere and any(step.found_again for step in steps)
     assert (second.hindsight().keyframes["t"] < 0).any()
+    with pytest.raises(edged.InputError, match="before the first pose"):
+        second.load_map(first.save_map())
 
 
 def test_what_is_no_map_is_refused():

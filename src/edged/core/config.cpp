@@ -183,7 +183,8 @@ std::string ConfigFields::key_of(std::string_view name) const {
 }
 
 void ConfigFields::experts_last() {
-  std::ranges::stable_partition(fields_, [](const ConfigField& field) { return !field.expert; });
+  // Not of std::ranges: clang 14, which builds the fuzzers, does not compile that of libstdc++ 12.
+  std::stable_partition(fields_.begin(), fields_.end(), [](const ConfigField& field) { return !field.expert; });
 }
 
 void ConfigFields::add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,

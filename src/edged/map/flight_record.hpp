@@ -22,6 +22,9 @@ class FlightRecord {
  public:
   explicit FlightRecord(const MapFilterConfig& config) : config_(config) {}
 
+  /// Nothing has started yet.
+  bool empty() const { return sessions_.empty(); }
+
   /// The map has keyframes of another run, numbered from zero on. They stay where they are.
   void load(std::span<const SE3> T_M_K);
   /// The odometry starts in a new O, at T_M_O for all that is known, by those sigmas of position and yaw [m], [rad].

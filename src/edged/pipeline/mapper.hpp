@@ -47,6 +47,7 @@ class Mapper {
   /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
   /// of it has been recognised: so long M is a frame of this run's own.
   void load(const SavedMap& map);
+  bool started() const { return !record_.empty(); }
   /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
   /// in another frame than that.
   std::optional<SavedMap> save() const;

@@ -308,6 +308,7 @@ bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views,
 }
 
 void PacketOdometry::load_map(std::string_view bytes) {
+  if (mapper_.started()) throw InputError("a map can be loaded only before the first pose");
   const SavedMap map = saved_map_from_bytes(bytes);
   check_fits(map, given_rig_);
   mapper_.load(map);
