@@ -17,7 +17,6 @@ using LiveClockTime = std::chrono::steady_clock;
 constexpr auto kShotPeriod = std::chrono::milliseconds(150), kMapPeriod = std::chrono::milliseconds(2000);
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWidestShot_px = 640;
-constexpr std::size_t kMostChangesShown = 300;  // as in the report
 
 struct LiveColumn {
   const char* name;  ///< as in the report's rows

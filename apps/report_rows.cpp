@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "edged/core/angles.hpp"
+#include "status_changes.hpp"
 
 namespace edged {
 namespace {
@@ -180,10 +181,9 @@ Json map_json(const Json& album, const Similarity& alignment) {
 }
 
 Json changes_json(const StatesTable& states, const Json& album, Timestamp origin) {
-  constexpr std::size_t kMostChanges = 300;
   Json json = Json::array();
   const auto add = [&](Timestamp t, const std::string& status, const std::string& reason) {
-    if (json.size() == kMostChanges) return;
+    if (json.size() == kMostChangesShown) return;
     json.push_back({{"t", rounded(to_seconds(t - origin), 4)}, {"status", status}, {"reason", reason}});
   };
   if (!album.is_null()) {

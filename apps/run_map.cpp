@@ -12,6 +12,7 @@
 #include "run_folder.hpp"
 
 namespace edged {
+
 void add_map_options(CLI::App& app, MapOptions& options) {
   app.add_option("--map", options.load,
                  "Go on in the map that --save-map of an earlier run wrote: poses are in its frame once a place of it "

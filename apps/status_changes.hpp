@@ -3,12 +3,16 @@
 // When the status of a run changed, and why.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "edged/step.hpp"
 
 namespace edged {
+
+/// The first of them are shown, by the report and by the live page.
+inline constexpr std::size_t kMostChangesShown = 300;
 
 struct StatusChange {
   Timestamp t;

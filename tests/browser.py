@@ -4,12 +4,25 @@
 import base64
 import json
 import os
+import pathlib
 import select
 import shutil
 import subprocess
+import sys
 import time
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def pictures_folder():
+    """Takes --pictures FOLDER off the command line and makes the folder; None without it."""
+    if "--pictures" not in sys.argv:
+        return None
+    at = sys.argv.index("--pictures")
+    folder = pathlib.Path(sys.argv[at + 1]).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    del sys.argv[at:at + 2]
+    return folder
 
 
 class Browser:
@@ -33,7 +46,13 @@ class Browser:
             self.call(f"{domain}.enable")
 
     def close(self):
-        self.process.kill()
+        # By itself, with all its processes: one that is killed leaves some that still write into the profile.
+        self.session = None
+        try:
+            self.call("Browser.close")
+            self.process.wait(10)
+        except (OSError, EOFError, TimeoutError, subprocess.TimeoutExpired):
+            self.process.kill()
         self.process.wait()
         os.close(self.requests)
         os.close(self.answers)

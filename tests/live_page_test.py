@@ -5,20 +5,17 @@
 where there is one. Usage: EDGED=path/to/edged live_page_test.py [--pictures FOLDER]; the option leaves screenshots."""
 import contextlib
 import json
-import os
-import pathlib
 import re
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 import unittest
 import urllib.error
 import urllib.request
 
-from browser import CHROMIUM, Browser
+from browser import CHROMIUM, Browser, pictures_folder
 from program import EDGED, WithFlight, edged
 
 PICTURES = None
@@ -217,9 +214,5 @@ class LivePage(WithFlight):
 
 
 if __name__ == "__main__":
-    if "--pictures" in sys.argv:
-        at = sys.argv.index("--pictures")
-        PICTURES = pathlib.Path(sys.argv[at + 1]).resolve()
-        os.makedirs(PICTURES, exist_ok=True)
-        del sys.argv[at:at + 2]
+    PICTURES = pictures_folder()
     unittest.main(verbosity=2)

@@ -5,17 +5,14 @@
 Usage: EDGED=path/to/edged report_test.py [--pictures FOLDER]; the option leaves screenshots, light and dark, narrow and wide."""
 import html
 import json
-import os
-import pathlib
 import re
 import shutil
 import subprocess
-import sys
 import unittest
 
+from browser import CHROMIUM, pictures_folder
 from program import WithFlight, edged
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 PICTURES = None
 
 # A page around the report, as a window narrower than 500 px cannot be had; what it finds becomes its text.
@@ -196,9 +193,5 @@ class Page(WithFlight):
 
 
 if __name__ == "__main__":
-    if "--pictures" in sys.argv:
-        at = sys.argv.index("--pictures")
-        PICTURES = pathlib.Path(sys.argv[at + 1]).resolve()
-        os.makedirs(PICTURES, exist_ok=True)
-        del sys.argv[at:at + 2]
+    PICTURES = pictures_folder()
     unittest.main(verbosity=2)

@@ -36,7 +36,7 @@ class FlightRecord::Fit {
     for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
     for (const Session& session : record.sessions_) add_session(session);
     for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
-    if (std::ranges::any_of(record.sessions_, [](const Session& s) { return !s.views.empty(); })) graph_.solve();
+    if (record.found_again()) graph_.solve();
   }
 
   const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
@@ -96,6 +96,10 @@ class FlightRecord::Fit {
   std::vector<std::size_t> keyframes_;  ///< their numbers in the graph
   std::vector<Nodes> nodes_;            ///< by session
 };
+
+bool FlightRecord::found_again() const {
+  return std::ranges::any_of(sessions_, [](const Session& session) { return !session.views.empty(); });
+}
 
 /// Between the two around t; the first and the last hold beyond.
 SE3 FlightRecord::between(const std::vector<Moved>& moved, Timestamp t) {
@@ -158,7 +162,7 @@ void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::s
 
 FlightRecord::Path FlightRecord::path() const {
   const Fit fit(*this);
-  const bool as_told = std::ranges::all_of(sessions_, [](const Session& s) { return s.views.empty(); });
+  const bool as_told = !found_again();
   Path path;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const Session& session = sessions_[i];

@@ -88,6 +88,7 @@ class FlightRecord {
   using Nodes = std::map<Timestamp, Node>;
   class Fit;
 
+  bool found_again() const;
   static SE3 between(const std::vector<Moved>& moved, Timestamp t);
   static SE3 newest(const std::vector<Moved>& moved, Timestamp t);
 

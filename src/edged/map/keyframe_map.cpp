@@ -20,6 +20,7 @@ constexpr double kMinFound = 0.3;  // share of them
 constexpr double kFarthest = 1.5;  // [scene depths]: keyframes that lie farther away see it otherwise
 constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
 constexpr std::size_t kFewestAgreeing = 12;
+constexpr double kAgreement_px = 3.0;   // of a corner with the place recognised
 constexpr double kLeastAgreeing = 0.3;  // share of the corners that look like a point
 constexpr double kWidest_deg = 60.0;    // between the optical axes
 
@@ -144,7 +145,7 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
 
 std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
                                           std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
-                                          double max_error) const {
+                                          double focal) const {
   std::vector<PlaceMatch> matches;
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     if (!descriptors[i]) continue;
@@ -162,7 +163,7 @@ std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const
     }
     if (nearest < kAlike) matches.push_back(match);
   }
-  const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, max_error);
+  const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, kAgreement_px / focal);
   if (!pose || pose->agreeing < kFewestAgreeing ||
       pose->agreeing < kLeastAgreeing * static_cast<double>(matches.size()))
     return std::nullopt;

@@ -86,11 +86,11 @@ class KeyframeMap {
   /// The points of that keyframe and image were looked for, and found.
   void note(const Candidate& candidate, bool found, Timestamp t);
 
-  /// Where the camera is that sees corners with these descriptors at those points of the unit plane. R_O_C and
-  /// max_error as in pose_by_gravity. Nothing where no place of the map looks like that.
+  /// Where the camera is that sees corners with these descriptors at those points of the unit plane. R_O_C as in
+  /// pose_by_gravity; focal: of the camera [px]. Nothing where no place of the map looks like that.
   std::optional<SE3> recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
                                std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
-                               double max_error) const;
+                               double focal) const;
 
   const std::vector<MapKeyframe>& keyframes() const { return keyframes_; }
 

@@ -9,7 +9,6 @@
 namespace edged {
 namespace {
 
-constexpr double kAgreement_px = 3.0;                         // of a point with a place recognised
 constexpr double kSamePlace_m = 0.15, kSamePlace_rad = 0.05;  // of two keyframes that say where the other map lies
 constexpr std::size_t kFewestKeyframes = 3;
 constexpr double kLeastShare = 0.5;  // of the keyframes that say anything
@@ -43,8 +42,8 @@ std::vector<Claim> claims_of(const SavedMap& map, const SavedMap& other) {
       points.push_back(point.point);
     }
     const SE3 T_B_C = other.T_M_K[k] * keyframe.T_B_C;
-    const std::optional<SE3> T_A_C = places.recognise({keyframe.camera, {}, map.T_M_K}, descriptors, points,
-                                                      T_B_C.rotation(), kAgreement_px / focal);
+    const std::optional<SE3> T_A_C =
+        places.recognise({keyframe.camera, {}, map.T_M_K}, descriptors, points, T_B_C.rotation(), focal);
     if (T_A_C) claims.push_back({*T_A_C * keyframe.T_B_C.inverse(), other.T_M_K[k]});
   }
   return claims;

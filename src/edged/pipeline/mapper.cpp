@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kSearchSigmas = 3.0;
 constexpr double kLeastSearch_px = 2.0;
-constexpr double kAgreement_px = 3.0;                        // of a corner with a place recognised
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
 constexpr double kUnnoticed_s = 2.5;                         // until a loss is said, StatusConfig::lost_after_s
 constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // that dead reckoning may be off
@@ -145,10 +144,10 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
 /// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
 bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
   const Corners corners = corners_of(view, T_O_C);
-  const double max_error = kAgreement_px / view.channel->tracker.camera().mean_focal();
+  const double focal = view.channel->tracker.camera().mean_focal();
   const Period before{Timestamp::min(), elsewhere_before_.value_or(started_)};
   const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, before, filter_.keyframes()},
-                                                  corners.descriptors, corners.points, T_O_C.rotation(), max_error);
+                                                  corners.descriptors, corners.points, T_O_C.rotation(), focal);
   const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
   if (!T_M_C) return false;
   const SE3 T_M_O = *T_M_C * T_O_C.inverse(), T_O_B = filter_.T_M_O().inverse() * filter_.T_M_B();
