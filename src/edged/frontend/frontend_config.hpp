@@ -54,16 +54,26 @@ struct OutlierConfig {
   void visit(ConfigFields& fields);
 };
 
-enum class TemplatePolicy {
-  Previous,  ///< each image is matched to the one before it
-  Keyframe,  ///< then moved onto the patch of the last keyframe, where it still looks alike: less drift, more time
+/// What makes a patch in an image count as the stored one.
+struct PatchConfig {
+  double min_similarity = 0.8;  ///< normalised cross correlation
+  int iterations = 10;
+  void visit(ConfigFields& fields);
+};
+
+/// The first look of a corner, which images are aligned to. What it may differ by: event frames change with the motion.
+struct TemplateConfig {
+  bool enabled = true;
+  PatchConfig patch = {.min_similarity = 0.7};
+
+  void visit(ConfigFields& fields);
 };
 
 struct TrackerConfig {
   DetectorConfig detector;
   KltConfig klt;
   OutlierConfig outliers;
-  TemplatePolicy templates = TemplatePolicy::Previous;
+  TemplateConfig templates;
   double forward_backward_px = 1.0;
   // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
   double min_correlation = 0.3;

@@ -15,8 +15,6 @@ namespace edged {
 namespace {
 
 constexpr int kBackwardTopLevel = 1;  // the way back starts at its goal
-constexpr int kKeyframeTopLevel = 0;  // so does the way from the keyframe
-constexpr double kKeyframeStep_px = 2.0;
 
 cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
@@ -33,13 +31,17 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
 
 }  // namespace
 
+void TemplateConfig::visit(ConfigFields& fields) {
+  fields.add("enabled", enabled,
+             {.effect = "align corners to their first looks, so that what optical flow drifts by does not add up"});
+  patch.visit(fields);
+}
+
 void TrackerConfig::visit(ConfigFields& fields) {
   fields.group("detector", detector);
   fields.group("klt", klt);
   fields.group("outliers", outliers);
-  fields.choice("templates", templates,
-                {{"previous", TemplatePolicy::Previous}, {"keyframe", TemplatePolicy::Keyframe}},
-                {.effect = "match to the previous image only, or then also to the last keyframe"});
+  fields.group("templates", templates);
   fields.add(
       "forward_backward_px", forward_backward_px,
       {.unit = "px", .min = 0.01, .max = 100, .effect = "a track followed back must return this near to its start"});
@@ -63,7 +65,7 @@ void TrackerConfig::visit(ConfigFields& fields) {
 }
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
-    : name_(std::move(camera_name)), camera_(camera), config_(config) {
+    : name_(std::move(camera_name)), camera_(camera), config_(config), templates_(camera, config.templates.patch) {
   EDGED_CHECK(camera.width() > 0 && camera.height() > 0, "camera {} has no size", name_);
   if (config.klt.window_px % 2 == 0) {
     throw InputError::format("klt.window_px = {} must be odd, e.g. {}", config.klt.window_px, config.klt.window_px + 1);
@@ -81,13 +83,13 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   }
   check_image(image);
   current_.build(image, config_.klt);
+  if (prediction) templates_.move(prediction->T_cur_prev);
   if (!tracks_.empty()) {
     Matches matches = match_all(prediction, summary);
-    match_keyframe(matches);
     merge(matches);
     apply(matches, summary);
   }
-  swap_pyramids();
+  std::swap(previous_, current_);
   return summary;
 }
 
@@ -139,9 +141,7 @@ void FeatureTracker::mark_keyframe() {
     track.in_keyframe = true;
   }
   keyframe_tracks_ = static_cast<int>(tracks_.size());
-  if (config_.templates == TemplatePolicy::Keyframe) {
-    keyframe_ = previous_;  // shares the pixels; swap_pyramids sees to it that they are not written over
-  }
+  if (config_.templates.enabled) templates_.take(previous_.image(), tracks_);
 }
 
 KeyframeTracks FeatureTracker::since_keyframe(const Eigen::Matrix3d& R_kf_cur) const {
@@ -159,7 +159,7 @@ void FeatureTracker::remove(std::span<const FeatureId> ids) {
 void FeatureTracker::reset() {
   tracks_.clear();
   previous_.clear();
-  keyframe_.clear();
+  templates_.clear();
   keyframe_tracks_ = 0;
 }
 
@@ -179,21 +179,32 @@ void FeatureTracker::check_image(const cv::Mat& image) const {
   }
 }
 
-std::vector<cv::Point2f> FeatureTracker::predict(const TrackPrediction& prediction) const {
-  std::vector<cv::Point2f> seeds;
-  seeds.reserve(tracks_.size());
+/// Of each track, in the new image's camera [m].
+std::vector<Eigen::Vector3d> FeatureTracker::expected(const TrackPrediction& prediction) const {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(tracks_.size());
   for (const Track& track : tracks_) {
     const std::optional<double> own = prediction.depth ? prediction.depth(track.id) : std::nullopt;
-    const Eigen::Vector3d p_prev = own.value_or(prediction.scene_depth) * track.point.homogeneous();
-    const std::optional<Eigen::Vector2d> pixel = camera_.project(prediction.T_cur_prev * p_prev);
+    points.emplace_back(prediction.T_cur_prev * (own.value_or(prediction.scene_depth) * track.point.homogeneous()));
+  }
+  return points;
+}
+
+std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vector3d>& points_C,
+                                                   const Eigen::Vector2d& offset_px) const {
+  std::vector<cv::Point2f> seeds;
+  seeds.reserve(points_C.size());
+  for (const Eigen::Vector3d& p_C : points_C) {
+    const std::optional<Eigen::Vector2d> pixel = camera_.project(p_C);
     // Far outside stands for behind the camera; match() ends such tracks at the border.
-    seeds.push_back(pixel ? to_cv(*pixel + prediction.offset_px) : cv::Point2f(-1e6F, -1e6F));
+    seeds.push_back(pixel ? to_cv(*pixel + offset_px) : cv::Point2f(-1e6F, -1e6F));
   }
   return seeds;
 }
 
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
-                                              const std::vector<cv::Point2f>& seeds) const {
+                                              const std::vector<cv::Point2f>& seeds,
+                                              const std::vector<Eigen::Vector3d>& expected_C) {
   Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border)};
   std::vector<std::size_t> alive;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -201,18 +212,31 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   }
   const Flow forward =
       follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1, config_.klt);
-  std::vector<std::size_t> reached;
+  std::vector<std::size_t> otherwise;  // looks so, or has no look to compare with
   for (std::size_t k = 0; k < alive.size(); ++k) {
-    matches.points[alive[k]] = forward.points[k];
+    const std::size_t i = alive[k];
+    matches.points[i] = forward.points[k];
     const bool inside = camera_.contains(to_eigen(forward.points[k]), config_.border_px);
-    matches.fates[alive[k]] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
-    if (matches.fates[alive[k]] == Fate::Kept) reached.push_back(alive[k]);
+    matches.fates[i] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
+    if (matches.fates[i] != Fate::Kept) continue;
+    const auto aligned = templates_.align(tracks_[i].id, current_.image(), to_eigen(forward.points[k]), expected_C[i]);
+    if (aligned && camera_.contains(*aligned, config_.border_px)) {
+      matches.points[i] = to_cv(*aligned);
+    } else {
+      otherwise.push_back(i);
+    }
   }
-  const std::vector<cv::Point2f> starts = select(from, reached);
+  match_back(from, otherwise, matches);
+  return matches;
+}
+
+/// Those that no first look confirms must lead back to where they come from, and look alike there.
+void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
+                                Matches& matches) const {
   const Flow backward =
-      follow(current_, previous_, select(matches.points, reached), starts, kBackwardTopLevel, config_.klt);
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    const std::size_t i = reached[k];
+      follow(current_, previous_, select(matches.points, which), select(from, which), kBackwardTopLevel, config_.klt);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const std::size_t i = which[k];
     if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {
       matches.fates[i] = Fate::Backward;
     } else if (patch_correlation(previous_.image(), from[i], current_.image(), matches.points[i]) <
@@ -220,22 +244,22 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
       matches.fates[i] = Fate::Appearance;
     }
   }
-  return matches;
 }
 
 FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPrediction>& prediction,
-                                                  TrackSummary& summary) const {
+                                                  TrackSummary& summary) {
   std::vector<cv::Point2f> from;
   for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
-  if (!prediction) return match(from, from);
+  const std::vector<Eigen::Vector3d> expected_C = expected(prediction.value_or(TrackPrediction{}));
+  if (!prediction) return match(from, from, expected_C);
 
-  const std::vector<cv::Point2f> seeds = predict(*prediction);
-  Matches matches = match(from, seeds);
+  const std::vector<cv::Point2f> seeds = projected(expected_C, prediction->offset_px);
+  Matches matches = match(from, seeds, expected_C);
   const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
   const auto all = static_cast<double>(from.size());
   if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
     // Those that a bad prediction left alive are likely to be wrong: all or nothing.
-    Matches again = match(from, from);
+    Matches again = match(from, from, expected_C);
     summary.prediction_failed = kept(again) > kept(matches);
     if (summary.prediction_failed) return again;
   }
@@ -247,26 +271,6 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
   }
   summary.median_innovation_px = {median(dx), median(dy)};
   return matches;
-}
-
-void FeatureTracker::match_keyframe(Matches& matches) const {
-  if (keyframe_.empty()) return;
-  std::vector<std::size_t> known;
-  std::vector<cv::Point2f> then;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (matches.fates[i] != Fate::Kept || !tracks_[i].in_keyframe) continue;
-    known.push_back(i);
-    then.push_back(to_cv(tracks_[i].keyframe_pixel));
-  }
-  const Flow flow = follow(keyframe_, current_, then, select(matches.points, known), kKeyframeTopLevel, config_.klt);
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    cv::Point2f& point = matches.points[known[k]];
-    if (!flow.found[k] || distance(flow.points[k], point) > kKeyframeStep_px) continue;
-    if (!camera_.contains(to_eigen(flow.points[k]), config_.border_px)) continue;
-    if (patch_correlation(keyframe_.image(), then[k], current_.image(), flow.points[k]) < config_.min_correlation)
-      continue;
-    point = flow.points[k];
-  }
 }
 
 void FeatureTracker::merge(Matches& matches) const {
@@ -312,12 +316,6 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
   }
   tracks_ = std::move(alive);
   summary.tracked = static_cast<int>(tracks_.size());
-}
-
-void FeatureTracker::swap_pyramids() {
-  std::swap(previous_, current_);
-  const bool shared = !keyframe_.empty() && !current_.empty() && current_.image().data == keyframe_.image().data;
-  if (shared) current_.clear();
 }
 
 }  // namespace edged

@@ -17,6 +17,7 @@
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
+#include "edged/frontend/templates.hpp"
 #include "edged/frontend/track.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
@@ -94,13 +95,15 @@ class FeatureTracker {
   };
 
   void check_image(const cv::Mat& image) const;
-  std::vector<cv::Point2f> predict(const TrackPrediction& prediction) const;
-  Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds) const;
-  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
-  void match_keyframe(Matches& matches) const;
+  std::vector<Eigen::Vector3d> expected(const TrackPrediction& prediction) const;
+  std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
+                                     const Eigen::Vector2d& offset_px) const;
+  Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds,
+                const std::vector<Eigen::Vector3d>& expected_C);
+  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary);
+  void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
   void apply(const Matches& matches, TrackSummary& summary);
-  void swap_pyramids();
 
   std::string name_;
   CameraModel camera_;
@@ -108,7 +111,8 @@ class FeatureTracker {
   std::vector<Track> tracks_;  // by id, so oldest first
   Timestamp now_;
   int keyframe_tracks_ = 0;
-  ImagePyramid previous_, current_, keyframe_;  // current_ is the newest only while track runs
+  Templates templates_;
+  ImagePyramid previous_, current_;  // current_ is the newest only while track runs
 };
 
 }  // namespace edged

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/frontend/patch.hpp"
 #include "edged/hindsight.hpp"
 #include "edged/map/map_config.hpp"
-#include "edged/map/patch.hpp"
 #include "edged/map/place.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"

@@ -4,12 +4,6 @@
 
 namespace edged {
 
-void PatchConfig::visit(ConfigFields& fields) {
-  fields.add("min_similarity", min_similarity,
-             {"", 0, 1, "normalised cross correlation of a stored patch with the image where it counts as found"});
-  fields.add("iterations", iterations, {"", 1, 100, "of a patch's alignment, at most"});
-}
-
 void KeyframeMapConfig::visit(ConfigFields& fields) {
   fields.add("min_interval_s", min_interval_s, {"s", 0, 100, "between keyframes that the map keeps"});
   fields.add("max_covered", max_covered,

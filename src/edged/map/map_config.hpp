@@ -4,15 +4,9 @@
 #pragma once
 
 #include "edged/core/config.hpp"
+#include "edged/frontend/frontend_config.hpp"
 
 namespace edged {
-
-/// What makes a patch that was found again in an image count as the stored one.
-struct PatchConfig {
-  double min_similarity = 0.8;  ///< normalised cross correlation
-  int iterations = 10;
-  void visit(ConfigFields& fields);
-};
 
 /// Which keyframes are kept, and which of their points are looked for.
 struct KeyframeMapConfig {

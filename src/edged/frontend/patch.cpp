@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/map/patch.hpp"
+#include "edged/frontend/patch.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -90,6 +90,12 @@ std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& ima
 }
 
 }  // namespace
+
+void PatchConfig::visit(ConfigFields& fields) {
+  fields.add("min_similarity", min_similarity,
+             {"", 0, 1, "normalised cross correlation of a stored patch with the image where it counts as the same"});
+  fields.add("iterations", iterations, {"", 1, 100, "of a patch's alignment, at most"});
+}
 
 std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner) {
   const Eigen::Vector2d first = corner.array() - 0.5 * (Patch::kSize - 1);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/map/patch.hpp"
+#include "edged/frontend/patch.hpp"
 
 #include <gtest/gtest.h>
 

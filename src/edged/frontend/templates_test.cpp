@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/frontend/templates.hpp"
+
+#include <gtest/gtest.h>
+
+#include "edged/frontend/test_scene.hpp"
+
+namespace edged {
+namespace {
+
+class FirstLooks : public testing::Test {
+ protected:
+  /// A corner of the scene as seen from identity, and its look.
+  Track corner(const Eigen::Vector2d& pixel) {
+    Track track;
+    track.id = 7;
+    track.pixel = pixel;
+    track.point = scene_.camera().pixel_to_point(pixel);
+    return track;
+  }
+
+  Eigen::Vector3d in_camera(const Track& track, const SE3& T_W_C) const {
+    return T_W_C.inverse() * (scene_.depth() * track.point.homogeneous());
+  }
+
+  PlaneScene scene_{davis_like_pinhole(), 2.0};
+  Templates templates_{scene_.camera(), {.min_similarity = 0.7}};
+};
+
+TEST_F(FirstLooks, AreFoundWhereTheyAreAfterTurnsAndLightChanges) {
+  const Track track = corner({130.4, 88.7});
+  templates_.take(scene_.image(SE3()), std::span(&track, 1));
+  const SE3 T_W_C(so3::exp(Eigen::Vector3d(0.02, -0.03, 0.5)), Eigen::Vector3d(0.1, 0.05, 0.3));
+  templates_.move(T_W_C.inverse());
+  cv::Mat image;
+  scene_.image(T_W_C).convertTo(image, CV_8U, 0.6, 40.0);
+  const Eigen::Vector2d truth = *scene_.moved(track.pixel, SE3(), T_W_C);
+  const Eigen::Vector2d flow = truth + Eigen::Vector2d(0.7, -0.5);
+  const auto found = templates_.align(track.id, image, flow, in_camera(track, T_W_C));
+  ASSERT_TRUE(found);
+  EXPECT_LT((*found - truth).norm(), 0.1);
+}
+
+TEST_F(FirstLooks, StayUntilTheyNoLongerFit) {
+  Track track = corner({130.4, 88.7});
+  templates_.take(scene_.image(SE3()), std::span(&track, 1));
+  // A look that fits is not taken anew, however wrong the track has become.
+  const cv::Mat image = scene_.image(SE3());
+  ASSERT_TRUE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
+  track.pixel += Eigen::Vector2d(1.0, 0.0);
+  templates_.take(image, std::span(&track, 1));
+  EXPECT_LT(
+      (*templates_.align(track.id, image, track.pixel, in_camera(track, SE3())) - Eigen::Vector2d(130.4, 88.7)).norm(),
+      0.1);
+  // One that does not is.
+  const cv::Mat other = random_texture(240, 180, 9);
+  EXPECT_FALSE(templates_.align(track.id, other, track.pixel, in_camera(track, SE3())));
+  templates_.take(other, std::span(&track, 1));
+  const auto again = templates_.align(track.id, other, track.pixel, in_camera(track, SE3()));
+  ASSERT_TRUE(again);
+  EXPECT_LT((*again - track.pixel).norm(), 0.1);
+}
+
+TEST_F(FirstLooks, AreForgottenWithTheirTracksAndNeverGuessed) {
+  const Track track = corner({130.4, 88.7});
+  const cv::Mat image = scene_.image(SE3());
+  EXPECT_FALSE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
+  templates_.take(image, std::span(&track, 1));
+  EXPECT_FALSE(templates_.align(track.id, image, track.pixel, {0.0, 0.0, -1.0}));
+  EXPECT_FALSE(templates_.align(track.id, image, {1.0, 1.0}, in_camera(track, SE3())));
+  templates_.take(image, {});
+  EXPECT_FALSE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
+  // Near the rim there is no room for one.
+  const Track rim = corner({3.0, 3.0});
+  templates_.take(image, std::span(&rim, 1));
+  EXPECT_FALSE(templates_.align(rim.id, image, rim.pixel, in_camera(rim, SE3())));
+}
+
+TEST_F(FirstLooks, OfMuchOtherSizeAreNotComparedWith) {
+  const Track track = corner({130.4, 88.7});
+  templates_.take(scene_.image(SE3()), std::span(&track, 1));
+  const SE3 near(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 1.0));  // half the distance, twice the size
+  templates_.move(near.inverse());
+  const Eigen::Vector2d truth = *scene_.moved(track.pixel, SE3(), near);
+  EXPECT_FALSE(templates_.align(track.id, scene_.image(near), truth, in_camera(track, near)));
+}
+
+}  // namespace
+}  // namespace edged
