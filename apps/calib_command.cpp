@@ -74,6 +74,7 @@ ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
                        {{"horizontal", view.horizontal * kDegreesPerRadian},
                         {"vertical", view.vertical * kDegreesPerRadian},
                         {"diagonal", view.diagonal * kDegreesPerRadian}}}};
+  if (const auto limit = m.view_limit()) out["used_up_to_deg"] = *limit * kDegreesPerRadian;
   if (!has_extrinsics) return out;
   out["T_B_C"] = matrix_json(camera.T_B_C);
   out["T_C_B"] = matrix_json(camera.T_B_C.inverse());
@@ -103,10 +104,8 @@ void write_new_file(const std::filesystem::path& out, const std::string& text) {
   if (!file.flush()) throw InputError::format("{}: cannot be written", out.string());
 }
 
-void write_own(const Calibration& calibration, const std::filesystem::path& out) {
-  if (!calibration.has_extrinsics)
-    throw InputError::format("{}: not written: the calibration holds intrinsics only", out.string());
-  write_new_file(out, to_yaml(calibration));
+void tell_to_fill_in(const std::filesystem::path& out) {
+  fmt::print("{0}: fill in what reads FILL_IN, then: edged calib {0}\n", out.string());
 }
 
 int write_template(const CalibOptions& options) {
@@ -115,7 +114,7 @@ int write_template(const CalibOptions& options) {
     fmt::print("{}", text);
   } else {
     write_new_file(options.out, text);
-    fmt::print("{}: fill in what reads FILL_IN, then: edged calib {}\n", options.out.string(), options.out.string());
+    tell_to_fill_in(options.out);
   }
   return kExitOk;
 }
@@ -136,12 +135,13 @@ int run_calib(const CalibOptions& options) {
   Calibration calibration = load_chosen(options);
   if (!options.out.empty()) {
     calibration.rig.name = options.out.stem().string();  // as --rig finds it
-    write_own(calibration, options.out);
+    write_new_file(options.out, to_yaml(calibration));
   }
   if (options.json) {
     fmt::print("{}\n", calibration_json(calibration).dump(2));
   } else {
     fmt::print("{}", describe(calibration));
+    if (!options.out.empty() && !calibration.has_extrinsics) tell_to_fill_in(options.out);
   }
   return kExitOk;
 }

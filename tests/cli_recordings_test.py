@@ -182,15 +182,18 @@ class Recordings(WithFlight):
         shutil.copy(self.flight / "imu.txt", loose)
         shutil.copy(self.flight / "calibration.yaml", loose)
         (loose / "notes.csv").write_text("who,when\nme,now\n")
+        (loose / "camchain.yaml").write_text("cam0: {}\n")
+        (loose / "frames").mkdir()
+        (loose / "frames" / "0.png").write_bytes(b"")
         alike = []
         for recording, top in ((loose, ""), (self.folder / "top.zip", ""), (self.folder / "below.zip", "head/")):
             if recording != loose:
                 with zipfile.ZipFile(recording, "w", zipfile.ZIP_DEFLATED) as archive:
-                    for file in loose.iterdir():
-                        archive.write(file, top + file.name)
+                    for file in loose.rglob("*"):
+                        archive.write(file, top + str(file.relative_to(loose)))
             result = edged("info", recording, "--json", "--quiet")
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertIn("not read: notes.csv", result.stderr)
+            self.assertIn("not read: camchain.yaml, frames/, notes.csv (a calibration only where --calib names it)", result.stderr)
             shown = json.loads(result.stdout)
             self.assertEqual([s["role"] for s in shown["streams"] if s["role"]], ["imu"])
             alike.append((shown["events"], shown["imu"]["count"], edged("doctor", recording, "--quiet").returncode))

@@ -127,6 +127,46 @@ class Verdict(WithFlight):
         for key in ("poses", "keyframes", "ate_rmse_m"):
             self.assertAlmostEqual(metrics[key], right[key], 9, key)
 
+    def test_a_calibration_in_the_formats_of_the_makers_gives_the_same_run(self):
+        camera = json.loads(edged("calib", self.flight, "--json").stdout)["cameras"][0]
+        (fx, fy, cx, cy), (width, height) = camera["intrinsics_px"], camera["resolution_px"]
+        K, D = [fx, 0, cx, 0, fy, cy, 0, 0, 1], camera["coefficients"]
+        pose, clock = sum(camera["T_C_B"], []), camera["time_offset_s"]
+        dv = {"version": "2.0",
+              "cameras": {"C0": {"name": "DAVIS240C_1", "resolution": [width, height], "focalLength": [fx, fy],
+                                 "principalPoint": [cx, cy], "distortionModel": "radialTangential",
+                                 "distortionCoefficients": D,
+                                 "transformationToC0": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}},
+              "imus": {"S0": {"timeOffsetMicros": 1e6 * clock, "transformationToC0": pose}}}
+
+        def matrix(name, values, rows):
+            numbers = " ".join(map(repr, values))
+            return (f'<{name} type_id="opencv-matrix"><rows>{rows}</rows><cols>{len(values) // rows}</cols><dt>d</dt>'
+                    f"<data>{numbers}</data></{name}>")
+        xml = ('<?xml version="1.0"?><opencv_storage><DAVIS240C_1>' + matrix("camera_matrix", K, 3) +
+               matrix("distortion_coefficients", D, 1) + f"<image_width>{width}</image_width><image_height>{height}"
+               "</image_height></DAVIS240C_1><type>camera</type>" + matrix("transformation_cam_imu", pose, 4) +
+               f"<time_offset_cam_imu>{clock!r}</time_offset_cam_imu></opencv_storage>")
+        own = self.folder / "own.yaml"  # without the noise of the IMU, which the makers' files do not tell
+        own.write_text(re.sub(r"imu:\n(  .*\n)*", "", (self.flight / "calibration.yaml").read_text()))
+        lens = self.folder / "intrinsics.json"
+        lens.write_text(json.dumps({"type": "pinhole", "width": width, "height": height, "K": K, "D": D}))
+        head = self.folder / "head.yaml"
+        self.assertIn("fill in what reads FILL_IN", edged("calib", lens, "--out", head).stdout)
+        self.assert_refused(edged("run", self.flight, "--calib", head, "--mode", "events"), "head.yaml", "T_B_C")
+        text = head.read_text().replace("time_offset: 0.0", f"time_offset: {clock!r}")
+        for row in camera["T_B_C"][:3]:
+            text = text.replace("[FILL_IN, FILL_IN, FILL_IN, FILL_IN]", str(row), 1)
+        head.write_text(text)
+        for name, content, mode in (("calibration.json", json.dumps(dv), "frames"), ("calibration.xml", xml, "frames"),
+                                    ("head.yaml", text, "events")):
+            with self.subTest(name=name):
+                (self.folder / name).write_text(content)
+                _, right = self.run_it(self.flight, mode, "--calib", own)
+                result, metrics = self.run_it(self.flight, mode, "--calib", self.folder / name)
+                self.assertEqual((result.returncode, metrics["status"]), (0, "good"), result.stdout + result.stderr)
+                self.assertAlmostEqual(metrics["ate_rmse_m"], right["ate_rmse_m"], delta=0.01 * right["ate_rmse_m"])
+
     def test_cameras_that_could_be_either_are_refused_with_both_lists(self):
         text = (self.flight / "calibration.yaml").read_text()
         chain = self.folder / "chain.yaml"

@@ -22,6 +22,7 @@ enum class DistortionModel {
 
 /// A pinhole camera with radial-tangential or equidistant distortion.
 /// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
+/// An equidistant lens that sees further than 86 degrees off its axis is used within 70: there the unit plane ends.
 /// A value: cheap to copy, never changed after construction.
 class CameraModel {
  public:
@@ -46,25 +47,41 @@ class CameraModel {
   /// Pixel of a point (x, y) on the unit plane.
   Eigen::Vector2d distort_to_pixel(const Eigen::Vector2d& point) const;
 
+  /// Angle off the axis up to which the lens is used [rad]; nothing where it is used in the whole image.
+  std::optional<double> view_limit() const;
+  /// The same lens used up to that angle only, less than 86 degrees.
+  CameraModel within(double limit_rad) const;
+
   /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m) or so far off the axis that
-  /// the distortion turns back, 89 degrees at most (it would fold into the image). May lie outside the image.
+  /// the distortion turns back (it would fold into the image), 89 degrees at most, or view_limit. May lie outside the
+  /// image.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_C) const;
 
   /// Unit-plane point (x, y) of a pixel, by Newton steps to 1e-10. For a pixel outside the image that has no bearing:
   /// the nearest found.
   Eigen::Vector2d pixel_to_point(const Eigen::Vector2d& pixel) const;
 
-  /// True when the pixel is at least border_px inside the image.
+  /// Direction of a pixel, of any length: (x, y, 1) of pixel_to_point, but of a lens with a view_limit a unit vector,
+  /// also beyond the limit and beyond 90 degrees.
+  Eigen::Vector3d pixel_to_ray(const Eigen::Vector2d& pixel) const;
+
+  /// Length of a pixel on the unit plane there over that on the axis, the geometric mean of radial and tangential; 1
+  /// for a lens without view_limit, whose steepest part is taken as its middle.
+  double stretch(const Eigen::Vector2d& point) const;
+
+  /// True when the pixel is at least border_px inside the image and what is used of it.
   bool contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_ - 1 - border_px &&
-           pixel.y() <= height_ - 1 - border_px;
+           pixel.y() <= height_ - 1 - border_px && (limit_ == 0.0 || in_limit(pixel, border_px));
   }
 
   bool operator==(const CameraModel&) const = default;
 
  private:
-  /// Sets max_radius_; throws InputError when it does not reach the corners of the image.
+  /// Sets max_radius_, and limit_ of a lens that is too wide; throws InputError when it does not reach the corners of
+  /// the image.
   void find_monotone_range();
+  bool in_limit(const Eigen::Vector2d& pixel, double border_px) const;
   /// Throws InputError when a pixel of the border has no bearing (the tangential part is not seen by the radial check).
   void check_border() const;
 
@@ -72,7 +89,9 @@ class CameraModel {
   double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
   DistortionModel distortion_ = DistortionModel::None;
   std::array<double, 5> k_{};
-  double max_radius_ = 0;  // on the unit plane: up to here the distortion grows with the radius
+  double max_radius_ = 0;  // on the unit plane: up to here the distortion grows with the radius, or limit_
+  double limit_ = 0;       // [rad] off the axis; 0: none
+  double max_theta_ = 0;   // [rad] up to here an equidistant distortion grows with the angle
 };
 
 std::string to_string(DistortionModel model);

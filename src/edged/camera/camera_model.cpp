@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -19,6 +20,10 @@ using Eigen::Vector2d;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;    // on the unit plane, relative to 1 + the radius
 constexpr double kRoundTripTolerance = 1e-6;  // [px], of the pixels tried on construction
+constexpr double kUnitPlaneEnds = 89.0 * kDegree;
+// A lens that sees further than the first is used up to the second only: a pixel at 70 degrees is 4.4 times as long on
+// the unit plane as on the axis, at 80 degrees 12 times.
+constexpr double kWidest = 86.0 * kDegree, kUsedOfWider = 70.0 * kDegree;
 
 /// What a distortion does to a point of the unit plane, and its derivative.
 struct Distorted {
@@ -60,6 +65,14 @@ Sloped equidistant_angle(const std::array<double, 5>& k, double theta) {
   const double t2 = theta * theta;
   return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
           1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
+}
+
+/// How far theta_d grows with theta, at most to 180 degrees.
+double growing_range(const std::array<double, 5>& k) {
+  constexpr double kStep = 0.05 * kDegree;
+  double theta = 0.0;
+  while (theta + kStep < std::numbers::pi && equidistant_angle(k, theta + kStep).slope > 0.0) theta += kStep;
+  return theta;
 }
 
 /// The x in [0, upper] with function(x) = target for a function that grows from 0 on that range; upper when the target
@@ -146,11 +159,16 @@ void CameraModel::find_monotone_range() {
     }
   }
   const bool equidistant = distortion_ == DistortionModel::Equidistant;
-  constexpr double kStep = 0.05 * std::numbers::pi / 180.0;
-  constexpr double kMaxTheta = 89.0 * std::numbers::pi / 180.0;  // the unit plane ends before 90 degrees
+  if (equidistant) max_theta_ = growing_range(k_);
+  if (max_theta_ > kWidest && corner_radius > equidistant_angle(k_, kWidest).value) {
+    limit_ = kUsedOfWider;
+    max_radius_ = std::tan(limit_);
+    return;
+  }
+  constexpr double kStep = 0.05 * kDegree;
   double reached = 0.0;
   double theta = 0.0;
-  for (; theta <= kMaxTheta; theta += kStep) {
+  for (; theta <= kUnitPlaneEnds; theta += kStep) {
     const double radius = std::tan(theta);
     const Sloped at = equidistant ? equidistant_angle(k_, theta) : radtan_radius(k_, radius);
     if (at.slope <= 0.0) break;
@@ -163,8 +181,7 @@ void CameraModel::find_monotone_range() {
         "the "
         "axis at a distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the "
         "distortion model and the image size",
-        to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta * 180.0 / std::numbers::pi, reached,
-        corner_radius);
+        to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta / kDegree, reached, corner_radius);
   }
 }
 
@@ -175,6 +192,7 @@ void CameraModel::check_border() const {
     const double y = (height_ - 1.0) * i / kPerSide;
     for (const Vector2d& pixel :
          {Vector2d(x, 0.0), Vector2d(x, height_ - 1.0), Vector2d(0.0, y), Vector2d(width_ - 1.0, y)}) {
+      if (!contains(pixel)) continue;
       const double error = (distort_to_pixel(pixel_to_point(pixel)) - pixel).norm();
       if (error < kRoundTripTolerance) continue;
       throw InputError::format(
@@ -215,6 +233,43 @@ Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
       break;
   }
   return distorted;
+}
+
+std::optional<double> CameraModel::view_limit() const { return limit_ > 0.0 ? std::optional(limit_) : std::nullopt; }
+
+CameraModel CameraModel::within(double limit_rad) const {
+  if (!(limit_rad > 0.0 && limit_rad < kWidest))
+    throw InputError::format("a lens can be used up to more than 0 and less than {:.0f} degrees off its axis, not {:g}",
+                             kWidest / kDegree, limit_rad / kDegree);
+  CameraModel narrower = *this;
+  narrower.limit_ = limit_rad;
+  narrower.max_radius_ = std::min(max_radius_, std::tan(limit_rad));
+  return narrower;
+}
+
+bool CameraModel::in_limit(const Vector2d& pixel, double border_px) const {
+  const double used = (distort_to_pixel({std::tan(limit_), 0.0}).x() - cx_) / fx_;
+  return std::hypot((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_) + border_px / mean_focal() <= used;
+}
+
+Eigen::Vector3d CameraModel::pixel_to_ray(const Vector2d& pixel) const {
+  if (limit_ == 0.0 || distortion_ != DistortionModel::Equidistant) return pixel_to_point(pixel).homogeneous();
+  const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
+  const double target = distorted.norm();
+  if (target == 0.0) return Eigen::Vector3d::UnitZ();
+  const double theta =
+      invert_growing([this](double angle) { return equidistant_angle(k_, angle); }, target, max_theta_);
+  return (Eigen::Vector3d() << std::sin(theta) / target * distorted, std::cos(theta)).finished();
+}
+
+double CameraModel::stretch(const Vector2d& point) const {
+  if (limit_ == 0.0) return 1.0;
+  constexpr double kStep = 1e-6;
+  const Vector2d here = distort_to_pixel(point);
+  Matrix2d pixel_per_point;
+  for (int axis = 0; axis < 2; ++axis)
+    pixel_per_point.col(axis) = (distort_to_pixel(point + kStep * Vector2d::Unit(axis)) - here) / kStep;
+  return mean_focal() / std::sqrt(std::abs(pixel_per_point.determinant()));
 }
 
 std::string to_string(DistortionModel model) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -142,6 +143,64 @@ TEST(CameraModel, ContainsCountsTheBorder) {
   EXPECT_FALSE(camera.contains({-0.001, 100.0}));
   EXPECT_FALSE(camera.contains({319.001, 100.0}));
   EXPECT_FALSE(camera.contains({4.9, 100.0}, 5.0));
+}
+
+/// TUM-VI's: 153 degrees across, 229 from corner to corner.
+CameraModel tum_vi() {
+  return {512,
+          512,
+          190.97847715128717,
+          190.9733070521226,
+          254.93170605935475,
+          256.8974428996504,
+          DistortionModel::Equidistant,
+          {0.0034823894022493434, 0.0007150348452162257, -0.0020532361418706202, 0.00020293673591811182}};
+}
+
+TEST(CameraModel, ALensThatSeesBehindItselfIsUsedUpTo70Degrees) {
+  const CameraModel camera = tum_vi();
+  ASSERT_TRUE(camera.view_limit());
+  const auto pixel_at = [&camera](double degrees, double turn) {
+    const double theta = degrees * kDegree;
+    return camera.distort_to_pixel(std::tan(theta) * Vector2d(std::cos(turn), std::sin(turn)));
+  };
+  for (double turn = 0.0; turn < 6.28; turn += 0.1) {
+    const Vector2d inside = pixel_at(69.9, turn), outside = pixel_at(70.1, turn);
+    EXPECT_TRUE(camera.contains(inside)) << turn;
+    EXPECT_FALSE(camera.contains(inside, 2.0)) << turn;
+    EXPECT_FALSE(camera.contains(outside)) << turn;
+    EXPECT_LT((camera.distort_to_pixel(camera.pixel_to_point(inside)) - inside).norm(), 1e-9);
+  }
+  EXPECT_FALSE(camera.project({3.0, 0.0, 1.0}));
+  EXPECT_EQ(CameraModel(640, 480, 300, 301, 322, 239, DistortionModel::Equidistant).view_limit(), std::nullopt);
+}
+
+TEST(CameraModel, ItsRaysReachBehindItAndAgreeWithTheUnitPlaneInFront) {
+  const CameraModel camera = tum_vi();
+  const Vector3d corner = camera.pixel_to_ray({0.0, 0.0});
+  EXPECT_LT(corner.z(), 0.0);
+  EXPECT_NEAR(std::acos(corner.z()) / kDegree, 114.9, 0.1);
+  for (const Vector2d& pixel : {Vector2d(254, 257), Vector2d(300, 120), Vector2d(100, 300)}) {
+    const Vector3d ray = camera.pixel_to_ray(pixel);
+    EXPECT_NEAR(ray.norm(), 1.0, 1e-12);
+    EXPECT_LT((ray.head<2>() / ray.z() - camera.pixel_to_point(pixel)).norm(), 1e-9);
+  }
+}
+
+TEST(CameraModel, APixelStretchesOnTheUnitPlaneAsTheGeometricMeanOfItsSides) {
+  const CameraModel camera(256, 256, 95.5, 95.5, 127, 128, DistortionModel::Equidistant);
+  EXPECT_NEAR(camera.stretch(Vector2d::Zero()), 1.0, 1e-6);
+  const double theta = 60 * kDegree;  // r = tan(theta): dr / dtheta = 4, r / theta = 1.65
+  EXPECT_NEAR(camera.stretch({std::tan(theta), 0.0}), std::sqrt(4.0 * std::tan(theta) / theta), 1e-4);
+  EXPECT_EQ(all_cameras().back().model.stretch({1.0, 1.0}), 1.0) << "an ordinary lens";
+}
+
+TEST(CameraModel, AnyLensCanBeUsedLessFar) {
+  const CameraModel whole(320, 240, 250, 260, 160, 120), part = whole.within(20 * kDegree);
+  EXPECT_TRUE(part.contains({160 + 90, 120}));
+  EXPECT_FALSE(part.contains({160 + 92, 120}));
+  EXPECT_TRUE(whole.contains({160 + 92, 120}));
+  EXPECT_THAT(refusal([&] { whole.within(90 * kDegree); }), HasSubstr("less than 86 degrees"));
 }
 
 TEST(CameraModel, RefusesFocalLengthsThatAreNotPositive) {

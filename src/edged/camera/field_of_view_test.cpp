@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include <cmath>
+
+#include "edged/core/angles.hpp"
 
 namespace edged {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(FieldOfView, OfAPinholeFollowsFromItsFocalLength) {
   const FieldOfView view = field_of_view({201, 101, 100, 50, 100, 50});
@@ -22,6 +22,12 @@ TEST(FieldOfView, OfAnIdealFisheyeIsProportionalToTheRadius) {
   const FieldOfView view = field_of_view({201, 201, 100, 100, 100, 100, DistortionModel::Equidistant});
   EXPECT_NEAR(view.horizontal, 2.0, 1e-9);
   EXPECT_NEAR(view.diagonal, 2.0 * std::sqrt(2.0), 1e-9);
+}
+
+TEST(FieldOfView, OfALensThatSeesBehindItselfIsMoreThanHalfTheSphere) {
+  const FieldOfView view = field_of_view({257, 257, 90, 90, 128, 128, DistortionModel::Equidistant});
+  EXPECT_NEAR(view.horizontal, 2.0 * 128 / 90, 1e-9);
+  EXPECT_NEAR(view.diagonal, 2.0 * std::sqrt(2.0) * 128 / 90, 1e-9);
 }
 
 TEST(FieldOfView, BarrelDistortionWidensIt) {

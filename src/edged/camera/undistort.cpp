@@ -5,10 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "edged/core/check.hpp"
 
 namespace edged {
+namespace {
+
+// Half a side of the pinhole of a lens with a view_limit, on the unit plane: 120 degrees across. More would leave too
+// few pixels to its middle.
+constexpr double kWidestPinhole = std::numbers::sqrt3;
+
+}  // namespace
 
 CameraModel ideal_pinhole(const CameraModel& raw) {
   EDGED_CHECK(raw.width() > 1 && raw.height() > 1, "camera of {} x {} px", raw.width(), raw.height());
@@ -23,6 +31,10 @@ CameraModel ideal_pinhole(const CameraModel& raw) {
   for (int x = 0; x < raw.width(); ++x) {
     top = std::max(top, raw.pixel_to_point({x, 0.0}).y());
     bottom = std::min(bottom, raw.pixel_to_point({x, bottom_px}).y());
+  }
+  if (raw.view_limit()) {
+    left = std::max(left, -kWidestPinhole), right = std::min(right, kWidestPinhole);
+    top = std::max(top, -kWidestPinhole), bottom = std::min(bottom, kWidestPinhole);
   }
   const double fx = right_px / (right - left), fy = bottom_px / (bottom - top);
   if (!(std::isfinite(fx) && std::isfinite(fy) && fx > 0.0 && fy > 0.0)) {
@@ -39,7 +51,10 @@ UndistortTable::UndistortTable(const CameraModel& raw, const CameraModel& ideal)
   table_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      table_.push_back(ideal.distort_to_pixel(raw.pixel_to_point({x, y})).cast<float>());
+      const Eigen::Vector2d pixel(x, y);
+      Eigen::Vector2d undistorted = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+      if (raw.contains(pixel)) undistorted = ideal.distort_to_pixel(raw.pixel_to_point(pixel));
+      table_.push_back(undistorted.cast<float>());
     }
   }
 }

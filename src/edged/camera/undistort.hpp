@@ -11,7 +11,8 @@
 namespace edged {
 
 /// The ideal pinhole of the same size whose field of view is the largest axis-aligned one that the raw image fills
-/// entirely (OpenCV's alpha = 0), with the focal lengths kept positive. Throws InputError when no such camera exists.
+/// entirely (OpenCV's alpha = 0), with the focal lengths kept positive; of a lens with a view_limit the middle 120
+/// degrees at most. Throws InputError when no such camera exists.
 CameraModel ideal_pinhole(const CameraModel& raw);
 
 /// Raw pixel -> undistorted pixel of `ideal`, for every pixel once. 8 bytes a pixel, read in the inner loop of the
@@ -20,7 +21,8 @@ class UndistortTable {
  public:
   UndistortTable(const CameraModel& raw, const CameraModel& ideal);
 
-  /// Undistorted position [px] of the raw pixel (x, y); x < width, y < height. May lie outside the image.
+  /// Undistorted position [px] of the raw pixel (x, y); x < width, y < height. May lie outside the image. Not a number
+  /// where the lens is not used.
   const Eigen::Vector2f& at(int x, int y) const { return table_[static_cast<std::size_t>(y * width_ + x)]; }
   const CameraModel& ideal() const { return ideal_; }
   int width() const { return width_; }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -54,7 +55,7 @@ class EventWarp {
             Timestamp last);
 
   /// Calls sink(float x, float y) with the warped position [px] of each event, in order. Events in time order. Left
-  /// out: events outside the table, and points that come to lie behind the camera.
+  /// out: events outside the table or what is used of the lens, and points that come to lie behind the camera.
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, Sink&& sink) const {
     visit(events, table, [&sink](const Bin& bin, const Eigen::Vector2f& p, float a) {
@@ -109,6 +110,7 @@ class EventWarp {
         const Event& event = events[i];
         if (event.x >= width || event.y >= height) continue;
         const Eigen::Vector2f& p = table.at(event.x, event.y);
+        if (std::isnan(p.x())) continue;
         const float a = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
         use(bin, p, a);
       }

@@ -261,7 +261,7 @@ void DetectorConfig::visit(ConfigFields& fields) {
 }
 
 std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied, int limit,
-                                   const DetectorConfig& config) {
+                                   const DetectorConfig& config, const cv::Mat& unused) {
   EDGED_CHECK(image.empty() || image.type() == CV_8UC1, "image type {}", image.type());
   const int border = std::max(config.border_px, kHarrisHalf + 2);
   const cv::Rect inner(border, border, image.cols - 2 * border, image.rows - 2 * border);
@@ -269,7 +269,7 @@ std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::
 
   const double scale = image.cols / kReferenceWidth_px;
   Grid grid(image.size(), config.cell_px * scale);
-  cv::Mat near_track = cv::Mat::zeros(image.size(), CV_8UC1);
+  cv::Mat near_track = unused.empty() ? cv::Mat(cv::Mat::zeros(image.size(), CV_8UC1)) : unused.clone();
   const auto occupy = [&](const cv::Point& p) {
     cv::circle(near_track, p, cvRound(config.separation_px * scale), cv::Scalar(255), cv::FILLED);
     grid.take(grid.cell_at(p.x, p.y));

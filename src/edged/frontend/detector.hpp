@@ -22,8 +22,8 @@ struct Corner {
 /// At most `limit` new corners of a CV_8UC1 image, strongest first, one per free cell. Cells that hold a pixel of
 /// `occupied`, and the neighbourhood of those pixels, stay free of corners. Lengths of the config that say "at 240 px"
 /// grow with the width of the image. An image too small for the border gives none. Paper Eq. 3, with K_ij instead of K
-/// and cells without a candidate skipped.
+/// and cells without a candidate skipped. unused: CV_8UC1, not zero where no corner may be; empty: nowhere.
 std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied, int limit,
-                                   const DetectorConfig& config);
+                                   const DetectorConfig& config, const cv::Mat& unused = {});
 
 }  // namespace edged

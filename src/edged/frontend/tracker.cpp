@@ -21,6 +21,16 @@ Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
 
 float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
+/// 255 where no corner of this camera may be.
+cv::Mat unused_pixels(const CameraModel& camera, int border_px) {
+  if (!camera.view_limit()) return {};
+  cv::Mat unused(camera.height(), camera.width(), CV_8UC1);
+  for (int y = 0; y < unused.rows; ++y)
+    for (int x = 0; x < unused.cols; ++x)
+      unused.at<uchar>(y, x) = camera.contains({static_cast<double>(x), static_cast<double>(y)}, border_px) ? 0 : 255;
+  return unused;
+}
+
 template <typename T>
 std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_t>& indices) {
   std::vector<T> selected;
@@ -65,7 +75,11 @@ void TrackerConfig::visit(ConfigFields& fields) {
 }
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
-    : name_(std::move(camera_name)), camera_(camera), config_(config), templates_(camera, config.templates.patch) {
+    : name_(std::move(camera_name)),
+      camera_(camera),
+      config_(config),
+      unused_(unused_pixels(camera, config.detector.border_px)),
+      templates_(camera, config.templates.patch) {
   EDGED_CHECK(camera.width() > 0 && camera.height() > 0, "camera {} has no size", name_);
   if (config.klt.window_px % 2 == 0) {
     throw InputError::format("klt.window_px = {} must be odd, e.g. {}", config.klt.window_px, config.klt.window_px + 1);
@@ -118,7 +132,7 @@ int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id, int most) {
   for (const Track& track : tracks_) occupied.push_back(track.pixel);
   const int limit = std::min(most, config_.detector.max_features) - static_cast<int>(tracks_.size());
   if (limit <= 0) return 0;
-  const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector);
+  const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector, unused_);
   for (const Corner& corner : corners) {
     Track track;
     track.id = next_id++;
@@ -167,7 +181,8 @@ CameraObservations FeatureTracker::observations() const {
   CameraObservations result{name_, {}};
   result.features.reserve(tracks_.size());
   const double sigma = config_.sigma_px / camera_.mean_focal();
-  for (const Track& track : tracks_) result.features.push_back({track.id, track.point, sigma});
+  for (const Track& track : tracks_)
+    result.features.push_back({track.id, track.point, sigma * camera_.stretch(track.point)});
   return result;
 }
 

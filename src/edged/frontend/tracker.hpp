@@ -108,6 +108,7 @@ class FeatureTracker {
   std::string name_;
   CameraModel camera_;
   TrackerConfig config_;
+  cv::Mat unused_;             // for the detector; empty where the whole image is used
   std::vector<Track> tracks_;  // by id, so oldest first
   Timestamp now_;
   int keyframe_tracks_ = 0;

@@ -47,6 +47,22 @@ class Tracking : public testing::Test {
   FeatureId next_id_ = 1;
 };
 
+TEST(Tracker, FindsAndFollowsNothingOutsideOfWhatIsUsedOfTheLens) {
+  const CameraModel camera = davis_like_pinhole().within(0.25);
+  const PlaneScene scene(camera, 2.0);
+  FeatureTracker tracker("left", camera, {});
+  FeatureId next_id = 1;
+  const SE3 moved = pose({0.0, 0.03, 0.0}, Eigen::Vector3d::Zero());
+  for (int i = 0; i < 2; ++i) {
+    const cv::Mat image = scene.image(i == 0 ? SE3() : moved);
+    const TrackSummary summary = tracker.track(image, at(i), std::nullopt);
+    EXPECT_EQ(summary.lost_border > 0, i == 1) << "some have left it";
+    tracker.detect(image, next_id);
+    EXPECT_GT(tracker.tracks().size(), 10U);
+    for (const Track& track : tracker.tracks()) EXPECT_TRUE(camera.contains(track.pixel, 2.0)) << track.pixel;
+  }
+}
+
 TEST_F(Tracking, FollowsCornersToATenthOfAPixel) {
   const SE3 T_W_C1 = pose({0.01, -0.01, 0.02}, {0.03, 0.02, 0.02});
   FeatureTracker tracker = start(SE3());

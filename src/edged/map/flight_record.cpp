@@ -86,7 +86,7 @@ class FlightRecord::Fit {
       std::vector<MapSight> sights;
       for (const Sight& s : view.sights)
         sights.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
-                          s.seen.cast<double>(), view.sigma});
+                          s.seen.cast<double>(), s.stretch * view.sigma});
       graph_.add_sights(nodes.at(view.T_O_B.t).number, view.T_B_C, sights);
     }
   }
@@ -152,10 +152,10 @@ std::size_t FlightRecord::add_keyframe(const StampedPose& T_O_K) {
 
 void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights,
                               const SE3& T_M_O) {
-  View view{T_O_B, T_B_C, sights.front().sigma, {}};
+  View view{T_O_B, T_B_C, std::ranges::min(sights, {}, &MapSight::sigma).sigma, {}};
   for (const MapSight& s : sights)
     view.sights.push_back({static_cast<std::uint32_t>(s.keyframe), s.p_K.cast<float>(), s.depth_sigma_K.cast<float>(),
-                           s.seen.cast<float>()});
+                           s.seen.cast<float>(), static_cast<float>(s.sigma / view.sigma)});
   sessions_.back().T_M_O.push_back({T_O_B.t, T_M_O});
   sessions_.back().views.push_back(std::move(view));
 }

@@ -39,7 +39,7 @@ class FlightRecord {
   void settle(const StampedPose& T_O_K);
   /// The map keeps that keyframe. Returns its number, by which sights speak of it from now on.
   std::size_t add_keyframe(const StampedPose& T_O_K);
-  /// Points were found in an image, by which O lies at T_M_O from now on. They share one sigma.
+  /// Points were found in an image, by which O lies at T_M_O from now on.
   void add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights, const SE3& T_M_O);
 
   struct Path {
@@ -59,11 +59,12 @@ class FlightRecord {
     std::uint32_t keyframe;
     Eigen::Vector3f p_K, depth_sigma_K;
     Eigen::Vector2f seen;
+    float stretch;  ///< its sigma over that of the view
   };
   struct View {
     StampedPose T_O_B;
     SE3 T_B_C;
-    double sigma;
+    double sigma;  ///< the smallest
     std::vector<Sight> sights;
   };
   struct Keyframe {

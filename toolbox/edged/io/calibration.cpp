@@ -80,6 +80,8 @@ std::string describe(const Calibration& calibration) {
     out += fmt::format("  field of view {:.1f} deg across, {:.1f} deg down, {:.1f} deg corner to corner\n",
                        view.horizontal * kDegreesPerRadian, view.vertical * kDegreesPerRadian,
                        view.diagonal * kDegreesPerRadian);
+    if (const auto limit = m.view_limit())
+      out += fmt::format("  used up to {:.0f} deg off its axis\n", *limit * kDegreesPerRadian);
     if (!calibration.has_extrinsics) {
       out += "  pose on the body and time offset: unknown\n";
       continue;

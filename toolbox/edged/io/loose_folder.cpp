@@ -81,15 +81,27 @@ std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::s
 }
 
 void tell_unread(const SourcePath& folder, const std::set<std::string>& read) {
-  static const std::set<std::string> kData = {".csv", ".txt", ".bag", ".raw",  ".dat", ".aedat4", ".aedat", ".h5",
-                                              ".db3", ".zip", ".npz", ".mcap", ".npy", ".mat",    ".hdf5"};
+  static const std::set<std::string> kData = {".csv",   ".txt", ".bag",  ".raw", ".dat", ".aedat4",
+                                              ".aedat", ".h5",  ".db3",  ".zip", ".npz", ".mcap",
+                                              ".npy",   ".mat", ".hdf5", ".mp4", ".avi"};
+  static const std::set<std::string> kCalibrations = {".yaml", ".yml", ".json", ".xml"};
+  static const std::set<std::string> kPictures = {".png", ".jpg", ".jpeg", ".bmp", ".pgm"};
   std::vector<std::string> names;
-  for (const std::string& name : files_in(folder)) {
-    const std::string lower = lower_case(name);
-    const bool about = lower.starts_with("readme") || lower.starts_with("license");
-    if (!about && !read.contains(name) && kData.contains(extension_of(name))) names.push_back(name);
+  std::size_t pictures = 0;
+  bool calibrations = false;
+  for (const std::string& name : folder.names()) {
+    const std::string lower = lower_case(name), extension = extension_of(name);
+    const bool about = lower.starts_with("readme") || lower.starts_with("license") || lower.starts_with('.');
+    if (about || read.contains(name)) continue;
+    const bool is_folder = (folder / name).is_folder(), calibration = !is_folder && kCalibrations.contains(extension);
+    calibrations |= calibration;
+    if (is_folder || calibration || kData.contains(extension)) names.push_back(is_folder ? name + "/" : name);
+    if (!is_folder && kPictures.contains(extension)) ++pictures;
   }
-  if (!names.empty()) spdlog::warn("{}: not read: {}", folder.string(), fmt::join(names, ", "));
+  if (pictures > 0) names.push_back(fmt::format("{} pictures", pictures));
+  if (!names.empty())
+    spdlog::warn("{}: not read: {}{}", folder.string(), fmt::join(names, ", "),
+                 calibrations ? " (a calibration only where --calib names it)" : "");
 }
 
 }  // namespace edged

@@ -19,7 +19,7 @@ std::optional<std::string> find_main_file(const SourcePath& folder);
 /// are several, says so and takes none.
 std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::set<std::string>& others);
 
-/// Says which of the folder's files with data are not read.
+/// Says which of the folder's folders, and of its files with data, pictures or a calibration, are not read.
 void tell_unread(const SourcePath& folder, const std::set<std::string>& read);
 
 }  // namespace edged

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <set>
+#include <sstream>
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
@@ -62,6 +63,18 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   return recording;
 }
 
+/// The folder of the first image that images.txt names; "" where there is none.
+std::string image_folder(const SourcePath& folder) {
+  const SourcePath list = folder / "images.txt";
+  if (!list.is_file()) return "";
+  constexpr std::size_t kHeadBytes = 4096;
+  std::istringstream lines{std::string(as_text(list.head(kHeadBytes)))};
+  std::string stamp, image;
+  for (std::string line; image.empty() && std::getline(lines, line);)
+    if (!line.starts_with('#')) std::istringstream(line) >> stamp >> image;
+  return image.substr(0, image.find('/'));
+}
+
 /// Of the sets whose files have names of their own, or nothing.
 std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
   // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
@@ -71,7 +84,8 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, co
     return open_loose_folder(folder, *file, rig, options);
   if (is_ecd_folder(folder)) {
     Recording recording = open_ecd(folder, rig);
-    tell_unread(folder, {"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "depthmaps.txt"});
+    tell_unread(folder, {"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
+                         "depthmaps.txt", "depthmaps", image_folder(folder)});
     return recording;
   }
   if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);

@@ -32,6 +32,19 @@ void mount_davis346(SimulatorConfig& config) {
   config.frames.auto_exposure = true;
 }
 
+/// As TUM-VI's with a quarter of its pixels: 152 degrees across, 212 from corner to corner.
+void mount_fisheye(SimulatorConfig& config) {
+  config.camera = {.width = 256,
+                   .height = 256,
+                   .fx = 95.5,
+                   .fy = 95.5,
+                   .cx = 127.2,
+                   .cy = 128.1,
+                   .distortion = DistortionModel::Equidistant,
+                   .k1 = 0.0035,
+                   .k2 = 0.0007};
+}
+
 struct FlightPlan {
   Manoeuvre manoeuvre;
   LightingKind lighting;
@@ -105,8 +118,8 @@ const std::vector<std::string>& flight_presets() {
 
 const std::vector<std::string>& simulator_presets() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all{"room",          "poster",  "shapes", "handheld-fast",
-                                 "handheld-wild", "walkers", "dark",   "spot"};
+    std::vector<std::string> all{"room",    "poster", "shapes", "handheld-fast", "handheld-wild",
+                                 "walkers", "dark",   "spot",   "fisheye"};
     all.insert(all.end(), flight_presets().begin(), flight_presets().end());
     return all;
   }();
@@ -140,6 +153,10 @@ SimulatorConfig simulator_preset(const std::string& name) {
     config.events.threshold_on = config.events.threshold_off = 0.4;
     config.events.bandwidth_hz = 20.0;
     config.events.bandwidth_per_radiance_hz = 600.0;
+    return config;
+  }
+  if (name == "fisheye") {
+    mount_fisheye(config);
     return config;
   }
   if (name == "walkers") {

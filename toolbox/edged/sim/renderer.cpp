@@ -55,6 +55,7 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
     : width_(camera.width()),
       height_(camera.height()),
       focal_(static_cast<float>(camera.mean_focal())),
+      wide_(camera.view_limit().has_value()),
       scene_(std::move(scene)),
       light_(scene_) {
   const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
@@ -63,14 +64,15 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
   column_min_x_.assign(static_cast<std::size_t>(width_), kMax), column_max_x_.assign(column_min_x_.size(), -kMax);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      const Eigen::Vector2d point = camera.pixel_to_point(Eigen::Vector2d(x, y));
+      const Eigen::Vector3d ray = camera.pixel_to_ray(Eigen::Vector2d(x, y));
+      const Eigen::Vector2d point = ray.head<2>();
       const float bx = static_cast<float>(point.x()), by = static_cast<float>(point.y());
-      bearing_x_.push_back(bx), bearing_y_.push_back(by);
+      bearing_x_.push_back(bx), bearing_y_.push_back(by), bearing_z_.push_back(static_cast<float>(ray.z()));
       const std::size_t row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
       row_min_y_[row] = std::min(row_min_y_[row], by), row_max_y_[row] = std::max(row_max_y_[row], by);
       column_min_x_[column] = std::min(column_min_x_[column], bx),
       column_max_x_[column] = std::max(column_max_x_[column], bx);
-      if (x % kMotionStride != 0 || y % kMotionStride != 0) continue;
+      if (wide_ || x % kMotionStride != 0 || y % kMotionStride != 0) continue;
       constexpr double kStep = 1e-5;
       Eigen::Matrix2d slope;
       slope.col(0) = (camera.distort_to_pixel(point + Eigen::Vector2d(kStep, 0)) - Eigen::Vector2d(x, y)) / kStep;
@@ -83,6 +85,7 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
 }
 
 Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
+  if (wide_) return {0, width_ - 1, 0, height_ - 1};
   const Extent extent = project_extent(face, T_C_W);
   const auto [x_0, x_1] = overlap(column_min_x_, column_max_x_, extent.x_0, extent.x_1);
   const auto [y_0, y_1] = overlap(row_min_y_, row_max_y_, extent.y_0, extent.y_1);
@@ -135,13 +138,13 @@ void Renderer::cast(const View& view, const PixelBox& box, int index) {
   const float half_u = view.half_u, half_v = view.half_v;
   for (int y = box.y_0; y <= box.y_1; ++y) {
     const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * width_;
-    const float *bx = bearing_x_.data() + row, *by = bearing_y_.data() + row;
+    const float *bx = bearing_x_.data() + row, *by = bearing_y_.data() + row, *bz = bearing_z_.data() + row;
     float* nearest = out_.inverse_depth.data() + row;
     int* seen = seen_.data() + row;
     for (int x = box.x_0; x <= box.x_1; ++x) {
-      const float w = a.x() * bx[x] + a.y() * by[x] + a.z();
-      const float uw = u.x() * bx[x] + u.y() * by[x] + u.z();
-      const float vw = v.x() * bx[x] + v.y() * by[x] + v.z();
+      const float w = a.x() * bx[x] + a.y() * by[x] + a.z() * bz[x];
+      const float uw = u.x() * bx[x] + u.y() * by[x] + u.z() * bz[x];
+      const float vw = v.x() * bx[x] + v.y() * by[x] + v.z() * bz[x];
       const bool hit = (w > nearest[x]) & (std::abs(uw) <= half_u * w) & (std::abs(vw) <= half_v * w);
       nearest[x] = hit ? w : nearest[x];
       seen[x] = hit ? index : seen[x];
@@ -159,10 +162,11 @@ void Renderer::shade() {
     const std::size_t index = static_cast<std::size_t>(seen_[i]);
     const Face& face = scene_.faces[index];
     const View& view = views_[index];
-    const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
+    const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], bearing_z_[i]);
     const float w = out_.inverse_depth[i], z = 1.0F / w;
     const float texels = face.texels_per_m;
-    // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|).
+    // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|); z is the
+    // distance where b is a unit vector.
     const float pitch = texels * z / focal_;
     const float area = pitch * pitch * std::sqrt(b.squaredNorm()) * z / view.distance;
     const Texture& texture = scene_.textures[face.texture];
@@ -208,11 +212,15 @@ double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector
   for (int y = 0; y < height_; y += kMotionStride) {
     for (int x = 0; x < width_; x += kMotionStride) {
       const std::size_t i = static_cast<std::size_t>(y * width_ + x);
-      const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], 1.0F);
+      const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], bearing_z_[i]);
       const Eigen::Vector3f own = seen_[i] < 0 ? -v : (views_[static_cast<std::size_t>(seen_[i])].velocity - v).eval();
       const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
-      const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
-      fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
+      if (wide_) {
+        fastest = std::max(fastest, focal_ * focal_ * b.cross(moved).squaredNorm());
+      } else {
+        const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
+        fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
+      }
       fastest = std::max(fastest, squared_beam_speed(b, out_.inverse_depth[i]));
     }
   }

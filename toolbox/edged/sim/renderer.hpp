@@ -14,8 +14,9 @@ namespace edged {
 
 /// One picture, row by row.
 struct Rendering {
-  std::vector<float> radiance;       ///< linear, 1 is a white spot in good light
-  std::vector<float> inverse_depth;  ///< 1 / z-depth [1/m]; 0 where there is nothing
+  std::vector<float> radiance;  ///< linear, 1 is a white spot in good light
+  /// 1 / z-depth [1/m], of a lens with a view_limit 1 / distance; 0 where there is nothing
+  std::vector<float> inverse_depth;
 };
 
 class Renderer {
@@ -36,7 +37,7 @@ class Renderer {
   int height() const { return height_; }
 
  private:
-  /// A face in the camera frame as three linear forms of the bearing b = (x, y, 1): inverse depth w = a.b and plane
+  /// A face in the camera frame as three linear forms of the bearing b (pixel_to_ray): inverse depth w = a.b and plane
   /// coordinates times w. No division is needed to decide what is seen.
   struct View {
     Eigen::Vector3f inverse_depth, u, v;
@@ -58,11 +59,12 @@ class Renderer {
 
   int width_, height_;
   float focal_;
+  bool wide_;  // bearings are unit vectors, to all sides
   Scene scene_;
   LightField light_;
-  std::vector<float> bearing_x_, bearing_y_;
+  std::vector<float> bearing_x_, bearing_y_, bearing_z_;
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
-  std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row
+  std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, of a lens that is not wide
   std::vector<View> views_;
   Beam beam_;              // of the spotlight in the camera frame; dark where there is none
   std::vector<int> seen_;  // face at each pixel, -1 for none

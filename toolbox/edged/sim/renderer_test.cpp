@@ -49,6 +49,18 @@ TEST(Renderer, ShowsTheNearerOfTwoFacesAndNothingFromBehind) {
   EXPECT_EQ(centre(renderer.render(SE3(Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d(0, 0, 3)))), 0.0F);
 }
 
+TEST(Renderer, ALensThatSeesBehindItselfSeesTheWallBehindIt) {
+  const CameraModel camera(96, 96, 30, 30, 48, 48, DistortionModel::Equidistant);
+  Renderer renderer(camera, wall_scene(2.0, 200.0));
+  const SE3 away(Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d::Zero());  // looks along -z, the wall in its back
+  const Rendering& picture = renderer.render(away);
+  EXPECT_EQ(picture.inverse_depth[48 * 96 + 48], 0.0F);
+  const Eigen::Vector3d ray = camera.pixel_to_ray({0.0, 0.0});
+  ASSERT_LT(ray.z(), -0.3);
+  EXPECT_NEAR(picture.inverse_depth[0], -ray.z() / 2.0, 1e-6);
+  EXPECT_NEAR(renderer.max_image_speed(Eigen::Vector3d::Zero(), {0.0, 1.0, 0.0}), 30.0, 0.1);
+}
+
 TEST(Renderer, ImageSpeedIsThatOfAPointOnTheWall) {
   Renderer renderer(CameraModel(64, 48, 50, 50, 31.5, 23.5), wall_scene(2.0, 50.0));
   renderer.render(SE3());

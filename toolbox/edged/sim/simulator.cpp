@@ -69,6 +69,9 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("fy", fy, {"px", 1, 1e5, "focal length"});
   fields.add("cx", cx, {"px", 0, 4096, "principal point"});
   fields.add("cy", cy, {"px", 0, 4096, "principal point"});
+  fields.choice("distortion", distortion,
+                {{"radtan", DistortionModel::RadTan}, {"equidistant", DistortionModel::Equidistant}},
+                {.effect = "k1 k2 p1 p2 of an ordinary lens, or k1 k2 of one that may see behind itself"});
   fields.add("k1", k1, {"", -10, 10, "radial distortion"});
   fields.add("k2", k2, {"", -10, 10, "radial distortion"});
   fields.add("p1", p1, {"", -1, 1, "tangential distortion"});
@@ -76,7 +79,8 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
 }
 
 CameraModel SimulatedCameraConfig::model() const {
-  return {width, height, fx, fy, cx, cy, DistortionModel::RadTan, {k1, k2, p1, p2, 0.0}};
+  if (distortion == DistortionModel::Equidistant) return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
+  return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
 }
 
 void SimulatorConfig::visit(ConfigFields& fields) {

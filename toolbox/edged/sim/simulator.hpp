@@ -20,10 +20,11 @@
 
 namespace edged {
 
-/// Size, intrinsics and radial-tangential distortion shared by events and frames; a DAVIS240C.
+/// Size, intrinsics and distortion shared by events and frames; a DAVIS240C.
 struct SimulatedCameraConfig {
   int width = 240, height = 180;
   double fx = 199.37143, fy = 199.70787, cx = 133.75438, cy = 113.99217;
+  DistortionModel distortion = DistortionModel::RadTan;
   double k1 = -0.38289916, k2 = 0.18933637, p1 = -0.00100247, p2 = -0.00056378;
 
   void visit(ConfigFields& fields);

@@ -76,7 +76,9 @@ void judge_overlap(const Survey& s, Findings& out) {
 
 void judge_sensors(const Survey& s, Findings& out) {
   if (s.imu.count == 0)
-    out.error("no IMU samples", "every mode needs them: record the IMU, or name its topic with --topic imu=NAME");
+    out.error("no IMU samples",
+              "every mode needs them: record the IMU, or name its topic with --topic imu=NAME; those that lie outside "
+              "the time of the cameras are on another clock, which `edged info REC` shows");
   if (s.events.count == 0 && s.frames.count == 0)
     out.error("neither events nor frames", "record one of them, or name the topic with --topic events=NAME");
   judge_overlap(s, out);

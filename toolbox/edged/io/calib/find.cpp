@@ -24,9 +24,12 @@ std::vector<SourcePath> files_where(const SourcePath& folder, const std::functio
 
 bool is_camchain(const std::string& name) { return name.starts_with("camchain") && name.ends_with(".yaml"); }
 
-/// basalt: camera-calibrationA.json, calibration.json; mocap-imu-calibrationA.json is something else.
-bool is_json_calibration(const std::string& name) {
-  return name.ends_with(".json") && name.find("calib") != std::string::npos && name.find("mocap") == std::string::npos;
+/// basalt: camera-calibrationA.json, calibration.json; mocap-imu-calibrationA.json is something else. DV: json, xml.
+/// Metavision: intrinsics.json.
+bool is_named_calibration(const std::string& name) {
+  if (name == "intrinsics.json") return true;
+  return (name.ends_with(".json") || name.ends_with(".xml")) && name.find("calib") != std::string::npos &&
+         name.find("mocap") == std::string::npos;
 }
 
 /// The first field of the first line that is no comment.
@@ -65,7 +68,7 @@ SourcePath find_calibration(const SourcePath& folder) {
   if (mav0 && (*mav0 / "cam0" / "sensor.yaml").is_file()) return *mav0 / "cam0" / "sensor.yaml";
   const SourcePath tum_vi = mav0 ? mav0->parent_path() / "dso" : folder;
   for (const auto& found : {files_where(folder, is_camchain), files_where(tum_vi, is_camchain),
-                            find_vector_files(folder), files_where(folder, is_json_calibration)}) {
+                            find_vector_files(folder), files_where(folder, is_named_calibration)}) {
     if (found.size() > 1)
       throw InputError::format("{}: holds several calibrations: give one of the files, {} or {}", folder.string(),
                                found[0].name(), found[1].name());
@@ -74,7 +77,7 @@ SourcePath find_calibration(const SourcePath& folder) {
   if (const SourcePath calib = folder / "calib.txt"; calib.is_file()) return calib;
   throw InputError::format(
       "{}: no calibration found; looked for calibration.yaml, [mav0/]cam0, camchain*.yaml, VECtor's "
-      "*joint_camera_extrinsic_results.yaml, *calib*.json, calib.txt",
+      "*joint_camera_extrinsic_results.yaml, *calib*.json, *calib*.xml, intrinsics.json, calib.txt",
       folder.string());
 }
 
@@ -87,14 +90,17 @@ CalibrationFile read_calibration_file(const SourcePath& file) {
     if (root.find("sensor_type")) return read_euroc(root);
     if (is_vector(root)) return read_vector(root);
     if (root.find("cam0")) return read_kalibr(root);
+    if (is_dv_json(root)) return read_dv_json(root);
     if (is_uslam(root)) return read_uslam(root);
     if (root.find("camera_matrix")) return read_camera_info(root);
     if (is_vins(root)) return read_vins(root);
+    if (is_metavision(root)) return read_metavision(root);
+    if (root.find("T_slave_master")) refuse_metavision_extrinsics(root);
+    if (is_dv_xml(root)) return read_dv_xml(root);
     throw InputError::format(
         "{}: no known calibration; looked for the keys edged_rig (ours), cam0 (Kalibr, VECtor), sensor_type (EuRoC), "
-        "cameras (USLAM), value0 (basalt), camera_matrix (ROS), projection_parameters or cam0_calib (VINS), or for 4 "
-        "or "
-        "9 numbers (calib.txt)",
+        "cameras (USLAM, DV), value0 (basalt), camera_matrix (ROS, OpenCV, DV's xml), K (Metavision), "
+        "projection_parameters or cam0_calib (VINS), or for 4 or 9 numbers (calib.txt)",
         root.file().string());
   };
   CalibrationFile out = read();

@@ -23,6 +23,22 @@ CalibrationFile read_vins(const YamlReader& root);
 CalibrationFile read_uslam(const YamlReader& root);
 CalibrationFile read_basalt(const YamlReader& root);
 CalibrationFile read_camera_info(const YamlReader& root);
+/// A lens in OpenCV's keys, camera_matrix and the like; what the file says of its distortion may stand elsewhere.
+Lens read_opencv_lens(const YamlReader& root, const std::string& distortion);
+std::string opencv_distortion(const YamlReader& root);
+/// fx, fy, cx, cy of a 3x3 matrix.
+std::vector<double> read_camera_matrix(const YamlReader& matrix);
+
+/// iniVation's DV.
+bool is_dv_json(const YamlReader& root);
+CalibrationFile read_dv_json(const YamlReader& root);
+bool is_dv_xml(const YamlReader& root);
+CalibrationFile read_dv_xml(const YamlReader& root);
+
+/// Prophesee's Metavision.
+bool is_metavision(const YamlReader& root);
+CalibrationFile read_metavision(const YamlReader& root);
+[[noreturn]] void refuse_metavision_extrinsics(const YamlReader& root);
 
 CalibrationFile read_kalibr(const YamlReader& root);
 /// Noise keys of EuRoC and Kalibr, which agree; also below `imu0`.

@@ -24,14 +24,14 @@ bool only_zeros(const std::vector<double>& k, std::size_t from) {
 }
 
 Distortion make_distortion(const YamlReader& place, const Intrinsics& in) {
-  const std::string& name = in.distortion;
+  const std::string name = lower_case(in.distortion);
   const auto is_one_of = [&name](std::initializer_list<std::string_view> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   Distortion out;
   std::size_t most = 0;
   if (is_one_of({"none", "no", ""})) {
-  } else if (is_one_of({"radtan", "radial-tangential", "plumb_bob"})) {
+  } else if (is_one_of({"radtan", "radial-tangential", "radialtangential", "plumb_bob"})) {
     out.model = DistortionModel::RadTan, most = 5;
     if (in.coefficients.size() < 4) place.fail("radtan takes 4 or 5 numbers: k1 k2 p1 p2 [k3]");
   } else if (is_one_of({"rational_polynomial", "rational"})) {

@@ -3,6 +3,7 @@
 // Our own format: docs/calibration.md.
 #include <algorithm>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/formats.hpp"
 #include "edged/io/text.hpp"
@@ -35,8 +36,8 @@ Sees read_modality(const YamlReader& value) {
 
 /// The camera above that `same_as` names.
 Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
-  for (const char* key :
-       {"resolution", "intrinsics", "distortion", "coefficients", "T_B_C", "T_C_B", "q_B_C", "time_offset"})
+  for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "max_angle", "T_B_C", "T_C_B",
+                          "q_B_C", "time_offset"})
     if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
   const std::string name = same_as.text();
   const auto base = std::find_if(above.begin(), above.end(), [&name](const Lens& lens) { return lens.name == name; });
@@ -56,9 +57,18 @@ void take_last_bits(const YamlReader& node, SE3& T_B_C) {
     T_B_C.rotation() = exact;
 }
 
+CameraModel narrowed(const CameraModel& model, const YamlReader& angle) {
+  const double degrees = angle.number();
+  try {
+    return model.within(degrees * kDegree);
+  } catch (const InputError& e) {
+    angle.fail(e.what());
+  }
+}
+
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
-                   "coefficients", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
+                   "coefficients", "max_angle", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
   Lens lens;
   const auto same_as = node.find("same_as");
   if (same_as) lens = read_base(node, *same_as, above);
@@ -67,6 +77,7 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   if (same_as) return lens;
 
   lens.model = read_model(node, "distortion", "coefficients");
+  if (const auto angle = node.find("max_angle")) lens.model = narrowed(lens.model, *angle);
   const auto T_B_C = node.find("T_B_C"), T_C_B = node.find("T_C_B");
   if (T_B_C.has_value() == T_C_B.has_value())
     node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
@@ -89,7 +100,30 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string camera_yaml(const RigCamera& camera) {
+std::string pose_yaml(const RigCamera& camera) {
+  std::string out = "    T_B_C:  # camera to IMU: p_B = T_B_C * p_C\n";
+  const Eigen::Matrix4d T = camera.T_B_C.matrix();
+  for (int row = 0; row < 4; ++row)
+    out += fmt::format("      - [{}, {}, {}, {}]\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  const Eigen::Quaterniond& q = camera.T_B_C.rotation();
+  out += fmt::format("    q_B_C: [{}, {}, {}, {}]  # rotation of T_B_C to the last bit: w x y z\n", q.w(), q.x(), q.y(),
+                     q.z());
+  return out + fmt::format("    time_offset: {}  # s: t_imu = t_cam + time_offset\n",
+                           format_seconds(Timestamp(camera.time_offset)));
+}
+
+/// Where only the lens is known.
+constexpr const char* kPoseToFillIn =
+    "    # Camera to IMU, p_B = T_B_C * p_C: columns are the camera's x (right), y (down) and z (forward) axes in the\n"
+    "    # IMU's, then its place in metres. T_C_B instead is the inverse.\n"
+    "    T_B_C:\n"
+    "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
+    "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
+    "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
+    "      - [0.0, 0.0, 0.0, 1.0]\n"
+    "    time_offset: 0.0  # s: t_imu = t_cam + time_offset\n";
+
+std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   std::string out =
       fmt::format("  - name: {}\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
@@ -101,15 +135,11 @@ std::string camera_yaml(const RigCamera& camera) {
         fmt::format("    distortion: radtan\n    coefficients: [{}, {}, {}, {}, {}]\n", k[0], k[1], k[2], k[3], k[4]);
   if (m.distortion() == DistortionModel::Equidistant)
     out += fmt::format("    distortion: equidistant\n    coefficients: [{}, {}, {}, {}]\n", k[0], k[1], k[2], k[3]);
-  out += "    T_B_C:  # camera to IMU: p_B = T_B_C * p_C\n";
-  const Eigen::Matrix4d T = camera.T_B_C.matrix();
-  for (int row = 0; row < 4; ++row)
-    out += fmt::format("      - [{}, {}, {}, {}]\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
-  const Eigen::Quaterniond& q = camera.T_B_C.rotation();
-  out += fmt::format("    q_B_C: [{}, {}, {}, {}]  # rotation of T_B_C to the last bit: w x y z\n", q.w(), q.x(), q.y(),
-                     q.z());
-  return out + fmt::format("    time_offset: {}  # s: t_imu = t_cam + time_offset\n",
-                           format_seconds(Timestamp(camera.time_offset)));
+  const CameraModel whole(m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy(), m.distortion(), k);
+  if (m.view_limit() != whole.view_limit())
+    out += fmt::format("    max_angle: {}  # deg off the axis: further out nothing is used\n",
+                       *m.view_limit() * kDegreesPerRadian);
+  return out + (has_extrinsics ? pose_yaml(camera) : kPoseToFillIn);
 }
 
 }  // namespace
@@ -141,7 +171,7 @@ std::string to_yaml(const Calibration& calibration) {
         n.gyro_noise, n.accel_noise, n.gyro_walk, n.accel_walk, n.gyro_saturation, n.accel_saturation,
         n.saturation_inflation);
   out += "cameras:\n";
-  for (const RigCamera& camera : calibration.rig.cameras) out += camera_yaml(camera);
+  for (const RigCamera& camera : calibration.rig.cameras) out += camera_yaml(camera, calibration.has_extrinsics);
   return out;
 }
 

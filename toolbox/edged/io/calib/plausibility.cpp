@@ -16,8 +16,9 @@ constexpr double kLongArm = 0.5;        // [m]
 constexpr double kMillimetreArm = 2.0;  // [m] beyond what heads have: read as metres what was in millimetres
 constexpr double kMinView = 1.0, kMaxView = 172.0;       // [deg] across the diagonal: no lens of this model
 constexpr double kNarrowView = 10.0, kWideView = 160.0;  // [deg] rare
-constexpr double kOffCentre = 0.15;                      // of the image's size, of the principal point to its middle
-constexpr double kPixelAspect = 0.05;                    // of fx against fy
+constexpr double kMaxWideView = 250.0;  // [deg] across the shorter side of a lens that sees behind itself
+constexpr double kOffCentre = 0.15;     // of the image's size, of the principal point to its middle
+constexpr double kPixelAspect = 0.05;   // of fx against fy
 
 /// How far the principal point is from the middle of an image of this size, as a share of its width or height.
 double off_centre(const CameraModel& m, int width, int height) {
@@ -42,13 +43,15 @@ class Judge {
 
   void field(const RigCamera& camera) {
     const CameraModel& m = camera.model;
-    const double view = field_of_view(m).diagonal * kDegreesPerRadian;
-    if (!(view >= kMinView && view <= kMaxView))
+    const FieldOfView fields = field_of_view(m);
+    const bool wide = m.view_limit().has_value();  // the corners of its image may lie outside of its circle
+    const double view = (wide ? std::min(fields.horizontal, fields.vertical) : fields.diagonal) * kDegreesPerRadian;
+    if (!(view >= kMinView && view <= (wide ? kMaxWideView : kMaxView)))
       throw InputError::format(
           "{}: camera {}: a field of view of {:.3g} deg is impossible: fx {:g}, fy {:g} must be in pixels of the image "
           "of {} x {}",
           path_, camera.name, view, m.fx(), m.fy(), m.width(), m.height());
-    if (view < kNarrowView || view > kWideView)
+    if (view < kNarrowView || (view > kWideView && !wide))
       warn(camera, "a field of view of {:.3g} deg across the image is rare: are fx and fy of this image size?", view);
     if (std::abs(m.fx() / m.fy() - 1.0) > kPixelAspect)
       warn(camera, "fx {:g} and fy {:g} differ by more than {:.0f} %: pixels are square", m.fx(), m.fy(),

@@ -13,6 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// A calibration in our format, whole but for what a test changes.
 struct Own {
@@ -58,6 +59,25 @@ TEST_F(Plausibility, FocalLengthsMustGiveAFieldOfViewThatLensesHave) {
   EXPECT_THAT(complaint({.intrinsics = "[250000, 250000, 173, 130]"}), HasSubstr("impossible"));
   EXPECT_THAT(warnings({.intrinsics = "[3000, 3000, 173, 130]"}), ElementsAre(HasSubstr("field of view of 8.")));
   EXPECT_THAT(warnings({.intrinsics = "[250, 300, 173, 130]"}), ElementsAre(HasSubstr("pixels are square")));
+}
+
+TEST_F(Plausibility, AFisheyeMaySeeBehindItself) {
+  const auto fisheye = [](const std::string& focal, const std::string& more = "") {
+    return Own{.size = "[512, 512]",
+               .intrinsics = "[" + focal + ", " + focal +
+                             ", 255, 257]\n    distortion: equidistant\n    coefficients: "
+                             "[0.0035, 0.0007, -0.002, 0.0002]" +
+                             more};
+  };
+  EXPECT_THAT(warnings(fisheye("191")), IsEmpty());
+  EXPECT_THAT(complaint(fisheye("19.1")), HasSubstr("impossible"));
+  EXPECT_THAT(complaint(fisheye("191", "\n    max_angle: 95")), HasSubstr("max_angle: a lens can be used up to"));
+  const auto file = folder_.write("narrow.yaml", fisheye("191", "\n    max_angle: 50").text());
+  const Calibration narrow = load_calibration(file);
+  EXPECT_NEAR(*narrow.rig.cameras[0].model.view_limit(), 0.8727, 1e-4);
+  EXPECT_THAT(describe(narrow), HasSubstr("used up to 50 deg off its axis"));
+  EXPECT_THAT(to_yaml(narrow), HasSubstr("max_angle: 50"));
+  EXPECT_THAT(to_yaml(load_calibration(folder_.write("c.yaml", fisheye("191").text()))), Not(HasSubstr("max_angle")));
 }
 
 TEST_F(Plausibility, ThePrincipalPointMustFitTheImage) {

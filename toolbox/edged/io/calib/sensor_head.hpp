@@ -37,7 +37,8 @@ struct CalibrationOptions {
   std::optional<Sees> otherwise = {};  ///< where nothing tells; not given: an error that asks
 };
 
-/// Our own yaml; load_calibration gives back the same numbers to the last bit (rotations to rounding).
+/// Our own yaml; load_calibration gives back the same numbers to the last bit (rotations to rounding). Where only
+/// lenses are known, FILL_IN stands for the rest, which load_calibration refuses by its line.
 std::string to_yaml(const Calibration& calibration);
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/io/calib/opencv_xml.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -40,7 +41,9 @@ std::string hint(const std::string& text, int line) {
 YAML::Node parse_file(const SourcePath& file) {
   const std::string text = read_small_file(file);
   try {
-    return YAML::Load(text);
+    return is_xml(text) ? parse_opencv_xml(text) : YAML::Load(text);
+  } catch (const Damage& damage) {
+    throw InputError::format("{}: {}", file.string(), damage.what());
   } catch (const YAML::Exception& e) {
     throw InputError::format("{}:{}: not readable as yaml: {}{}", file.string(), e.mark.line + 1, e.msg,
                              hint(text, e.mark.line));
@@ -82,10 +85,13 @@ std::vector<YamlReader> YamlReader::items() const {
   return out;
 }
 
-std::vector<std::string> YamlReader::keys() const {
+std::vector<std::pair<std::string, YamlReader>> YamlReader::entries() const {
   if (!node_.IsMap()) fail("must be a map of keys and values");
-  std::vector<std::string> out;
-  for (const auto& entry : node_) out.push_back(entry.first.Scalar());
+  std::vector<std::pair<std::string, YamlReader>> out;
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.Scalar();
+    out.emplace_back(key, YamlReader(file_, path_.empty() ? key : path_ + "." + key, entry.second, warnings_));
+  }
   return out;
 }
 
@@ -111,8 +117,8 @@ double YamlReader::positive() const {
   return x;
 }
 
-Duration YamlReader::time_offset() const {
-  const double seconds = number();
+Duration YamlReader::time_offset(double unit_s) const {
+  const double seconds = number() * unit_s;
   if (std::abs(seconds) > kMaxOffset)
     fail(fmt::format("a clock off by {:g} s; at most {:g} s is believed: is it in seconds?", seconds, kMaxOffset));
   return duration_from_seconds(seconds);
@@ -168,12 +174,11 @@ SE3 YamlReader::rigid(std::span<const double> rotation, std::span<const double> 
 }
 
 void YamlReader::allow_only(std::initializer_list<std::string_view> known) const {
-  for (const std::string& key : keys()) {
+  for (const auto& [key, value] : entries()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-    const auto value = find(key);
-    (value ? *value : *this).fail("unknown key; known here: " + list);
+    value.fail("unknown key; known here: " + list);
   }
 }
 

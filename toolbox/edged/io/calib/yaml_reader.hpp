@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "edged/io/source_path.hpp"
@@ -19,7 +20,7 @@
 
 namespace edged {
 
-/// Also reads OpenCV's dialect (`%YAML:1.0`, `!!opencv-matrix`) and json.
+/// Also reads OpenCV's dialect (`%YAML:1.0`, `!!opencv-matrix`), its xml, and json.
 class YamlReader {
  public:
   /// The root of a file. Throws InputError when it is missing, no yaml, or larger than any calibration (16 MB).
@@ -30,9 +31,9 @@ class YamlReader {
 
   bool is_map() const { return node_.IsMap(); }
   std::optional<YamlReader> find(const std::string& key) const;
-  YamlReader at(const std::string& key) const;  ///< InputError when it is missing
-  std::vector<YamlReader> items() const;        ///< of a sequence
-  std::vector<std::string> keys() const;        ///< of a map, in the order of the file
+  YamlReader at(const std::string& key) const;                      ///< InputError when it is missing
+  std::vector<YamlReader> items() const;                            ///< of a sequence
+  std::vector<std::pair<std::string, YamlReader>> entries() const;  ///< of a map, in the order of the file
 
   double number() const;
   double positive() const;
@@ -40,8 +41,8 @@ class YamlReader {
   std::string text_or(const std::string& key, const std::string& otherwise) const;  ///< of a child
   /// Of a sequence, nested ones in one row, or of {rows, cols, data}, whose size is checked. At most 64.
   std::vector<double> numbers() const;
-  /// Seconds, at most 10 s either way: a clock's offset, to the nanosecond.
-  Duration time_offset() const;
+  /// At most 10 s either way: a clock's offset, to the nanosecond. unit_s: what it is counted in.
+  Duration time_offset(double unit_s = 1.0) const;
 
   /// A rigid transform: 4x4 or 3x4 rows, a flat row of 16 or 12, or {rows, cols, data}. See `rigid`.
   SE3 transform() const;

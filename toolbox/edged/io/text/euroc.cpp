@@ -56,7 +56,7 @@ std::optional<SourcePath> find_truth(const SourcePath& mav0) {
   return std::nullopt;
 }
 
-/// TUM-VI's lens sees more than a half space, which the camera model refuses: the recording is read all the same.
+/// Where it is refused the recording is read all the same.
 std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   const SourcePath dso = mav0.parent_path() / "dso";
   return (dso / "camchain.yaml").is_file() ? std::optional(load_calibration(dso, {.otherwise = Sees::Frames}))

@@ -67,12 +67,25 @@ TEST(TumVi, OpensWithTruthCalibrationAndSixteenBitImages) {
   }
 }
 
+/// The calibration of write_tum_vi with something else in it.
+void change_camchain(const TempFolder& folder, const std::string& from, const std::string& to) {
+  std::string text = kCamchain;
+  folder.write("dso/camchain.yaml", text.replace(text.find(from), from.size(), to));
+}
+
+TEST(TumVi, ItsLensIsUsedAsFarAsItCanBe) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  change_camchain(folder, "290.97, 290.97", "190.97, 190.97");  // the published one: the corners lie beyond 90 degrees
+  const Recording recording = open_recording(folder.path());
+  ASSERT_TRUE(recording.calibration);
+  EXPECT_TRUE(recording.calibration->rig.cameras[0].model.view_limit());
+}
+
 TEST(TumVi, ACalibrationThatIsRefusedDoesNotCloseTheRecording) {
   TempFolder folder;
   write_tum_vi(folder);
-  std::string wide = kCamchain;
-  wide.replace(wide.find("290.97, 290.97"), 14, "190.97, 190.97");  // TUM-VI's own: the corners lie beyond 90 degrees
-  folder.write("dso/camchain.yaml", wide);
+  change_camchain(folder, "camera_model: pinhole", "camera_model: omni");
   const Recording recording = open_recording(folder.path());
   EXPECT_FALSE(recording.calibration);
   EXPECT_EQ(read_all(*recording.dataset).frames.size(), 2u);
