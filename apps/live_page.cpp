@@ -219,7 +219,7 @@ void LivePage::Server::finish(RunProgress progress, const nlohmann::ordered_json
   {
     const std::lock_guard lock(mutex_);
     report_ = folder / "report.html";
-    end_ = metrics.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    end_ = compact_json(metrics);
     asked_ = WallClock::now();
   }
   changed_.notify_all();
