@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "edged/core/check.hpp"
+#include "json_text.hpp"
 #include "report_page.hpp"
 
 namespace edged {

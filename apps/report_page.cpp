@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "edged/core/check.hpp"
+#include "json_text.hpp"
 #include "report_data.hpp"
 #include "report_parts.hpp"
 #include "run_folder.hpp"
