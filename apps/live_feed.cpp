@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "json_text.hpp"
 #include "report_rows.hpp"
 #include "track_picture.hpp"
 
@@ -98,23 +99,13 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   reason_ = reason_of(step);
   progress_ = std::move(progress);
   changes_.add(step);
-  keep(row);
+  if (rows_.add(row)) ++thinned_;
   const auto now = LiveClockTime::now();
   if (viewers_ == 0 || now < map_taken_ + kMapPeriod) return;
   map_taken_ = now;
   ++map_number_;
   map_.clear();
   for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
-}
-
-void LiveFeed::keep(const Row& row) {
-  if (steps_++ % stride_ != 0) return;
-  rows_.push_back(row);
-  if (rows_.size() < kMostRows) return;
-  for (std::size_t i = 0; 2 * i < rows_.size(); ++i) rows_[i] = rows_[2 * i];
-  rows_.resize((rows_.size() + 1) / 2);
-  stride_ *= 2;
-  ++thinned_;
 }
 
 /// Copies, as the odometry goes on with its own, at the pace of a viewer.
@@ -146,13 +137,13 @@ LiveFeed::Present LiveFeed::present(Place& place) const {
               progress_,
               place.rows,
               place.changes,
-              {rows_.begin() + known(place.rows), rows_.end()},
+              {rows_.all().begin() + known(place.rows), rows_.all().end()},
               {changes.begin() + known(place.changes), changes.begin() + known(shown)},
               {},
               event_shot_ ? event_shot_->number : 0,
               frame_shot_ ? frame_shot_->number : 0};
   if (place.map != map_number_) now.new_map = map_;
-  place.rows = rows_.size();
+  place.rows = rows_.all().size();
   place.thinned = thinned_;
   place.changes = shown > 0 ? shown - 1 : 0;  // the last one's reason may change
   place.map = map_number_;
@@ -194,7 +185,7 @@ std::string LiveFeed::news(Place& place) const {
     auto& map = json["map"] = nlohmann::ordered_json::array();
     for (const float x : now.new_map) map.push_back(rounded(x, 3));
   }
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return compact_json(json);
 }
 
 std::vector<unsigned char> LiveFeed::picture(Modality of) const {

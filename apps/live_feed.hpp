@@ -17,6 +17,7 @@
 
 #include "edged/camera/output_frame.hpp"
 #include "edged/step.hpp"
+#include "evenly.hpp"
 #include "run_album.hpp"
 #include "run_statistics.hpp"
 #include "status_changes.hpp"
@@ -84,7 +85,6 @@ class LiveFeed {
   };
 
   Row row_of(const Step& step);
-  void keep(const Row& row);
   void take_shots(const Step& step);
   Present present(Place& place) const;
   static nlohmann::ordered_json columns(const std::vector<Row>& rows);
@@ -98,8 +98,8 @@ class LiveFeed {
   Row newest_;
   std::string reason_;
   RunProgress progress_;
-  std::vector<Row> rows_;
-  std::size_t steps_ = 0, stride_ = 1, thinned_ = 0;
+  Evenly<Row> rows_{kMostRows};
+  std::size_t thinned_ = 0;
   StatusChanges changes_;
   std::vector<float> map_;
   std::size_t map_number_ = 0;

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "edged/core/check.hpp"
+#include "json_text.hpp"
 #include "report_page.hpp"
 
 namespace edged {
@@ -219,7 +220,7 @@ void LivePage::Server::finish(RunProgress progress, const nlohmann::ordered_json
   {
     const std::lock_guard lock(mutex_);
     report_ = folder / "report.html";
-    end_ = metrics.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    end_ = compact_json(metrics);
     asked_ = WallClock::now();
   }
   changed_.notify_all();

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "edged/core/check.hpp"
+#include "json_text.hpp"
 #include "report_data.hpp"
 #include "report_parts.hpp"
 #include "run_folder.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 /// As json that a browser finds within a script: "<" begins no tag there.
 std::string script_safe(const nlohmann::ordered_json& data) {
-  const std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text = compact_json(data);
   std::string safe;
   safe.reserve(text.size() + 1024);
   for (const char c : text) {

@@ -8,10 +8,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/io/zip_writer.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
+#include "run_archive.hpp"
 #include "run_hindsight.hpp"
 #include "serve_address.hpp"
 #include "version.hpp"
@@ -43,11 +45,32 @@ nlohmann::ordered_json about_run(const Source& source, Mode mode, const OutputFr
           {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nullptr}};
 }
 
-std::string config_text(RunConfig config, const DatasetInfo& info, Mode mode) {
+std::string options_text(RunConfig config) { return ConfigFields::of(config).to_yaml(); }
+
+/// Tells whether two runs had the same options (FNV-1a, 64 bit).
+std::string hash_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return fmt::format("{:016x}", hash);
+}
+
+std::string config_text(const std::string& options, const DatasetInfo& info, Mode mode) {
   return fmt::format(
              "# every option of this run; give it to --config to repeat it\n# recording {}, mode {}, edged {}\n",
              info.name, mode_name(mode), kVersion) +
-         ConfigFields::of(config).to_yaml();
+         options;
+}
+
+/// The truth while the run lasted, in the world of the estimate; nothing where they were not compared. shown: the
+/// estimate of the truth's sensor.
+Trajectory truth_beside(const Trajectory& shown, const RunSummary& summary, const std::optional<GroundTruth>& truth) {
+  Trajectory beside;
+  if (!summary.evaluation) return beside;
+  for (const StampedPose& pose : truth->trajectory) {
+    if (pose.t >= shown.front().t && pose.t <= shown.back().t)
+      beside.push_back({pose.t, summary.evaluation->alignment.T.inverse() * pose.T});
+  }
+  return beside;
 }
 
 std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
@@ -87,15 +110,29 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}", info.name);
   if (!options.serve.empty())
     page_.emplace(*parse_serve_address(options.serve), about_run(source_, mode_, frame_), frame_);
+  const EarlierRun earlier = options.force ? EarlierRun::Replace : EarlierRun::Keep;
+  if (!options.archive.empty() && options.archive != kArchiveBeside)
+    check_archive(archive_ = options.archive, earlier);  // before there is a folder
   const std::filesystem::path wanted = folder_;
-  folder_ = make_run_folder(wanted, options.force ? EarlierRun::Replace : EarlierRun::Keep);
-  write_file(folder_ / "config_resolved.yaml", config_text(config, info, mode_));
+  folder_ = make_run_folder(wanted, earlier);
+  if (options.archive == kArchiveBeside) check_archive(archive_ = beside(folder_, ".zip"), earlier);
+  const std::string resolved = options_text(config);
+  write_file(folder_ / "config_resolved.yaml", config_text(resolved, info, mode_));
   write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
   attach_log_file(folder_ / "run.log");
   if (folder_ != wanted)
     spdlog::warn("{}: holds an earlier run; this one goes to {} (--force replaces)", wanted.string(), folder_.string());
   spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
   spdlog::info("{}", describe(source_.calibration));
+  if (options.mcap)
+    mcap_.emplace(folder_ / "results.mcap", odometry_.rig(),
+                  RunFacts{{"version", kVersion},
+                           {"recording", info.name},
+                           {"format", info.format},
+                           {"mode", mode_name(mode_)},
+                           {"options", resolved},
+                           {"options_hash", hash_of(resolved)},
+                           {"calibration", to_yaml(source_.calibration)}});
   writer_.emplace(folder_, frame_, headed("causal: each as it was known at its time"));
 }
 
@@ -122,6 +159,10 @@ void Run::observe(const Step& step) {
     writer_->add(step);
     moment_.consider(step);
     album_.add(step);
+  }
+  if (mcap_) {
+    const auto timer = program_timings_.measure("mcap");
+    mcap_->add(step, album_);
   }
   if (page_) {
     const auto timer = program_timings_.measure("serve");
@@ -214,6 +255,7 @@ RunSummary Run::summarize() {
   summary.mode = mode_name(mode_);
   summary.frame = frame_.name();
   summary.folder = folder_.string();
+  summary.archive = archive_.string();
   summary.seed = source_.seed;
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
@@ -237,13 +279,23 @@ RunSummary Run::summarize() {
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");
   write_overview(summary, body, truth);
+  if (mcap_) finish_mcap(summary, known, body, truth);
   album_.write(folder_, source_.calibration, odometry_.rig(), truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   write_run_report(folder_);  // the log is part of it
+  if (!archive_.empty()) zip_folder(archive_, folder_);
   if (page_) page_->finish(progress(), to_json(summary), folder_);
   return summary;
+}
+
+void Run::finish_mcap(const RunSummary& summary, const Hindsight& known, const Trajectory& body,
+                      const std::optional<GroundTruth>& truth) {
+  const OutputFrame sensor(source_.calibration.rig, truth ? truth->frame : "body");
+  Trajectory true_body;
+  for (const StampedPose& pose : truth_beside(sensor(body), summary, truth)) true_body.push_back(sensor.to_body(pose));
+  mcap_->finish(known, album_, true_body, summary);
 }
 
 void Run::write_overview(const RunSummary& summary, const Trajectory& body,
@@ -256,11 +308,7 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
     const Evaluation& e = *summary.evaluation;
     content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
     content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(body);
-    for (const StampedPose& pose : truth->trajectory) {
-      if (pose.t >= content.estimate.front().t && pose.t <= content.estimate.back().t) {
-        content.truth.push_back({pose.t, e.alignment.T.inverse() * pose.T});
-      }
-    }
+    content.truth = truth_beside(content.estimate, summary, truth);
   }
   std::vector<unsigned char> png;
   cv::imencode(".png", draw_overview(content), png);

@@ -17,6 +17,7 @@
 #include "run_check.hpp"
 #include "run_folder.hpp"
 #include "run_map.hpp"
+#include "run_mcap.hpp"
 #include "run_mode.hpp"
 #include "run_summary.hpp"
 #include "source.hpp"
@@ -38,7 +39,9 @@ struct RunOptions {
   bool quiet = false;
   bool json = false;
   bool live = false;
-  std::string serve;  ///< where to; "true" where that is not said; "" without a live page
+  bool mcap = false;
+  std::string archive;  ///< which file; "true" for the one beside the folder; "" for none
+  std::string serve;    ///< where to; "true" where that is not said; "" without a live page
 };
 
 /// One run from the first measurement to the files' end.
@@ -58,6 +61,8 @@ class Run {
   RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s()}; }
   RunSummary summarize();
   Hindsight hindsight();
+  void finish_mcap(const RunSummary& summary, const Hindsight& known, const Trajectory& body,
+                   const std::optional<GroundTruth>& truth);
   std::vector<std::string> headed(const std::string& known_when) const;
   void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
 
@@ -66,7 +71,7 @@ class Run {
   Mode mode_;
   OutputFrame frame_;
   RunCheck check_;
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, archive_;
   StageTimings program_timings_;
   Odometry odometry_;
   RunMap map_;
@@ -80,6 +85,7 @@ class Run {
   ResourceMeter meter_;
   std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
   std::optional<LivePage> page_;
+  std::optional<RunMcap> mcap_;
   bool broken_off_ = false;  ///< an error ended the run
 };
 

@@ -14,6 +14,7 @@
 #include "interrupt.hpp"
 #include "json_text.hpp"
 #include "run.hpp"
+#include "run_archive.hpp"
 #include "run_many.hpp"
 #include "serve_address.hpp"
 
@@ -44,6 +45,9 @@ int run_all(const RunOptions& given, const CLI::App& app) {
   for (const std::string& word : options.more) (is_assignment(word) ? assignments : recordings).push_back(word);
   if (recordings.size() > 1 && !options.map.save.empty())
     throw CLI::ValidationError("--save-map", "is for one recording; each would replace the map of the one before");
+  if (recordings.size() > 1 && !options.archive.empty() && options.archive != kArchiveBeside)
+    throw CLI::ValidationError("--archive",
+                               "is one file, the recordings are several; leave =FILE out for one beside each folder");
   if (recordings.size() > 1 && !options.serve.empty())
     throw CLI::ValidationError("--serve", "shows one run; give one recording (a port is written --serve=PORT)");
   if (recordings.size() > 1)
@@ -82,6 +86,11 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
                     "events (live.*); the "
                     "depth network in a thread of its own; not repeatable to the bit");
+  run_app->add_flag(
+      "--mcap", options->mcap,
+      "Leave results.mcap in the run folder as well: poses, path, map, pictures, numbers for Foxglove, Lichtblick "
+      "and others (10 MB a minute or so)");
+  add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as json");

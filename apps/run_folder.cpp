@@ -31,7 +31,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "report.html",
                                   "trajectory_final.tum",
                                   "keyframes.csv",
-                                  "map.ply"};
+                                  "map.ply",
+                                  "results.mcap"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
@@ -126,16 +127,15 @@ bool claim(const std::filesystem::path& folder) {
   return false;
 }
 
-/// FOLDER-2, also where it is written as FOLDER/ or `.`.
-std::filesystem::path numbered(const std::filesystem::path& folder, int number) {
+}  // namespace
+
+std::filesystem::path beside(const std::filesystem::path& folder, const std::string& suffix) {
   std::filesystem::path plain = folder.lexically_normal();
   if (!plain.has_filename()) plain = plain.parent_path();
   if (plain.empty() || plain.filename() == "." || plain.filename() == "..")
     plain = std::filesystem::weakly_canonical(folder);
-  return plain += fmt::format("-{}", number);
+  return plain += suffix;
 }
-
-}  // namespace
 
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier) {
   if (!may_hold_a_run(wanted))
@@ -146,7 +146,8 @@ std::filesystem::path make_run_folder(const std::filesystem::path& wanted, Earli
     claim(folder);
     return folder;
   }
-  for (int number = 2; !may_hold_a_run(folder) || !claim(folder); ++number) folder = numbered(wanted, number);
+  for (int number = 2; !may_hold_a_run(folder) || !claim(folder); ++number)
+    folder = beside(wanted, fmt::format("-{}", number));
   return folder;
 }
 

@@ -23,6 +23,9 @@ enum class EarlierRun { Keep, Replace };
 /// InputError when the path is something else: a file, or a folder that holds things but no run.
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep);
 
+/// FOLDER with the suffix behind its name, also where it is written as FOLDER/ or `.`
+std::filesystem::path beside(const std::filesystem::path& folder, const std::string& suffix);
+
 /// Replaces the file, at once: whoever reads it or ends the program meanwhile finds the old one or the new one. Throws
 /// InputError when it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& content);

@@ -193,6 +193,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale"] = number_or_null(ln_s ? std::optional(std::exp(ln_s->value)) : std::nullopt);
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
+  if (!s.archive.empty()) json["archive"] = s.archive;
   if (s.map)
     json["map"] = {{"loaded", s.map->loaded}, {"found_s", number_or_null(s.map->found_s)}, {"saved", s.map->saved}};
   json["calibration"] = nlohmann::ordered_json::array();
@@ -243,6 +244,7 @@ std::string to_table(const RunSummary& s) {
                                  : "again: poses are in a frame of their own");
   }
   if (s.map && !s.map->saved.empty()) table += line("map kept", s.map->saved);
+  if (!s.archive.empty()) table += line("archive", s.archive);
   if (s.live) table += live_table(*s.live);
   for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
   return table + verdict_text(s);

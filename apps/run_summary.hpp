@@ -32,6 +32,7 @@ struct LiveSummary {
 
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
+  std::string archive;  ///< file that holds the folder, too; "": none was asked for
   std::optional<int> seed;
   /// "good", "degraded", "not to be trusted" (with a pose to the end, but contradicted), "lost", "never good",
   /// "interrupted" or "broken off" (by an error)

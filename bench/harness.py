@@ -18,6 +18,8 @@ import tarfile
 import threading
 import time
 
+import page
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CACHE = pathlib.Path(os.environ.get("EDGED_CACHE", ROOT / "build"))  # holds a folder of each benchmark
 DEFAULT_PROGRAM = os.environ.get("EDGED", ROOT / "build/release/bin/edged")
@@ -257,3 +259,11 @@ def markdown(rows):
     """Lines of a table whose first row is the head and whose second row holds the alignment."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return ["| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |" for row in rows]
+
+
+def write_table(file, text):
+    """A benchmark's report as Markdown with an html page beside it; with that alone where the file is named so."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    if file.suffix != ".html":
+        file.write_text(text)
+    file.with_suffix(".html").write_text(page.page(text))

@@ -12,10 +12,13 @@ import shutil
 import statistics
 import subprocess
 import sys
+import tarfile
 import tempfile
 import types
 import unittest
 import unittest.mock
+
+from browser import CHROMIUM, Browser
 
 BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
 sys.path.insert(0, str(BENCH))
@@ -253,6 +256,44 @@ class Bench(unittest.TestCase):
         self.assertAlmostEqual(found[1], turn_z, 6)
         self.assertAlmostEqual(explained, 1.0, 6)
 
+    def test_a_table_is_left_as_a_page_too(self):
+        text = ("# Two & more\n\nmeasured by `edged <x>`, **not** [here](a.md):\n\n| name | ATE [mm] |\n| --- | ---: |\n"
+                "| *a* | 3.2 |\n| b | -- |\n\n- one\n  still one\n- two\n\n```bash\nedged | x\n```\n")
+        harness.write_table(self.folder / "new/table.md", text)
+        self.assertEqual((self.folder / "new/table.md").read_text(), text)
+        page = (self.folder / "new/table.html").read_text()
+        for piece in ("<title>Two &amp; more</title>", "<code>edged &lt;x&gt;</code>, <b>not</b> <a href=\"a.md\">here</a>",
+                      '<tr><th>name</th><th class="right">ATE [mm]</th></tr>', '<tr><td><i>a</i></td><td class="right">3.2</td></tr>',
+                      "<li>one\n  still one</li>\n<li>two</li>", "<pre>edged | x\n</pre>"):
+            self.assertIn(piece, page)
+        self.assertNotIn("http", page)
+        harness.write_table(self.folder / "only.html", text)
+        self.assertFalse((self.folder / "only.md").exists())
+
+    def test_a_page_sorts_by_the_column_that_is_clicked(self):
+        if not CHROMIUM:
+            self.skipTest("no chromium")
+        rows = "".join(f"| {name} | {value} |\n" for name, value in (("c", "10"), ("a", "*failed*"), ("b", "9.5 (2)")))
+        harness.write_table(self.folder / "table.html", "| name | ATE |\n| --- | ---: |\n" + rows)
+        tab = Browser(self.folder / "profile")
+        self.addCleanup(tab.close)
+        tab.open((self.folder / "table.html").as_uri())
+        tab.wait_for("document.querySelectorAll('th').length === 2")
+        names = "[...document.querySelectorAll('td:first-child')].map((cell) => cell.textContent).join('')"
+        for column, order in ((1, "bca"), (1, "cba"), (0, "abc"), (0, "cba")):
+            self.assertEqual(tab.value(f"(document.querySelectorAll('th')[{column}].click(), {names})"), order)
+        self.assertEqual(tab.complaints, [])
+
+    def test_figures_packs_the_trajectories_of_this_program(self):
+        cache = self.folder / "sim_1"
+        for run, version in (("mirrors/a", "edged 1 (abc)"), ("mirrors/b", "edged 1 (abc, changed)"), ("flights/c", "edged 1 (abc)")):
+            (cache / run).mkdir(parents=True)
+            (cache / run / "trajectory.tum").write_text(f"# T_W_B\n# {version}, recording x, mode fused\n0 0 0 0 0 0 0 1\n")
+        archive, count = script("figures").pack_trajectories(cache, "edged 1 (abc)")
+        self.assertEqual(count, 2)
+        with tarfile.open(archive) as tar:
+            self.assertEqual(tar.getnames(), ["flights/c/trajectory.tum", "mirrors/a/trajectory.tum"])
+
     def test_a_run_that_was_interrupted_is_run_again(self):
         (self.folder / "metrics.json").write_text('{"status": "interrupted"}')
         with unittest.mock.patch.object(harness, "estimate", return_value={"status": "good"}) as estimate:
@@ -284,6 +325,7 @@ class Bench(unittest.TestCase):
         self.assertIn("| line ", result.stdout)
         self.assertIn("| Failures ", result.stdout)
         self.assertEqual((self.folder / "table.md").read_text(), result.stdout)
+        self.assertIn("<td>line</td>", (self.folder / "table.html").read_text())
 
 
 if __name__ == "__main__":

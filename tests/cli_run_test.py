@@ -11,6 +11,7 @@ import signal
 import subprocess
 import time
 import unittest
+import zipfile
 
 from program import EDGED, WithFlight, edged
 
@@ -111,7 +112,7 @@ class Run(WithFlight):
     def test_several_recordings_run_side_by_side_and_end_with_a_table(self):
         damaged = self.changed("events.txt", lambda text: text + "x" * 2_000_000)
         call = ("run", self.flight, damaged, "sim:room:2", "--duration", 6, "--jobs", 2, "--out", self.folder / "runs", "--mode",
-                "events", "estimator.keyframes=6")
+                "events", "--archive", "estimator.keyframes=6")
         result = edged(*call)
         self.assertEqual(result.returncode, 3, result.stderr)
         lines = result.stdout.splitlines()
@@ -121,6 +122,7 @@ class Run(WithFlight):
         self.assertRegex(lines[2], r"^changed +error +- +- +-$")
         self.assertIn("changed: edged: ", result.stderr)
         for name in ("flight", "sim_room_2"):
+            self.assert_archived(self.folder / "runs" / name)
             self.assertIn("keyframes: 6 ", (self.folder / "runs" / name / "config_resolved.yaml").read_text())
         alone = self.folder / "alone"
         edged("run", self.flight, "--duration", 6, "--mode", "events", "estimator.keyframes=6", "--out", alone, "--quiet")
@@ -137,8 +139,10 @@ class Run(WithFlight):
     def test_without_a_good_pose_the_code_is_4(self):
         flight = self.folder / "short"
         edged("simulate", "--duration", "0.2", "--out", flight, "--quiet")
-        result = edged("run", flight, "--out", self.folder / "run", "--json", "--quiet")
+        result = edged("run", flight, "--out", self.folder / "run", "--json", "--quiet", "--archive")
         self.assertEqual(result.returncode, 4, result.stderr)
+        self.assert_archived(self.folder / "run")
+        self.assertEqual(json.loads(result.stdout)["archive"], str(self.folder / "run.zip"))
         self.assertIsNone(json.loads(result.stdout)["ate_rmse_m"])
         self.assertIsNone(json.loads(result.stdout)["local_error_3s_m"])
         self.assertEqual(json.loads(result.stdout)["status"], "never good")
@@ -148,7 +152,8 @@ class Run(WithFlight):
         shutil.copytree(self.flight, damaged)
         with open(damaged / "events.txt", "a", encoding="ascii") as events:
             events.write("x" * 2_000_000)
-        self.assert_refused(edged("run", damaged, "--out", out, "--quiet"), "events.txt")
+        self.assert_refused(edged("run", damaged, "--out", out, "--quiet", "--archive"), "events.txt")
+        self.assert_archived(out)
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(metrics["status"], "broken off")
         self.assertGreater(metrics["poses"], 0)
@@ -222,7 +227,8 @@ class Run(WithFlight):
     def test_ctrl_c_and_a_terminal_that_is_closed_leave_complete_files(self):
         for ending, code in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
             out = self.folder / f"run_{code}"
-            process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet"], stdout=subprocess.DEVNULL)
+            process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet", "--mcap", "--archive"],
+                                       stdout=subprocess.DEVNULL)
             while not (out / "run.log").exists() and process.poll() is None:
                 time.sleep(0.02)
             time.sleep(0.5)
@@ -230,6 +236,28 @@ class Run(WithFlight):
             self.assertEqual(process.wait(timeout=60), code)
             self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")
             self.assertTrue((out / "states.csv").read_text().endswith("\n"))
+            self.assertTrue((out / "results.mcap").read_bytes().endswith(b"\x89MCAP0\r\n"))
+            self.assert_archived(out)
+
+    def assert_archived(self, out):
+        """The archive beside the folder holds all of it."""
+        with zipfile.ZipFile(f"{out}.zip") as archive:
+            self.assertEqual({name: archive.read(name) for name in archive.namelist()},
+                             {f"{out.name}/{file.name}": file.read_bytes() for file in out.iterdir()})
+
+    def test_an_archive_that_cannot_be_written_is_refused_before_the_run(self):
+        out, there = self.folder / "run", self.folder / "there.zip"
+        there.write_text("of somebody")
+        piece = ("run", self.flight, "--duration", 0.3, "--quiet", "--out", out)
+        self.assert_refused(edged(*piece, f"--archive={there}"), str(there), "is there already", "--force")
+        self.assert_refused(edged(*piece, f"--archive={self.folder}"), "is a folder")
+        self.assert_refused(edged(*piece, f"--archive={self.folder}/none/a.zip"), "none/a.zip: cannot be written")
+        self.assert_refused(edged("run", self.flight, self.flight, f"--archive={there}"), "--archive", "beside each folder", code=2)
+        self.assertEqual(there.read_text(), "of somebody")
+        self.assertFalse(out.exists())
+        edged(*piece, f"--archive={there}", "--force")
+        with zipfile.ZipFile(there) as archive:
+            self.assertIn("run/report.html", archive.namelist())
 
     def test_a_full_disk_is_told_in_one_line(self):
         # Files of at most 20 kB stand for it.

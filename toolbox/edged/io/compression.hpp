@@ -28,4 +28,10 @@ bool decompress_zstd_file(const std::filesystem::path& packed, const std::filesy
 /// checksum). Throws Damage for another method.
 std::string compress(std::string_view method, std::string_view bytes);
 
+/// How messages are put together to chunks.
+struct ChunkOptions {
+  std::string_view compression;    ///< as in compress(); which ones a container knows is its own matter
+  std::size_t bytes = 768 * 1024;  ///< a chunk is closed when its records are longer
+};
+
 }  // namespace edged

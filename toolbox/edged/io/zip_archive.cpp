@@ -47,18 +47,21 @@ class ZipSource final : public ByteSource {
 
 }  // namespace
 
+std::string zip_reason(int error) {
+  zip_error_t text;
+  zip_error_init_with_code(&text, error);
+  const std::string reason = zip_error_strerror(&text);
+  zip_error_fini(&text);
+  return reason;
+}
+
 ZipArchive::ZipArchive(const fs::path& file) : file_(file) {
   int error = 0;
   zip_t* archive = zip_open(file.c_str(), ZIP_RDONLY, &error);
-  if (!archive) {
-    zip_error_t text;
-    zip_error_init_with_code(&text, error);
-    const std::string reason = zip_error_strerror(&text);
-    zip_error_fini(&text);
+  if (!archive)
     throw InputError::format(
         "{}: cannot be read as a zip archive ({}): is it complete? Unpack it, or mend it (zip -FF)", file.string(),
-        reason);
-  }
+        zip_reason(error));
   zip_.reset(archive, zip_discard);
   const zip_int64_t count = zip_get_num_entries(archive, 0);
   for (zip_int64_t i = 0; i < count; ++i) {

@@ -36,6 +36,9 @@ class ZipArchive {
   std::map<std::string, std::uint64_t> entries_;  ///< path to number, of files
 };
 
+/// What libzip says of an error by its number.
+std::string zip_reason(int error);
+
 /// From the first bytes of a file.
 bool is_zip(ByteSpan head);
 

@@ -110,6 +110,25 @@ TEST(BagContainer, ARos1BagThatWasNeverFinishedIsReadThrough) {
   EXPECT_EQ(r.dataset->repairs(), (std::map<std::string, std::size_t>{{"bag: no index", 1}}));
 }
 
+TEST(BagContainer, AnMcapWithOtherTopicsGivesThoseOfRosWithoutComplaint) {
+  TempFolder folder;
+  const SmallBag bag(Wire::Cdr);
+  const fs::path file = folder.path() / "mixed.mcap";
+  McapWriter writer(file, "");
+  const std::size_t other = writer.add_topic({"/camera", "json", "sensor_msgs/Image", "jsonschema", "{}"});
+  for (const TestTopic& topic : bag.topics) {
+    const std::size_t id = writer.add_topic({topic.name, "cdr", topic.type, "ros2msg", topic.definition.text});
+    for (const auto& [t, message] : topic.messages) writer.write(id, t, message), writer.write(other, t, "{}");
+  }
+  writer.write_metadata("of", {{"no", "interest"}});
+  writer.finish();
+  const Recording r = open_recording(file);
+  const Contents c = read_all(*r.dataset);
+  EXPECT_TRUE(c.events == bag.events);
+  EXPECT_EQ(c.frames.size(), 8u);
+  EXPECT_TRUE(r.dataset->repairs().empty());
+}
+
 TEST(BagContainer, AnMcapWithoutItsSummaryIsReadThrough) {
   TempFolder folder;
   const SmallBag bag(Wire::Cdr);
@@ -192,7 +211,7 @@ TEST(BagFolder, GivesItsFilesInTheOrderOfTheirNumbers) {
     for (std::size_t p = 0; p < 3; ++p) {
       const fs::path file = folder.path() / (names[p].string() + extension);
       if (extension == std::string(".mcap")) {
-        McapWriter writer(file);
+        McapSink writer(file);
         write_bag(file, writer, parts[p]);
       } else {
         Db3Writer writer(file);

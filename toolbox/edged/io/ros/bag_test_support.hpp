@@ -14,7 +14,7 @@
 
 #include "edged/io/compression.hpp"
 #include "edged/io/ros/bag_writer.hpp"
-#include "edged/io/ros/mcap_writer.hpp"
+#include "edged/io/ros/mcap_sink.hpp"
 #include "edged/io/ros/wire_writer.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -80,9 +80,9 @@ std::unique_ptr<MessageSink> make_chunked(const std::filesystem::path& file, std
 inline const BagContainer kBagContainers[] = {
     {"ros1", ".bag", [](const auto& file) { return make_chunked<BagWriter>(file, "none"); }},
     {"ros1_lz4", ".bag", [](const auto& file) { return make_chunked<BagWriter>(file, "lz4"); }},
-    {"mcap", ".mcap", [](const auto& file) { return make_chunked<McapWriter>(file, ""); }},
-    {"mcap_lz4", ".mcap", [](const auto& file) { return make_chunked<McapWriter>(file, "lz4"); }},
-    {"mcap_zstd", ".mcap", [](const auto& file) { return make_chunked<McapWriter>(file, "zstd"); }},
+    {"mcap", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, ""); }},
+    {"mcap_lz4", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, "lz4"); }},
+    {"mcap_zstd", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, "zstd"); }},
     {"db3", ".db3", [](const auto& file) -> std::unique_ptr<MessageSink> { return std::make_unique<Db3Writer>(file); }},
     {"db3_zstd_messages", ".db3",
      [](const auto& file) -> std::unique_ptr<MessageSink> { return std::make_unique<Db3Writer>(file, "zstd"); }},

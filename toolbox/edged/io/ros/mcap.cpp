@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "edged/io/compression.hpp"
-#include "edged/io/ros/mcap_format.hpp"
+#include "edged/io/mcap_format.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -66,8 +66,8 @@ void Mcap::take_statistics(ByteReader& record) {
   extend(mcap_time(record));
   for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
     const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-    if (channel == topic_of_channel_.end()) throw Damage("unknown channel");
-    count_messages(channel->second, record.number<std::uint64_t>());
+    const auto count = record.number<std::uint64_t>();
+    if (channel != topic_of_channel_.end()) count_messages(channel->second, count);
   }
 }
 
@@ -122,7 +122,7 @@ std::optional<Message> Mcap::take_message() {
   record.take(4);  // sequence
   const Timestamp t = mcap_time(record);
   record.take(8);                                               // when it was published
-  if (channel == topic_of_channel_.end()) return std::nullopt;  // no ROS message
+  if (channel == topic_of_channel_.end()) return std::nullopt;  // of no known type
   extend(t);
   return Message{channel->second, record.take(record.left())};
 }
@@ -139,10 +139,11 @@ bool Mcap::take_description(std::uint8_t op, ByteReader& record) {
   const auto id = record.number<std::uint16_t>();
   const auto schema = schemas_.find(record.number<std::uint16_t>());
   const std::string_view topic = mcap_text(record), encoding = mcap_text(record);
-  if (schema == schemas_.end() || (encoding != "cdr" && encoding != "ros1") || topic_of_channel_.contains(id))
-    return true;
-  wire_ = encoding == "ros1" ? Wire::Ros1 : Wire::Cdr;
-  topic_of_channel_[id] = describe_topic(topic, schema->second.type, schema->second.definition);
+  if (schema == schemas_.end() || topic_of_channel_.contains(id)) return true;
+  const auto& [type, definition] = schema->second;
+  if (encoding == "ros1") wire_ = Wire::Ros1;
+  const bool ros = encoding == "cdr" || encoding == "ros1";
+  topic_of_channel_[id] = describe_topic(topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
   return true;
 }
 

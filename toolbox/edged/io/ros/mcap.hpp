@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// MCAP files with ROS 2 messages.
+// The messages of MCAP files: those of ROS, and topics of others by name.
 #pragma once
 
 #include <map>

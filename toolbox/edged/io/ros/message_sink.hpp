@@ -25,10 +25,4 @@ class MessageSink {
   virtual void finish() = 0;
 };
 
-/// How messages are put together to chunks.
-struct ChunkOptions {
-  std::string_view compression;    ///< as in compress(); which ones a container knows is its own matter
-  std::size_t bytes = 768 * 1024;  ///< a chunk is closed when its records are longer
-};
-
 }  // namespace edged

@@ -4,12 +4,12 @@
 #include "edged/io/ros/open_messages.hpp"
 
 #include "edged/core/check.hpp"
+#include "edged/io/mcap_format.hpp"
 #include "edged/io/ros/bag.hpp"
 #include "edged/io/ros/bag_folder.hpp"
 #include "edged/io/ros/bag_format.hpp"
 #include "edged/io/ros/db3.hpp"
 #include "edged/io/ros/mcap.hpp"
-#include "edged/io/ros/mcap_format.hpp"
 #include "edged/io/ros/unpacked_source.hpp"
 
 namespace edged {

@@ -8,7 +8,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag_writer.hpp"
 #include "edged/io/ros/definitions.hpp"
-#include "edged/io/ros/mcap_writer.hpp"
+#include "edged/io/ros/mcap_sink.hpp"
 #include "edged/io/ros/wire_writer.hpp"
 #include "edged/io/text.hpp"
 
@@ -114,7 +114,7 @@ std::unique_ptr<RecordingWriter> write_ros1_bag(const WriterSetup& setup) {
 }
 
 std::unique_ptr<RecordingWriter> write_mcap(const WriterSetup& setup) {
-  return std::make_unique<RosWriter>(setup, std::make_unique<McapWriter>(setup.path));
+  return std::make_unique<RosWriter>(setup, std::make_unique<McapSink>(setup.path));
 }
 
 }  // namespace edged

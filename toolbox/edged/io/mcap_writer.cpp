@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The records of an MCAP file, with a summary that tells what is where.
-#include "edged/io/ros/mcap_writer.hpp"
+#include "edged/io/mcap_writer.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "edged/io/compression.hpp"
-#include "edged/io/ros/mcap_format.hpp"
+#include "edged/io/mcap_format.hpp"
 
 namespace edged {
 namespace {
@@ -29,28 +28,26 @@ std::uint64_t mcap_stamp(Timestamp t) { return static_cast<std::uint64_t>(std::m
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& file, const ChunkOptions& options)
+McapWriter::McapWriter(const std::filesystem::path& file, std::string_view profile, const ChunkOptions& options)
     : file_(file), options_(options) {
   file_.write(kMcapMagic);
   std::string header;
-  put_text(header, "ros2");
+  put_text(header, profile);
   put_text(header, "edged");
   file_.write(mcap_record(kMcapHeader, header));
 }
 
-std::size_t McapWriter::add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) {
+std::size_t McapWriter::add_topic(const McapTopic& topic) {
   const auto id = static_cast<std::uint16_t>(channels_.size());
-  std::string long_type(type);
-  long_type.insert(long_type.find('/'), "/msg");
   std::string schema, channel;
   append_number<std::uint16_t>(schema, id + 1);  // zero means that there is none
-  put_text(schema, long_type);
-  put_text(schema, "ros2msg");
-  put_text(schema, definition.text);
+  put_text(schema, topic.type);
+  put_text(schema, topic.type_encoding);
+  put_text(schema, topic.type_text);
   append_number(channel, id);
   append_number<std::uint16_t>(channel, id + 1);
-  put_text(channel, name);
-  put_text(channel, "cdr");
+  put_text(channel, topic.name);
+  put_text(channel, topic.encoding);
   append_number<std::uint32_t>(channel, 0);  // no further properties
   channels_.push_back({mcap_record(kMcapSchema, schema), mcap_record(kMcapChannel, channel)});
   return id;
@@ -72,6 +69,19 @@ void McapWriter::write(std::size_t topic, Timestamp t, std::string_view message)
   content += message;
   chunk_ += mcap_record(kMcapMessage, content);
   if (chunk_.size() >= options_.bytes) close_chunk();
+}
+
+void McapWriter::write_metadata(std::string_view name, const std::map<std::string, std::string>& values) {
+  std::string pairs, content, index;
+  for (const auto& [key, value] : values) put_text(pairs, key), put_text(pairs, value);
+  put_text(content, name);
+  put_text(content, pairs);
+  const std::string record = mcap_record(kMcapMetadata, content);
+  append_number(index, file_.size());
+  append_number<std::uint64_t>(index, record.size());
+  put_text(index, name);
+  metadata_index_.push_back(mcap_record(kMcapMetadataIndex, index));
+  file_.write(record);
 }
 
 void McapWriter::close_chunk() {
@@ -127,7 +137,7 @@ std::string McapWriter::statistics() const {
   append_number(content, static_cast<std::uint16_t>(channels_.size()));  // schemas
   append_number(content, static_cast<std::uint32_t>(channels_.size()));
   append_number<std::uint32_t>(content, 0);  // attachments
-  append_number<std::uint32_t>(content, 0);  // metadata
+  append_number(content, static_cast<std::uint32_t>(metadata_index_.size()));
   append_number(content, static_cast<std::uint32_t>(chunks_.size()));
   append_number(content, chunks_.empty() ? 0 : begin);
   append_number(content, end);
@@ -167,6 +177,7 @@ void McapWriter::finish() {
   for (const Channel& channel : channels_) file_.write(channel.channel);
   file_.write(statistics());
   for (const ChunkInfo& chunk : chunks_) file_.write(chunk_index(chunk));
+  for (const std::string& record : metadata_index_) file_.write(record);
   std::string footer;
   append_number(footer, summary);
   append_number<std::uint64_t>(footer, 0);  // no list of the summary's parts

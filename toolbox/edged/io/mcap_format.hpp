@@ -20,6 +20,8 @@ enum McapOp : std::uint8_t {
   kMcapMessageIndex = 7,
   kMcapChunkIndex = 8,
   kMcapStatistics = 0x0B,
+  kMcapMetadata = 0x0C,
+  kMcapMetadataIndex = 0x0D,
   kMcapDataEnd = 0x0F
 };
 

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// However many come, a bounded number of them, evenly over all.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace edged {
+
+template <typename T>
+class Evenly {
+ public:
+  explicit Evenly(std::size_t most) : most_(most) {}
+
+  /// True where this thinned out those that there were.
+  bool add(const T& value) {
+    if (seen_++ % stride_ != 0) return false;
+    kept_.push_back(value);
+    if (kept_.size() < most_) return false;
+    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+    kept_.resize((kept_.size() + 1) / 2);
+    stride_ *= 2;
+    return true;
+  }
+
+  const std::vector<T>& all() const { return kept_; }
+
+ private:
+  std::size_t most_, seen_ = 0, stride_ = 1;
+  std::vector<T> kept_;
+};
+
+}  // namespace edged

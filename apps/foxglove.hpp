@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Messages as Foxglove and the tools that follow it know them, in json, and what json schema says of each.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
+
+namespace edged::foxglove {
+
+using Json = nlohmann::ordered_json;
+using Point = std::array<float, 3>;
+
+/// By the name of the message: "foxglove.PoseInFrame", or "edged.Stats", which is ours.
+std::string schema_of(std::string_view type);
+
+// A time before zero becomes zero; lengths in metres.
+
+struct Transform {
+  const char* parent;
+  std::string child;
+  SE3 T_parent_child;
+};
+Json frame_transforms(Timestamp t, const std::vector<Transform>& transforms);
+Json pose_in_frame(Timestamp t, const char* frame, const SE3& T);
+Json poses_in_frame(Timestamp t, const char* frame, std::span<const StampedPose> poses);
+Json point_cloud(Timestamp t, const char* frame, std::span<const Point> points);
+
+struct Lines {
+  std::string id;  ///< takes the place of what was shown under it
+  std::vector<Point> points;
+  std::vector<unsigned> pairs;  ///< which of them are joined, two by two; none: all in a row
+  std::array<double, 4> colour;
+};
+Json scene_update(Timestamp t, const char* frame, const Lines& lines);
+
+Json compressed_image(Timestamp t, const std::string& camera, const std::vector<unsigned char>& jpeg);
+/// Of images that are made smaller by `scale`; without distortion where they have none any more.
+Json camera_calibration(Timestamp t, const RigCamera& camera, bool distorted, double scale);
+
+enum class Level { Info = 2, Warning = 3, Error = 4 };
+Json log(Timestamp t, Level level, const std::string& message);
+
+/// What a step tells in numbers.
+Json stats(const Step& step);
+
+}  // namespace edged::foxglove
