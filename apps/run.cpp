@@ -97,6 +97,7 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
   spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
   spdlog::info("{}", describe(source_.calibration));
   writer_.emplace(folder_, frame_, headed("causal: each as it was known at its time"));
+  pace_writer_.emplace(folder_);
 }
 
 /// Comments at the head of a trajectory file.
@@ -113,13 +114,15 @@ void Run::check(const Measurement& measurement) {
 }
 
 void Run::observe(const Step& step) {
-  if (live_) live_->note_result(step.t);
+  pace_.processing_ms = 1e3 * odometry_.timings().find("process")->last_s();
+  if (live_) pace_.latency_ms = 1e3 * live_->note_result(step.t);
   log_changes(step);
   map_.observe(step, odometry_);
   {
     const auto timer = program_timings_.measure("write");
     statistics_.add(step);
     writer_->add(step);
+    pace_writer_->add(step.t, pace_);
     moment_.consider(step);
     album_.add(step);
   }
