@@ -37,7 +37,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
-    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_survival,frame_survival,map_found,map_reach_s,event_rate_hz,scene_depth_m,"
+    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_survival,frame_survival,map_found,map_"
+    "reach_s,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
     "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostChangesShown = 300;
 struct StatusChange {
   Timestamp t;
   TrackingStatus status;
-  std::string reason;  ///< what was missing last, while it lasts; "" where there is nothing to say
+  std::string reason;        ///< what was missing last, while it lasts; "" where there is nothing to say
   bool found_again = false;  ///< in the map; the status may have been this before
 };
 

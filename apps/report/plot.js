@@ -11,6 +11,7 @@ class TimeGroup {
     this.plots = [];
     this.listeners = [];
     this.spans = [];  // of time, shaded: [{from, to, colour}]
+    this.marks = [];  // of time, an upright line each
     this.pending = false;
   }
   zoom(begin, end) {
@@ -167,6 +168,8 @@ class TimePlot {
       if (to > from) context.fillRect(from, 4, to - from, bottom - 4);
       context.globalAlpha = 1;
     }
+    context.fillStyle = colour('accent');
+    for (const t of this.group.marks) if (t >= a && t <= b) context.fillRect(this.xOf(t) - 1, 4, 2, bottom - 4);
     context.font = '11px system-ui, "DejaVu Sans", sans-serif';
     context.fillStyle = colour('soft');
     context.strokeStyle = colour('grid');
