@@ -91,8 +91,8 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
        {step.keyframe ? 1.0 : 0.0, static_cast<double>(step.event_tracks.size()),
         static_cast<double>(step.frame_tracks.size()), static_cast<double>(step.landmarks.size()),
         step.event_survival.value_or(kUnknown), step.frame_survival.value_or(kUnknown),
-        static_cast<double>(step.found.size()), map_reach_s(step).value_or(kUnknown), step.event_rate_hz,
-        step.scene_depth, pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
+        step.found.empty() ? kUnknown : static_cast<double>(step.found.size()), map_reach_s(step).value_or(kUnknown),
+        step.event_rate_hz, step.scene_depth, pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
     *value++ = number;
   const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
   put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());

@@ -12,6 +12,7 @@
 #include "json_text.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
+#include "report_path.hpp"
 #include "run_hindsight.hpp"
 #include "serve_address.hpp"
 #include "version.hpp"
@@ -65,6 +66,17 @@ std::string run_status(const RunStatistics& statistics, const Verdict& verdict) 
       return "lost, initializing again";
   }
   EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
+}
+
+/// In a line; empty where nothing is.
+std::string what_is_wrong(const RunSummary& summary) {
+  const auto error = std::ranges::find(summary.verdict.findings, Severity::Error, &Finding::severity);
+  const std::string because = error != summary.verdict.findings.end() ? error->text : summary.verdict.waiting_for;
+  const double silent_s = summary.consistency ? summary.consistency->silent_s() : 0.0;
+  if (!summary.verdict.trusted)
+    return because.starts_with(summary.status) ? because : fmt::format("{}: {}", summary.status, because);
+  if (silent_s > 0.0) return fmt::format("farther off than it says for {:.1f} s", silent_s);
+  return summary.statistics.times_lost() > 0 ? fmt::format("lost {} times", summary.statistics.times_lost()) : "";
 }
 
 }  // namespace
@@ -253,17 +265,19 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
                          const std::optional<GroundTruth>& truth) const {
   OverviewContent content;
   content.title = fmt::format("{}, {}", summary.recording, summary.mode);
+  content.wrong = what_is_wrong(summary);
   content.moment = moment_;
-  content.estimate = body;
-  if (summary.evaluation) {
-    const Evaluation& e = *summary.evaluation;
+  content.changes = album_.changes();
+  content.end = album_.last();
+  ReportPath path = lay_onto_truth(body, {}, source_.calibration.rig, frame_.name(), truth, {});
+  const Duration clock = body.empty() ? Duration(0) : path.shown.front().t - path.body.front().t;  // of that sensor
+  for (StatusChange& change : content.changes) change.t += clock;
+  content.estimate = std::move(path.shown);
+  content.truth = std::move(path.true_path);
+  if (path.evaluation) {
+    const Evaluation& e = *path.evaluation;
     content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
-    content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(body);
-    for (const StampedPose& pose : truth->trajectory) {
-      if (pose.t >= content.estimate.front().t && pose.t <= content.estimate.back().t) {
-        content.truth.push_back({pose.t, e.alignment.T.inverse() * pose.T});
-      }
-    }
+    content.error_m = std::move(path.error_m);
   }
   std::vector<unsigned char> png;
   cv::imencode(".png", draw_overview(content), png);

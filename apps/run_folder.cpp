@@ -78,7 +78,7 @@ std::string state_line(const Step& step) {
   for (const std::optional<double>& number : {step.event_survival, step.frame_survival})
     line += number ? fmt::format(",{}", *number) : ",";
   const std::optional<double> reach_s = map_reach_s(step);
-  line += fmt::format(",{},{}", step.found.size(), reach_s ? fmt::format("{}", *reach_s) : "");
+  line += reach_s ? fmt::format(",{},{}", step.found.size(), *reach_s) : ",,";
   line += fmt::format(",{},{}", step.event_rate_hz, step.scene_depth);
   const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";

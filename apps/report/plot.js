@@ -63,7 +63,7 @@ class TimeGroup {
   }
 }
 
-/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, dash, band: {low, high}}]. */
+/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, dash, dots, band: {low, high}}]. */
 class TimePlot {
   constructor(group, spec, parent) {
     this.group = group;
@@ -208,6 +208,11 @@ class TimePlot {
       for (let i = last; i >= first; --i) context.lineTo(this.xOf(series.t[i]), yOf(series.band.low[i] ?? 0));
       context.fill();
       context.globalAlpha = 1;
+    }
+    if (series.dots) {
+      context.fillStyle = ink;
+      for (let i = first; i <= last; ++i) if (series.y[i] !== null) context.fillRect(this.xOf(series.t[i]) - 1, yOf(series.y[i]) - 1, 2.5, 2.5);
+      return;
     }
     context.strokeStyle = ink;
     context.lineWidth = series.dash ? 1.4 : 1.6;

@@ -16,7 +16,7 @@ function columnPlot(parent, title, unit, key, more) {
     }
     if (!rows[key] || !(run.live || rows[key].some(value => value !== null))) return;
     if (about(run) && about(run).mode === (more && more.notIn)) return;
-    series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i)});
+    series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i), dots: more && more.dots});
   });
   if (!series.length) return;
   if (truth) series.unshift(truth);
@@ -79,8 +79,8 @@ function plotSection() {
   columnPlot(seen, 'event rate', '1/s', 'event_rate', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'scene depth', 'm', 'depth', {zero: true});
   const map = group('Map: what is seen again after it has left the window');
-  columnPlot(map, 'points found again', '', 'map_found', {zero: true});
-  columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true});
+  columnPlot(map, 'points found again', '', 'map_found', {zero: true, dots: true});
+  columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true, dots: true});
   const pace = group('Time that a packet takes');
   columnPlot(pace, 'processing', 'ms', 'processing', {zero: true});
   columnPlot(pace, 'latency', 'ms', 'latency', {zero: true});
