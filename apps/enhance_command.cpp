@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,7 @@
 #include "edged/io/text.hpp"
 #include "edged/odometry.hpp"
 #include "exit_code.hpp"
+#include "json_text.hpp"
 #include "picture_file.hpp"
 #include "run_mode.hpp"
 #include "source.hpp"
@@ -36,7 +38,7 @@ struct EnhanceOptions {
   ConfigSource config;
   double at_s = 0.0;
   std::filesystem::path out;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 /// What the odometry had in hand at one packet; without IMU or calibration what the recording alone gives.
@@ -283,7 +285,13 @@ int run_enhance(const EnhanceOptions& options) {
   }
   const std::vector<std::string> lines = title(options, moment, config.enhance);
   write_picture(options.out / "sheet.png", draw_contact_sheet(lines, rows));
-  fmt::print("{}\n{}: sheet.png and every step by itself\n", lines.front(), options.out.string());
+  const nlohmann::ordered_json json = {{"out", options.out.string()},
+                                       {"pictures", number},
+                                       {"events", moment.step.drawn},
+                                       {"drawn_how", moment.drawn_how}};
+  fmt::print("{}\n", options.json ? json_text(json)
+                                  : fmt::format("{}\n{}: sheet.png and every step by itself", lines.front(),
+                                                options.out.string()));
   return kExitOk;
 }
 
@@ -300,6 +308,7 @@ void add_enhance_command(CLI::App& app, std::function<int()>& chosen) {
   enhance->add_option("--out", options->out, "Folder for sheet.png and one picture per step")->required();
   add_config_options(*enhance, options->config);
   enhance->add_flag("--quiet", options->quiet, "No status line");
+  enhance->add_flag("--json", options->json, "Print what was made as json");
   enhance->footer(
       "Example:\n  edged enhance sim:room --at 5 --out /tmp/steps --set enhance.clahe_clip=4 --set "
       "expert.enhance.erosion_px=3");

@@ -46,7 +46,7 @@ struct ShowOptions {
 /// What has been shown, for the one who asked.
 struct Shown {
   std::size_t pictures = 0, frames = 0, every = 1;
-  std::optional<Timestamp> stopped_at;  ///< the end of the last picture, where there would have been more
+  std::optional<double> stopped_after_s;  ///< since the first picture, where there would have been more
 };
 
 /// Reads it through, or until `on_picture` has enough.
@@ -85,12 +85,14 @@ Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sens
   make_picture_folder(options.out);
   std::string table = "file,begin_ns,end_ns,events,frame\n", frame_file;
   std::optional<Frame> newest;
+  Timestamp begin;
   Shown shown;
   Reader(options, dataset, sensor, 1)
       .go([&](const Frame& frame) { newest = frame; },
           [&](const EventPicture& picture) {
+            if (shown.pictures == 0) begin = picture.begin;
             if (shown.pictures == options.max_pictures) {
-              shown.stopped_at = picture.begin;
+              shown.stopped_after_s = to_seconds(picture.begin - begin);
               return false;
             }
             if (newest) {
@@ -133,9 +135,9 @@ Shown write_page(const ShowOptions& options, Dataset& dataset, cv::Size sensor) 
 
 void print_shown(const ShowOptions& options, const Shown& shown, const std::map<std::string, std::size_t>& repairs) {
   if (options.json) {
-    const nlohmann::ordered_json json = {{"out", options.out.string()},   {"pictures", shown.pictures},
-                                         {"frames", shown.frames},        {"every", shown.every},
-                                         {"complete", !shown.stopped_at}, {"repairs", repairs}};
+    const nlohmann::ordered_json json = {
+        {"out", options.out.string()}, {"pictures", shown.pictures},         {"frames", shown.frames},
+        {"every", shown.every},        {"complete", !shown.stopped_after_s}, {"repairs", repairs}};
     fmt::print("{}\n", json_text(json));
     return;
   }
@@ -143,12 +145,12 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
   if (shown.every > 1)
     fmt::print("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
                shown.every, options.max_mb);
-  if (shown.stopped_at)
-    fmt::print("stopped at stamp {:.3f} s after {} pictures; --max-pictures allows more, --start begins later\n",
-               to_seconds(*shown.stopped_at), shown.pictures);
+  if (shown.stopped_after_s)
+    fmt::print("stopped there; --max-pictures allows more, --start {:.3f} goes on\n",
+               options.source.piece.from_s + *shown.stopped_after_s);
 }
 
-int run_show(const ShowOptions& options) {
+int show_recording(const ShowOptions& options) {
   catch_interrupts();
   const Recording recording = open_uncalibrated(options.source);
   Dataset& dataset = *recording.dataset;
@@ -194,7 +196,7 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged show flight.raw --out flight.html\n"
       "  edged show flight.bag --start 20 --duration 5 --window 0.005 --out piece.html\n"
       "  edged show events.txt --geometry 240x180 --events 20000 --style counts --out pictures");
-  show->callback([options, &chosen] { chosen = [options] { return run_show(*options); }; });
+  show->callback([options, &chosen] { chosen = [options] { return show_recording(*options); }; });
 }
 
 }  // namespace edged
