@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr cv::Size kSmallSensor(6, 4);
+const cv::Size kSmallSensor(6, 4);
 
 Event event_at_ms(int ms, int x, int y, bool positive = true) {
   return {Timestamp(std::chrono::milliseconds(ms)), static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
