@@ -12,7 +12,7 @@ namespace edged {
 namespace {
 
 std::string survey_line(std::string_view name, const std::string& value) {
-  return wrapped(fmt::format("{:<15} {}", name, value), 16) + '\n';
+  return fmt::format("{:<15} {}\n", name, value);
 }
 
 std::string size_text(cv::Size size) {
@@ -189,8 +189,8 @@ std::string to_text(const std::vector<Finding>& findings) {
   for (const Severity severity : {Severity::Good, Severity::Note, Severity::Warning, Severity::Error})
     for (const Finding& finding : findings) {
       if (finding.severity != severity) continue;
-      text += wrapped(fmt::format("{:<8} {}", name_of(severity), finding.text), 9) + '\n';
-      if (!finding.remedy.empty()) text += wrapped(fmt::format("{:<8}   -> {}", "", finding.remedy), 14) + '\n';
+      text += fmt::format("{:<8} {}\n", name_of(severity), finding.text);
+      if (!finding.remedy.empty()) text += fmt::format("{:<8}   -> {}\n", "", finding.remedy);
     }
   const auto count = [&](Severity severity) { return std::ranges::count(findings, severity, &Finding::severity); };
   return text + fmt::format("{} errors, {} warnings\n", count(Severity::Error), count(Severity::Warning));
