@@ -10,8 +10,9 @@ namespace edged {
 
 inline const cv::Scalar kPaper(255, 255, 255), kInk(60, 50, 40);  // blue, green, red
 
-inline void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size = 0.45) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
+inline void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size = 0.45,
+                     const cv::Scalar& ink = kInk) {
+  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, ink, 1, cv::LINE_AA);
 }
 
 }  // namespace edged

@@ -3,10 +3,11 @@
 #include "enhance_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@
 #include "edged/io/text.hpp"
 #include "edged/odometry.hpp"
 #include "exit_code.hpp"
+#include "json_text.hpp"
+#include "picture_file.hpp"
 #include "run_mode.hpp"
 #include "source.hpp"
 #include "status_line.hpp"
@@ -35,17 +38,32 @@ struct EnhanceOptions {
   ConfigSource config;
   double at_s = 0.0;
   std::filesystem::path out;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
-/// What the odometry had in hand at one packet.
+/// What the odometry had in hand at one packet; without IMU or calibration what the recording alone gives.
 struct Moment {
   Step step;
-  cv::Mat uncompensated;  ///< the events of its event frame where they fell, undistorted
+  cv::Mat uncompensated;  ///< the events of its event frame where they fell, undistorted; empty where that is no other
   cv::Mat frame;          ///< the newest standard frame; empty where there is none
+  std::string drawn_how;  ///< its event frame
 };
 
 Mode enhance_mode(const Source& source) { return source.dataset->info().has_frames ? Mode::Fused : Mode::Events; }
+
+/// Refuses a time after the end, once begin and end are known.
+void refuse_outside(const EnhanceOptions& options, std::optional<Timestamp> begin, std::optional<Timestamp> end) {
+  if (!begin || !end || to_seconds(*end - *begin) >= options.at_s) return;
+  throw InputError::format("{}: --at {} is outside the recording: give seconds from its start, 0 to {:.3f}",
+                           options.source.recording, options.at_s, to_seconds(*end - *begin));
+}
+
+InputError too_few_events(const EnhanceOptions& options, std::size_t events, const OdometryConfig& config) {
+  return InputError::format(
+      "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per "
+      "pixel; choose another --at",
+      options.source.recording, options.at_s, events, config.packets.max_age_s, config.min_events_per_pixel);
+}
 
 /// Runs the odometry up to a time, so that the warp has the poses of a real run.
 class RunUpTo {
@@ -72,12 +90,8 @@ class RunUpTo {
   }
 
  private:
-  /// Refuses a time after the end, once begin and end are known.
   void check_time(std::optional<Timestamp> end) const {
-    const std::optional<Timestamp> begin = begin_ ? begin_ : source_.dataset->info().begin;
-    if (!begin || !end || to_seconds(*end - *begin) >= options_.at_s) return;
-    throw InputError::format("{}: --at {} is outside the recording: give seconds from its start, 0 to {:.3f}",
-                             options_.source.recording, options_.at_s, to_seconds(*end - *begin));
+    refuse_outside(options_, begin_ ? begin_ : source_.dataset->info().begin, end);
   }
 
   std::optional<Measurement> read() {
@@ -98,19 +112,12 @@ class RunUpTo {
   }
 
   Moment moment(Step step) const {
-    if (step.event_frame.empty()) {
-      throw InputError::format(
-          "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per "
-          "pixel; "
-          "choose another --at",
-          options_.source.recording, options_.at_s, step.events.size(), config_.packets.max_age_s,
-          config_.min_events_per_pixel);
-    }
+    if (step.event_frame.empty()) throw too_few_events(options_, step.events.size(), config_);
     const CameraModel& camera = source_.calibration.rig.find(Modality::Events)->model;
     const UndistortTable table(camera, ideal_pinhole(camera));
     const cv::Mat uncompensated =
         draw_event_frame(step.drawn_events(), CameraMotion(), 1.0, table, config_.event_frame);
-    return {std::move(step), uncompensated, frame_};
+    return {std::move(step), uncompensated, frame_, "motion-compensated"};
   }
 
   const EnhanceOptions& options_;
@@ -123,6 +130,63 @@ class RunUpTo {
   cv::Mat frame_;
   std::optional<Step> found_;
 };
+
+Moment run_up_to(const EnhanceOptions& options, Recording recording, const OdometryConfig& config) {
+  Source source = calibrated(options.source, std::move(recording));
+  match_cameras(source, enhance_mode(source));
+  return RunUpTo(options, std::move(source), config).go();
+}
+
+/// Why the odometry cannot run; empty where it can.
+std::string lacks(const Recording& recording) {
+  if (!recording.dataset->info().has_imu) return "the recording has no IMU samples (--imu FILE)";
+  if (!recording.calibration) return "there is no calibration (--rig NAME, --calib FILE)";
+  return recording.calibration->has_extrinsics ? "" : "the calibration does not tell the camera's pose to the IMU";
+}
+
+/// The lens where it is known; else one that changes nothing.
+CameraModel lens_of(const Recording& recording) {
+  const RigCamera* known = recording.calibration ? recording.calibration->rig.find(Modality::Events) : nullptr;
+  if (known) return known->model;
+  const cv::Size size = recording_event_sensor(recording);
+  return CameraModel(size.width, size.height, size.width, size.width, 0.5 * (size.width - 1), 0.5 * (size.height - 1));
+}
+
+/// The newest events before a time, as many as a packet's frame has, where they fell: what can be had without poses.
+Moment plain_moment(const EnhanceOptions& options, const Recording& recording, const OdometryConfig& config) {
+  const CameraModel lens = lens_of(recording);
+  const CameraModel ideal = lens.distortion() == DistortionModel::None ? lens : ideal_pinhole(lens);
+  const double pixels = static_cast<double>(lens.width()) * lens.height();
+  const auto most = static_cast<std::size_t>(config.packets.window_per_pixel * pixels);
+  Moment moment{{}, {}, {}, ideal == lens ? "as the events fell" : "undistorted, not motion-compensated"};
+  std::vector<Event>& events = moment.step.events;
+  std::optional<Timestamp> begin = recording.dataset->info().begin;
+  refuse_outside(options, begin, recording.dataset->info().end);
+  Timestamp newest;
+  while (const std::optional<Measurement> measurement = recording.dataset->next()) {
+    const std::optional<Timestamp> t = last_stamp(*measurement);
+    if (!t) continue;
+    if (!begin) begin = first_stamp(*measurement);
+    newest = *t;
+    if (to_seconds(newest - *begin) > options.at_s) break;
+    if (const auto* frame = std::get_if<Frame>(&*measurement)) moment.frame = frame->image;
+    if (const auto* batch = std::get_if<EventBatch>(&*measurement))
+      events.insert(events.end(), batch->events.begin(), batch->events.end());
+    if (events.size() > 2 * most) events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(most));
+  }
+  refuse_outside(options, begin, newest);
+  moment.step.t = *begin + duration_from_seconds(options.at_s);
+  const Timestamp oldest = moment.step.t - duration_from_seconds(config.packets.max_age_s);
+  std::erase_if(events, [&](const Event& event) { return event.t < oldest; });
+  if (events.size() > most) events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(most));
+  if (events.empty() || static_cast<double>(events.size()) < config.min_events_per_pixel * pixels)
+    throw too_few_events(options, events.size(), config);
+  moment.step.drawn = events.size();
+  moment.step.event_rate_hz = static_cast<double>(events.size()) / to_seconds(moment.step.t - events.front().t);
+  moment.step.event_frame =
+      draw_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
+  return moment;
+}
 
 cv::Mat stage(const cv::Mat& event_frame, const EnhanceConfig& config, const std::string& name) {
   for (EnhanceStage& s : enhancement_stages(event_frame, config)) {
@@ -155,7 +219,7 @@ std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& conf
   std::vector<SheetRow> rows{
       {{"standard frame", moment.frame},
        {"events without compensation", moment.uncompensated},
-       {"event frame, motion-compensated", events},
+       {"event frame, " + moment.drawn_how, events},
        {"Gaussian blur", stage(events, clahe, "blur")}},
       {{"CLAHE", stage(events, clahe, "clahe")},
        {"sharpened, paper", stage(events, with_sharpening(config, Sharpening::Paper), "sharpened")},
@@ -184,22 +248,15 @@ std::string file_name(int number, const std::string& caption) {
   return name + ".png";
 }
 
-void write_image(const std::filesystem::path& file, const cv::Mat& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(file.string(), image);
-  } catch (const cv::Exception&) {
-  }
-  if (!written) throw InputError::format("{}: cannot be written; choose another --out", file.string());
-}
-
 std::vector<std::string> title(const EnhanceOptions& options, const Moment& moment, const EnhanceConfig& config) {
   const Step& step = moment.step;
   const std::span<const Event> events = step.drawn_events();
+  const std::string known = moment.uncompensated.empty()
+                                ? moment.drawn_how
+                                : fmt::format("scene depth {:.2f} m, {}", step.scene_depth, to_string(step.status));
   return {
-      fmt::format("{} at {:.3f} s: {} events of {:.1f} ms, {}ev/s, scene depth {:.2f} m, {}", options.source.recording,
-                  options.at_s, events.size(), 1e3 * to_seconds(step.t - events.front().t),
-                  si_number(step.event_rate_hz), step.scene_depth, to_string(step.status)),
+      fmt::format("{} at {:.3f} s: {} events of {:.1f} ms, {}ev/s, {}", options.source.recording, options.at_s,
+                  events.size(), 1e3 * to_seconds(step.t - events.front().t), si_number(step.event_rate_hz), known),
       fmt::format(
           "blur {} px, CLAHE clip {} on {} x {} tiles, lambda {}, gain {}, Canny {} to {}, blend {} event + {} edge",
           config.blur_sigma_px, config.clahe_clip, config.clahe_tiles, config.clahe_tiles, config.sharpen_lambda,
@@ -210,30 +267,31 @@ int run_enhance(const EnhanceOptions& options) {
   if (options.at_s < 0.0)
     throw InputError::format("--at {}: give seconds from the recording's start, not below 0", options.at_s);
   const OdometryConfig config = load_config(options.config).odometry;
-  Source source = open_source(options.source);
-  const DatasetInfo& info = source.dataset->info();
+  Recording recording = open_uncalibrated(options.source);
+  const DatasetInfo& info = recording.dataset->info();
   if (!info.has_events) throw InputError::format("{}: has no events to enhance; take another recording", info.name);
-  if (!info.has_imu)
-    throw InputError::format("{}: has no IMU samples, which the warp needs; take another recording", info.name);
-  match_cameras(source, enhance_mode(source));
-  const Moment moment = RunUpTo(options, std::move(source), config).go();
-
-  std::error_code failed;
-  std::filesystem::create_directories(options.out, failed);
-  if (failed)
-    throw InputError::format("{}: cannot make this folder ({}); choose another --out", options.out.string(),
-                             failed.message());
+  const std::string lacking = lacks(recording);
+  const Moment moment =
+      lacking.empty() ? run_up_to(options, std::move(recording), config) : plain_moment(options, recording, config);
+  if (!lacking.empty()) spdlog::warn("without poses the event frame is drawn {}: {}", moment.drawn_how, lacking);
+  make_picture_folder(options.out);
   const std::vector<SheetRow> rows = all_stages(moment, config.enhance);
   int number = 0;
   for (const SheetRow& row : rows) {
     for (const SheetCell& cell : row) {
       ++number;
-      if (!cell.image.empty()) write_image(options.out / file_name(number, cell.caption), cell.image);
+      if (!cell.image.empty()) write_picture(options.out / file_name(number, cell.caption), cell.image);
     }
   }
   const std::vector<std::string> lines = title(options, moment, config.enhance);
-  write_image(options.out / "sheet.png", draw_contact_sheet(lines, rows));
-  fmt::print("{}\n{}: sheet.png and every step by itself\n", lines.front(), options.out.string());
+  write_picture(options.out / "sheet.png", draw_contact_sheet(lines, rows));
+  const nlohmann::ordered_json json = {{"out", options.out.string()},
+                                       {"pictures", number},
+                                       {"events", moment.step.drawn},
+                                       {"drawn_how", moment.drawn_how}};
+  fmt::print("{}\n", options.json ? json_text(json)
+                                  : fmt::format("{}\n{}: sheet.png and every step by itself", lines.front(),
+                                                options.out.string()));
   return kExitOk;
 }
 
@@ -241,14 +299,16 @@ int run_enhance(const EnhanceOptions& options) {
 
 void add_enhance_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<EnhanceOptions>();
-  CLI::App* enhance =
-      app.add_subcommand("enhance", "Draw the event frame of one moment and every step of its enhancement");
+  CLI::App* enhance = app.add_subcommand("enhance",
+                                         "Draw the event frame of one moment and every step of its enhancement; "
+                                         "without IMU or calibration as the events fell");
   add_source_options(*enhance, options->source);
   enhance->add_option("--at", options->at_s, "[s] from the recording's start: the first packet from then on")
       ->required();
   enhance->add_option("--out", options->out, "Folder for sheet.png and one picture per step")->required();
   add_config_options(*enhance, options->config);
   enhance->add_flag("--quiet", options->quiet, "No status line");
+  enhance->add_flag("--json", options->json, "Print what was made as json");
   enhance->footer(
       "Example:\n  edged enhance sim:room --at 5 --out /tmp/steps --set enhance.clahe_clip=4 --set "
       "expert.enhance.erosion_px=3");

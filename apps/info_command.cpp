@@ -8,6 +8,7 @@
 #include <string>
 
 #include "edged/core/check.hpp"
+#include "edged/io/geometry.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
@@ -29,9 +30,20 @@ std::string calibration_text(const Recording& recording) {
   return (recording.calibration->has_extrinsics ? "cameras and IMU:" : "intrinsics only:") + cameras;
 }
 
+/// A size that is not known is among what one asks for here: the pixels that fired tell it.
+Recording open_of_any_size(SourceOptions source) {
+  try {
+    return open_uncalibrated(source);
+  } catch (const UnknownSensorSize& unknown) {
+    source.geometry = "2048x2048";
+    spdlog::warn("{}, by the pixels below; here it is read as {}", unknown.what(), source.geometry);
+    return open_uncalibrated(source);
+  }
+}
+
 int run_info(const InfoOptions& options) {
   catch_interrupts();
-  const Recording recording = open_uncalibrated(options.source);
+  const Recording recording = open_of_any_size(options.source);
   const auto [survey, damage] = survey_recording(*recording.dataset, options.quiet, {});
   if (options.json)
     fmt::print("{}\n", json_text(to_json(survey)));

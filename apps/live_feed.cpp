@@ -9,6 +9,7 @@
 
 #include "json_text.hpp"
 #include "report_rows.hpp"
+#include "run_folder.hpp"
 #include "track_picture.hpp"
 
 namespace edged {
@@ -42,8 +43,14 @@ constexpr std::array kLiveColumns = {LiveColumn{"x", 5},
                                      LiveColumn{"event_tracks", 0},
                                      LiveColumn{"frame_tracks", 0},
                                      LiveColumn{"landmarks", 0},
+                                     LiveColumn{"event_survival", 3},
+                                     LiveColumn{"frame_survival", 3},
+                                     LiveColumn{"map_found", 0},
+                                     LiveColumn{"map_reach", 2},
                                      LiveColumn{"event_rate", 0},
                                      LiveColumn{"depth", 3},
+                                     LiveColumn{"processing", 3},
+                                     LiveColumn{"latency", 3},
                                      LiveColumn{"sigma3_x", 6},
                                      LiveColumn{"sigma3_y", 6},
                                      LiveColumn{"sigma3_z", 6}};
@@ -67,7 +74,7 @@ LiveFeed::LiveFeed(OutputFrame frame) : frame_(std::move(frame)), angles_(Eigen:
   newest_.values.fill(kUnknown);
 }
 
-LiveFeed::Row LiveFeed::row_of(const Step& step) {
+LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   static_assert(kLiveColumns.size() == kColumns);
   Row row{to_seconds(step.t - *origin_), step.status, {}};
   auto value = row.values.begin();
@@ -81,9 +88,12 @@ LiveFeed::Row LiveFeed::row_of(const Step& step) {
   put(step.state.v_W, started);
   put(step.state.bias_gyro, started);
   put(step.state.bias_accel, started);
-  for (const double number : {step.keyframe ? 1.0 : 0.0, static_cast<double>(step.event_tracks.size()),
-                              static_cast<double>(step.frame_tracks.size()), static_cast<double>(step.landmarks.size()),
-                              step.event_rate_hz, step.scene_depth})
+  for (const double number :
+       {step.keyframe ? 1.0 : 0.0, static_cast<double>(step.event_tracks.size()),
+        static_cast<double>(step.frame_tracks.size()), static_cast<double>(step.landmarks.size()),
+        step.event_survival.value_or(kUnknown), step.frame_survival.value_or(kUnknown),
+        step.found.empty() ? kUnknown : static_cast<double>(step.found.size()), map_reach_s(step).value_or(kUnknown),
+        step.event_rate_hz, step.scene_depth, pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
     *value++ = number;
   const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
   put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());
@@ -92,7 +102,7 @@ LiveFeed::Row LiveFeed::row_of(const Step& step) {
 
 void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album) {
   if (!origin_) origin_ = step.t;
-  const Row row = row_of(step);
+  const Row row = row_of(step, progress.pace);
   if (viewers_ > 0) take_shots(step);
   const std::lock_guard lock(mutex_);
   newest_ = row;
@@ -179,7 +189,8 @@ std::string LiveFeed::news(Place& place) const {
   for (const StatusChange& change : now.new_changes) {
     json["changes"].push_back({{"t", rounded(to_seconds(change.t - *origin_), 4)},
                                {"status", to_string(change.status)},
-                               {"reason", change.reason}});
+                               {"reason", change.reason},
+                               {"found_again", change.found_again}});
   }
   if (!now.new_map.empty()) {
     auto& map = json["map"] = nlohmann::ordered_json::array();

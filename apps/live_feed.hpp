@@ -18,6 +18,7 @@
 #include "edged/camera/output_frame.hpp"
 #include "edged/step.hpp"
 #include "evenly.hpp"
+#include "packet_pace.hpp"
 #include "run_album.hpp"
 #include "run_statistics.hpp"
 #include "status_changes.hpp"
@@ -29,6 +30,7 @@ struct RunProgress {
   RunStatistics statistics;
   std::size_t poses = 0;
   double wall_s = 0;
+  PacketPace pace;  ///< of the newest packet
 };
 
 /// `add` and `finish` are for the thread of the run, the rest for any others. It holds a bounded number of rows, evenly
@@ -60,7 +62,7 @@ class LiveFeed {
   std::vector<unsigned char> picture(Modality of) const;
 
  private:
-  static constexpr std::size_t kColumns = 24;
+  static constexpr std::size_t kColumns = 30;
   struct Row {
     double t = 0;  ///< [s] since the first packet
     TrackingStatus status = TrackingStatus::Initializing;
@@ -84,7 +86,7 @@ class LiveFeed {
     std::size_t event_shot = 0, frame_shot = 0;
   };
 
-  Row row_of(const Step& step);
+  Row row_of(const Step& step, const PacketPace& pace);
   void take_shots(const Step& step);
   Present present(Place& place) const;
   static nlohmann::ordered_json columns(const std::vector<Row>& rows);

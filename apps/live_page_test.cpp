@@ -31,7 +31,7 @@ class LiveRun : public ::testing::Test {
       step.event_frame = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99));
       statistics.add(step);
       album.add(step);
-      feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0}, album);
+      feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0, {4.0, std::nullopt}}, album);
     }
   }
 
@@ -56,6 +56,8 @@ TEST_F(LiveRun, TellsEachViewerWhatItDoesNotKnowYet) {
   EXPECT_EQ(all["rows"]["t"].size(), 7u);
   EXPECT_EQ(all["rows"]["x"][4], nullptr);
   EXPECT_EQ(all["rows"]["x"][6], 0.006);
+  EXPECT_EQ(all["rows"]["processing"][6], 4.0);
+  EXPECT_EQ(all["rows"]["latency"][6], nullptr);  // not live
   EXPECT_EQ(all["newest"]["x"][0], 0.006);
   EXPECT_EQ(all["progress"]["packets"], 7);
 }

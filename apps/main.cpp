@@ -19,6 +19,7 @@
 #include "program.hpp"
 #include "report_command.hpp"
 #include "run_command.hpp"
+#include "show_command.hpp"
 #include "simulate_command.hpp"
 #include "version.hpp"
 
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
   std::function<int()> chosen;
   add_run_command(app, chosen);
   add_info_command(app, chosen);
+  add_show_command(app, chosen);
   add_doctor_command(app, chosen);
   add_convert_command(app, chosen);
   add_calib_command(app, chosen);

@@ -75,8 +75,11 @@ int run_show(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file);
   check_folder_of(options.out);
   write_file(options.out, map_ply(mapped(map)));
-  fmt::print("{}: {} keyframes' points; any viewer of point clouds shows them\n", options.out.string(),
-             map.keyframes.size());
+  if (options.json)
+    fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
+  else
+    fmt::print("{}: {} keyframes' points; any viewer of point clouds shows them\n", options.out.string(),
+               map.keyframes.size());
   return kExitOk;
 }
 
@@ -92,6 +95,13 @@ int run_merge(const MapCommandOptions& options) {
   const SavedMap both = merged(map, other, *T_A_B);
   write_file(options.out, to_bytes(both));
   const Eigen::Vector3d p = T_A_B->translation();
+  if (options.json) {
+    fmt::print("{}\n", json_text({{"out", options.out.string()},
+                                  {"keyframes", both.keyframes.size()},
+                                  {"other_at_m", {p.x(), p.y(), p.z()}},
+                                  {"other_turned_deg", so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian}}));
+    return kExitOk;
+  }
   fmt::print("{}: {} keyframes; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
              both.keyframes.size(), options.other.string(), p.x(), p.y(), p.z(), options.file.string(),
              so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
@@ -109,7 +119,7 @@ void add_map_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* merge = map->add_subcommand("merge", "Two maps of one place in the frame of the first");
   for (CLI::App* each : {info, show, merge})
     each->add_option("MAP", options->file, "File that `edged run --save-map` wrote")->required();
-  info->add_flag("--json", options->json, "Print json instead of text");
+  for (CLI::App* each : {info, show, merge}) each->add_flag("--json", options->json, "Print json instead of text");
   show->add_option("--out", options->out, "File to write [map.ply]");
   merge->add_option("OTHER", options->other, "Another of the same place")->required();
   merge->add_option("--out", options->out, "File to write")->required();

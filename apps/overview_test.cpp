@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
 #include <cmath>
 
 namespace edged {
@@ -18,7 +21,7 @@ Step good_step(double rate_hz, bool frame) {
   return step;
 }
 
-TEST(LiveliestMoment, IsThatOfTheHighestEventRateWithAFrame) {
+TEST(LiveliestMoment, IsThatOfTheHighestEventRateWithAFrameButNoFlash) {
   LiveliestMoment moment;
   moment.consider(good_step(90, false));
   moment.consider(good_step(10, true));
@@ -28,6 +31,8 @@ TEST(LiveliestMoment, IsThatOfTheHighestEventRateWithAFrame) {
   Step initializing = good_step(99, true);
   initializing.status = TrackingStatus::Initializing;
   moment.consider(initializing);
+  Step flash = good_step(900, true);
+  moment.consider(flash);
   EXPECT_EQ(moment.frame().at<unsigned char>(0, 0), 30);
   EXPECT_FALSE(moment.event_frame().empty());
 }
@@ -42,11 +47,22 @@ TEST(Overview, IsDrawnForEveryKindOfRun) {
     const Eigen::Vector3d p(std::cos(0.1 * i), 0.1, std::sin(0.1 * i));
     content.estimate.push_back({timestamp_from_seconds(i), SE3(Eigen::Quaterniond::Identity(), p)});
   }
+  EXPECT_FALSE(draw_overview(content).empty());  // no truth
   content.truth = content.estimate;
+  content.error_m.assign(content.estimate.size(), 0.01);
+  content.error_m[50] = std::numeric_limits<double>::quiet_NaN();
   content.moment.consider(good_step(30, true));
   const cv::Mat drawn = draw_overview(content);
   EXPECT_EQ(drawn.type(), CV_8UC3);
   EXPECT_GT(drawn.cols, 800);
+  const auto has_red = [](const cv::Mat& picture) {
+    cv::Mat red;
+    cv::inRange(picture, cv::Scalar(0, 0, 150), cv::Scalar(90, 90, 255), red);
+    return cv::countNonZero(red) > 0;
+  };
+  EXPECT_FALSE(has_red(drawn));
+  content.wrong = "not to be trusted";
+  EXPECT_TRUE(has_red(draw_overview(content)));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "exit_code.hpp"
+#include "json_text.hpp"
 #include "report_data.hpp"
 #include "report_page.hpp"
 #include "run_folder.hpp"
@@ -21,6 +22,7 @@ struct ReportCommand {
   std::vector<std::filesystem::path> runs;
   std::filesystem::path out;
   ReportOptions report;
+  bool json = false;
 };
 
 int write_report(const ReportCommand& options) {
@@ -28,7 +30,7 @@ int write_report(const ReportCommand& options) {
   std::filesystem::path out = one_folder && options.out.empty() ? options.runs[0] : options.out;
   if (out.empty() || std::filesystem::is_directory(out)) out /= "report.html";
   write_file(out, report_page(report_data(options.runs, options.report)));
-  fmt::print("{}\n", out.string());
+  fmt::print("{}\n", options.json ? json_text({{"out", out.string()}}) : out.string());
   return kExitOk;
 }
 
@@ -45,6 +47,7 @@ void add_report_command(CLI::App& app, std::function<int()>& chosen) {
   report->add_option("--truth", options->report.truth,
                      "Ground truth of the sensor whose poses the trajectory files hold [what each run knew]");
   add_evaluation_options(*report, options->report.how);
+  report->add_flag("--json", options->json, "Print where it is as json");
   report->footer(
       "Examples:\n"
       "  edged report runs/boxes-fused\n"

@@ -16,7 +16,9 @@
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "log.hpp"
+#include "packet_pace.hpp"
 #include "report_rows.hpp"
+#include "run_hindsight.hpp"
 #include "version.hpp"
 
 namespace edged {
@@ -25,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostRows = 3000, kMostRowsInAll = 6000, kMostPicturesInAll = 60;
+constexpr std::size_t kMostRows = 3000, kMostRowsInAll = 6000, kMostPicturesInAll = 60, kMostMapKeyframes = 2000;
 constexpr std::size_t kLogLines = 300;
 
 /// What a run has left, all but its poses read as it is.
@@ -64,19 +66,40 @@ std::string output_frame(const LoadedRun& run) {
   return run.metrics.is_null() ? "body" : run.metrics.value("output_frame", "body");
 }
 
-/// As known in the end, in the world that is shown: laid onto the truth as the poses are that were known at their time.
+/// In the world that is shown: laid onto the truth as the poses are that were known at their time.
+Trajectory as_shown(const LoadedRun& run, Trajectory path, const std::string& frame) {
+  const OutputFrame written(run.given->rig, frame), shown(run.given->rig, run.poses.frame);
+  for (StampedPose& pose : path) {
+    pose = shown(written.to_body(pose));
+    pose.T = run.poses.alignment * pose.T;
+  }
+  return path;
+}
+
+/// As known in the end.
 Trajectory final_path(const LoadedRun& run) {
   const fs::path file = run.path / "trajectory_final.tum";
   if (!run.given || !fs::exists(file)) return {};
   HeldWarnings said_by_the_run;
   Trajectory path = read_tum(file);
   said_by_the_run.take();
-  const OutputFrame written(run.given->rig, output_frame(run)), shown(run.given->rig, run.poses.frame);
-  for (StampedPose& pose : path) {
-    pose = shown(written.to_body(pose));
-    pose.T = run.poses.alignment * pose.T;
+  return as_shown(run, std::move(path), output_frame(run));
+}
+
+/// Where the keyframes of the map were made; found: in how many images each was found again.
+Json map_keyframes_json(const LoadedRun& run, Timestamp origin) {
+  Json json = Json::object();
+  if (!run.given) return json;
+  const std::vector<MappedKeyframe> keyframes = read_keyframes(run.path);
+  Trajectory path;
+  for (const MappedKeyframe& keyframe : keyframes) path.push_back({keyframe.t, keyframe.T_W_B});
+  path = as_shown(run, std::move(path), "body");
+  for (std::size_t i = 0, stride = path.size() / kMostMapKeyframes + 1; i < path.size(); i += stride) {
+    json["t"].push_back(rounded(to_seconds(path[i].t - origin), 3));
+    for (int k = 0; k < 3; ++k) json[std::string(1, "xyz"[k])].push_back(rounded(path[i].T.translation()[k], 4));
+    json["found"].push_back(keyframes[i].times_found);
   }
-  return path;
+  return json;
 }
 
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
@@ -93,6 +116,7 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
                 read_calibration(folder / "calibration_found.yaml"),
                 std::nullopt,
                 {}};
+  read_pace(folder, run.states);
   run.truth = own_truth(run);
   if (!options.truth.empty()) {
     if (run.metrics.is_null()) {
@@ -230,6 +254,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
   json["claimed"] = claimed_json(run.poses.claimed, origin, rows);
   json["truth"] = path_json(run.poses.true_path, rows);
   json["final"] = path_json(final_path(run), rows);
+  json["map_keyframes"] = map_keyframes_json(run, origin);
   json["map"] = map_json(run.album, run.poses.alignment);
   json["changes"] = changes_json(run.states, run.album, origin);
   json["options"] = changed_options(run.path / "config_resolved.yaml");

@@ -59,6 +59,8 @@ std::string live_report_page(const nlohmann::ordered_json& about) {
   return filled_page(about, kLiveJs, "img-src data: 'self'; connect-src 'self'");
 }
 
+std::string player_page(const nlohmann::ordered_json& data) { return filled_page(data, kPlayerJs, "img-src data:"); }
+
 void write_run_report(const std::filesystem::path& folder) {
   write_file(folder / "report.html", report_page(report_data({folder})));
 }

@@ -16,6 +16,9 @@ std::string report_page(const nlohmann::ordered_json& data);
 /// known before it begins.
 std::string live_report_page(const nlohmann::ordered_json& about);
 
+/// The page of `edged show`: pictures of events that play. data: a recording and its PlayerData.
+std::string player_page(const nlohmann::ordered_json& data);
+
 /// report.html of one run folder, into it.
 void write_run_report(const std::filesystem::path& folder);
 

@@ -13,5 +13,6 @@ extern const char* const kPlotJs;
 extern const char* const kToolsJs;
 extern const char* const kView3dJs;
 extern const char* const kLiveJs;
+extern const char* const kPlayerJs;
 
 }  // namespace edged

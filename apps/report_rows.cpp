@@ -85,8 +85,14 @@ constexpr std::array kStateColumns = {StateColumn{"vx_mps", "vx", 4},
                                       StateColumn{"event_tracks", "event_tracks", 0},
                                       StateColumn{"frame_tracks", "frame_tracks", 0},
                                       StateColumn{"landmarks", "landmarks", 0},
+                                      StateColumn{"event_survival", "event_survival", 3},
+                                      StateColumn{"frame_survival", "frame_survival", 3},
+                                      StateColumn{"map_found", "map_found", 0},
+                                      StateColumn{"map_reach_s", "map_reach", 2},
                                       StateColumn{"event_rate_hz", "event_rate", 0},
-                                      StateColumn{"scene_depth_m", "depth", 3}};
+                                      StateColumn{"scene_depth_m", "depth", 3},
+                                      StateColumn{"processing_ms", "processing", 3},
+                                      StateColumn{"latency_ms", "latency", 3}};
 
 }  // namespace
 
@@ -182,18 +188,25 @@ Json map_json(const Json& album, const Similarity& alignment) {
 
 Json changes_json(const StatesTable& states, const Json& album, Timestamp origin) {
   Json json = Json::array();
-  const auto add = [&](Timestamp t, const std::string& status, const std::string& reason) {
+  const auto add = [&](Timestamp t, const std::string& status, const std::string& reason, bool found_again) {
     if (json.size() == kMostChangesShown) return;
-    json.push_back({{"t", rounded(to_seconds(t - origin), 4)}, {"status", status}, {"reason", reason}});
+    json.push_back({{"t", rounded(to_seconds(t - origin), 4)},
+                    {"status", status},
+                    {"reason", reason},
+                    {"found_again", found_again}});
   };
   if (!album.is_null()) {
     for (const Json& change : album.at("changes")) {
-      add(timestamp_from_ns(change.at("t_ns").get<std::int64_t>()), change.at("status"), change.at("reason"));
+      add(timestamp_from_ns(change.at("t_ns").get<std::int64_t>()), change.at("status"), change.at("reason"),
+          change.value("found_again", false));
     }
     return json;
   }
+  const std::vector<double>* found_again = states.find("found_again");
   for (std::size_t i = 0; i < states.t.size(); ++i) {
-    if (i == 0 || states.status[i] != states.status[i - 1]) add(states.t[i], to_string(states.status[i]), "");
+    const bool found = found_again && (*found_again)[i] == 1.0;
+    if (i == 0 || states.status[i] != states.status[i - 1] || found)
+      add(states.t[i], to_string(states.status[i]), "", found);
   }
   return json;
 }

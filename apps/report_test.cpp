@@ -92,6 +92,9 @@ class Report : public ::testing::Test {
     const double a = 0.03 * i;
     step.state.T_W_B = SE3(so3::exp({0.0, 0.0, a}), Eigen::Vector3d(std::cos(a), std::sin(a), 0.1 * a));
     step.keyframe = i % 5 == 0;
+    step.found_again = i == 60;
+    step.event_survival = 0.9;
+    if (i == 60) step.found = {{timestamp_from_seconds(100.0), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()}};
     step.landmarks = {{static_cast<FeatureId>(i), Eigen::Vector3d(3.0, i, 0.0)}};
     step.event_frame = cv::Mat(180, 240, CV_8UC1, cv::Scalar(i % 256));
     if (i >= 10)
@@ -124,6 +127,20 @@ TEST_F(Report, HoldsTheNumbersOfTheRun) {
   EXPECT_EQ(run["claimed"]["t"].size(), metrics["consistency"]["poses"].get<std::size_t>());
 }
 
+TEST_F(Report, TellsHealthAndWhatTheMapFoundAgain) {
+  const nlohmann::json run = report_data({make_run("circle", false)})["runs"][0];
+  EXPECT_EQ(run["rows"]["event_survival"][20], 0.9);
+  EXPECT_EQ(run["rows"]["frame_survival"][20], nullptr);
+  EXPECT_EQ(run["rows"]["map_found"][59], nullptr);
+  EXPECT_EQ(run["rows"]["map_found"][60], 1);
+  EXPECT_EQ(run["rows"]["map_reach"][60], 3.0);
+  const auto& changes = run["changes"];
+  const auto again = std::ranges::find_if(changes, [](const auto& change) { return change["found_again"] == true; });
+  ASSERT_NE(again, changes.end());
+  EXPECT_EQ((*again)["t"], 3.0);
+  EXPECT_EQ((*again)["reason"], "found again in the map");
+}
+
 TEST_F(Report, LaysTheFinalPathOntoTheTruthAsTheCausalOneIs) {
   const fs::path folder = make_run("circle", true);
   EXPECT_TRUE(report_data({folder})["runs"][0]["final"].empty()) << "of an earlier version";
@@ -142,7 +159,7 @@ TEST_F(Report, LaysTheFinalPathOntoTheTruthAsTheCausalOneIs) {
 
 TEST_F(Report, SaysWhyTheStatusChangedWhatWasSetAndWhatTheCalibrationWasFoundToBe) {
   const nlohmann::json run = report_data({make_run("circle", true)})["runs"][0];
-  ASSERT_EQ(run["changes"].size(), 4u);
+  ASSERT_EQ(run["changes"].size(), 5u);
   EXPECT_EQ(run["changes"][0]["reason"], "waits for parallax, 3 px of 10");
   EXPECT_EQ(run["changes"][2]["status"], "Lost");
   EXPECT_EQ(run["changes"][2]["reason"], "no landmark for 2.5 s");
@@ -233,7 +250,7 @@ TEST_F(Report, OfAKilledRunShowsWhatThereIs) {
   const nlohmann::json run = report_data({folder})["runs"][0];
   EXPECT_TRUE(run["metrics"].is_null());
   EXPECT_EQ(run["rows"]["t"].size(), 200u);
-  EXPECT_EQ(run["changes"].size(), 4u);
+  EXPECT_EQ(run["changes"].size(), 5u);
   EXPECT_TRUE(run["calibration"][0]["after"].is_null());
 }
 

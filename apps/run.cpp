@@ -13,6 +13,7 @@
 #include "json_text.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
+#include "report_path.hpp"
 #include "run_archive.hpp"
 #include "run_hindsight.hpp"
 #include "serve_address.hpp"
@@ -90,6 +91,17 @@ std::string run_status(const RunStatistics& statistics, const Verdict& verdict) 
   EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
 }
 
+/// In a line; empty where nothing is.
+std::string what_is_wrong(const RunSummary& summary) {
+  const auto error = std::ranges::find(summary.verdict.findings, Severity::Error, &Finding::severity);
+  const std::string because = error != summary.verdict.findings.end() ? error->text : summary.verdict.waiting_for;
+  const double silent_s = summary.consistency ? summary.consistency->silent_s() : 0.0;
+  if (!summary.verdict.trusted)
+    return because.starts_with(summary.status) ? because : fmt::format("{}: {}", summary.status, because);
+  if (silent_s > 0.0) return fmt::format("farther off than it says for {:.1f} s", silent_s);
+  return summary.statistics.times_lost() > 0 ? fmt::format("lost {} times", summary.statistics.times_lost()) : "";
+}
+
 }  // namespace
 
 Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
@@ -134,6 +146,7 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
                            {"options_hash", hash_of(resolved)},
                            {"calibration", to_yaml(source_.calibration)}});
   writer_.emplace(folder_, frame_, headed("causal: each as it was known at its time"));
+  pace_writer_.emplace(folder_);
 }
 
 /// Comments at the head of a trajectory file.
@@ -150,13 +163,15 @@ void Run::check(const Measurement& measurement) {
 }
 
 void Run::observe(const Step& step) {
-  if (live_) live_->note_result(step.t);
+  pace_.processing_ms = 1e3 * odometry_.timings().find("process")->last_s();
+  if (live_) pace_.latency_ms = 1e3 * live_->note_result(step.t);
   log_changes(step);
   map_.observe(step, odometry_);
   {
     const auto timer = program_timings_.measure("write");
     statistics_.add(step);
     writer_->add(step);
+    pace_writer_->add(step.t, pace_);
     moment_.consider(step);
     album_.add(step);
   }
@@ -302,13 +317,19 @@ void Run::write_overview(const RunSummary& summary, const Trajectory& body,
                          const std::optional<GroundTruth>& truth) const {
   OverviewContent content;
   content.title = fmt::format("{}, {}", summary.recording, summary.mode);
+  content.wrong = what_is_wrong(summary);
   content.moment = moment_;
-  content.estimate = body;
-  if (summary.evaluation) {
-    const Evaluation& e = *summary.evaluation;
+  content.changes = album_.changes();
+  content.end = album_.last();
+  ReportPath path = lay_onto_truth(body, {}, source_.calibration.rig, frame_.name(), truth, {});
+  const Duration clock = body.empty() ? Duration(0) : path.shown.front().t - path.body.front().t;  // of that sensor
+  for (StatusChange& change : content.changes) change.t += clock;
+  content.estimate = std::move(path.shown);
+  content.truth = std::move(path.true_path);
+  if (path.evaluation) {
+    const Evaluation& e = *path.evaluation;
     content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
-    content.estimate = OutputFrame(source_.calibration.rig, truth->frame)(body);
-    content.truth = truth_beside(content.estimate, summary, truth);
+    content.error_m = std::move(path.error_m);
   }
   std::vector<unsigned char> png;
   cv::imencode(".png", draw_overview(content), png);

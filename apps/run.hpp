@@ -13,6 +13,7 @@
 #include "edged/odometry.hpp"
 #include "live_page.hpp"
 #include "overview.hpp"
+#include "packet_pace.hpp"
 #include "run_album.hpp"
 #include "run_check.hpp"
 #include "run_folder.hpp"
@@ -58,7 +59,7 @@ class Run {
   void observe(const Step& step);
   void log_changes(const Step& step) const;
   void show_status(const Step& step);
-  RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s()}; }
+  RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s(), pace_}; }
   RunSummary summarize();
   Hindsight hindsight();
   void finish_mcap(const RunSummary& summary, const Hindsight& known, const Trajectory& body,
@@ -78,6 +79,8 @@ class Run {
   QueueConfig queue_config_;
   CalibrationConfig calibration_config_;
   std::optional<RunWriter> writer_;
+  std::optional<PaceWriter> pace_writer_;
+  PacketPace pace_;  ///< of the newest packet
   RunStatistics statistics_;
   LiveliestMoment moment_;
   RunAlbum album_;

@@ -33,6 +33,9 @@ class RunAlbum {
   /// x, y, z [m] in the world of the estimate, by landmark.
   const std::map<FeatureId, std::array<float, 3>>& points() const { return points_; }
 
+  const std::vector<StatusChange>& changes() const { return changes_.all(); }
+  Timestamp last() const { return last_; }  ///< step
+
   /// truth_frame: whose pose the ground truth is; "" where there is none.
   nlohmann::ordered_json to_json(const std::string& truth_frame) const;
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_folder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -32,11 +33,13 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "trajectory_final.tum",
                                   "keyframes.csv",
                                   "map.ply",
+                                  "pace.csv",
                                   "results.mcap"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
-    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_rate_hz,scene_depth_m,"
+    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_survival,frame_survival,map_found,map_"
+    "reach_s,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
     "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
 
@@ -71,9 +74,13 @@ std::string state_line(const Step& step) {
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
   }
-  line +=
-      fmt::format(",{},{},{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, step.event_tracks.size(),
-                  step.frame_tracks.size(), step.landmarks.size(), step.event_rate_hz, step.scene_depth);
+  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, step.event_tracks.size(),
+                      step.frame_tracks.size(), step.landmarks.size());
+  for (const std::optional<double>& number : {step.event_survival, step.frame_survival})
+    line += number ? fmt::format(",{}", *number) : ",";
+  const std::optional<double> reach_s = map_reach_s(step);
+  line += reach_s ? fmt::format(",{},{}", step.found.size(), *reach_s) : ",,";
+  line += fmt::format(",{},{}", step.event_rate_hz, step.scene_depth);
   const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
   if (step.covariance) {
@@ -157,6 +164,11 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   out << text;
   if (!out.flush()) throw InputError::format("{}: cannot be written; is the disk full?", file.string());
   std::filesystem::rename(part, file);
+}
+
+std::optional<double> map_reach_s(const Step& step) {
+  const auto oldest = std::ranges::min_element(step.found, {}, &FoundPoint::keyframe);
+  return oldest == step.found.end() ? std::nullopt : std::optional(to_seconds(step.t - oldest->keyframe));
 }
 
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program) {

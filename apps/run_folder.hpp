@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// Count, mean, p50, p95, p99 and total of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
+
+/// Since the oldest keyframe of which the map found a point in this packet's image; nothing where it found none.
+std::optional<double> map_reach_s(const Step& step);
 
 /// trajectory.tum, trajectory_euroc.csv, trajectory.kitti and states.csv: complete lines up to the last packet,
 /// whenever the program ends.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "claims.hpp"
 #include "edged/core/check.hpp"
+#include "packet_pace.hpp"
 #include "states_table.hpp"
 
 namespace edged {
@@ -127,6 +129,36 @@ TEST_F(RunFolder, HasAHeadingThatReadsBeforeAnyPacketHasCome) {
   make_run_folder(folder);
   const RunWriter writer(folder, OutputFrame({}, "body"), {});
   EXPECT_TRUE(read_states(folder).t.empty());
+}
+
+TEST_F(RunFolder, GivesThePaceOfEachPacketBackButOfThoseThatAKillHasCut) {
+  make_run_folder(folder);
+  {
+    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    PaceWriter pace(folder);
+    Step step;
+    for (int i = 0; i < 3; ++i) {
+      step.t = timestamp_from_seconds(i);
+      writer.add(step);
+      if (i < 2) pace.add(step.t, {1.5 + i, i == 1 ? std::optional(20.0) : std::nullopt});
+    }
+  }
+  StatesTable states = read_states(folder);
+  read_pace(folder, states);
+  const std::vector<double>& processing = *states.find("processing_ms");
+  EXPECT_EQ(processing[1], 2.5);
+  EXPECT_TRUE(std::isnan(processing[2]));
+  EXPECT_TRUE(std::isnan((*states.find("latency_ms"))[0]));
+  EXPECT_EQ((*states.find("latency_ms"))[1], 20.0);
+}
+
+TEST_F(RunFolder, SaysHowFarBackTheMapReaches) {
+  Step step;
+  step.t = timestamp_from_seconds(10);
+  EXPECT_FALSE(map_reach_s(step));
+  for (const int keyframe_s : {8, 3, 9})
+    step.found.push_back({timestamp_from_seconds(keyframe_s), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()});
+  EXPECT_EQ(map_reach_s(step), 7.0);
 }
 
 TEST_F(RunFolder, GivesTheCovariancesBack) {

@@ -4,6 +4,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <array>
+
+#include "edged/io/text.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "run_folder.hpp"
 
@@ -54,6 +57,26 @@ void write_hindsight(const std::filesystem::path& folder, const OutputFrame& fra
   tum.flush();
   write_file(folder / "keyframes.csv", keyframes_csv(known.keyframes));
   write_file(folder / "map.ply", map_ply(known.keyframes));
+}
+
+std::vector<MappedKeyframe> read_keyframes(const std::filesystem::path& folder) {
+  std::vector<MappedKeyframe> keyframes;
+  if (!std::filesystem::exists(folder / "keyframes.csv")) return keyframes;
+  LineReader lines(folder / "keyframes.csv");
+  while (const auto line = lines.next()) {
+    FieldReader fields(line->text);
+    const auto t = parse_nanoseconds(fields.next());
+    if (!t) continue;  // the heading
+    std::array<double, 7> v;
+    for (double& number : v) number = parse_number(fields.next()).value_or(0.0);
+    MappedKeyframe& keyframe = keyframes.emplace_back();
+    keyframe.t = *t;
+    keyframe.T_W_B = SE3(Eigen::Quaterniond(v.data() + 3), Eigen::Vector3d(v.data()));
+    keyframe.camera = fields.next();
+    fields.next();  // how many points it has
+    keyframe.times_found = static_cast<int>(parse_number(fields.next()).value_or(0.0));
+  }
+  return keyframes;
 }
 
 }  // namespace edged

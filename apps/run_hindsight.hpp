@@ -20,4 +20,7 @@ void write_hindsight(const std::filesystem::path& folder, const OutputFrame& fra
 /// Their points, for viewers of point clouds.
 std::string map_ply(const std::vector<MappedKeyframe>& keyframes);
 
+/// Of a run's folder, without their points; empty where there is no such file.
+std::vector<MappedKeyframe> read_keyframes(const std::filesystem::path& folder);
+
 }  // namespace edged

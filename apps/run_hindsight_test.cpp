@@ -52,6 +52,11 @@ TEST_F(RunHindsight, HoldsPosesKeyframesAndPoints) {
   EXPECT_TRUE(keyframes[2].starts_with("1500000000,1,2,3,"));
   EXPECT_TRUE(keyframes[2].ends_with(",frames,2,3,7000000000"));
   EXPECT_EQ(std::ranges::count(keyframes[1], ','), std::ranges::count(keyframes[2], ','));
+  const std::vector<MappedKeyframe> read = read_keyframes(folder_);
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].t, t);
+  EXPECT_EQ(read[0].T_W_B.translation(), T.translation());
+  EXPECT_EQ(read[0].times_found, 3);
   EXPECT_EQ(ply[4], "element vertex 1") << "what is no place is left out";
   EXPECT_EQ(ply.back(), "0.50000 -0.25000 2.00000 77 77 77 0 9 4");
 }

@@ -10,6 +10,7 @@
 #include "edged/core/check.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "evaluation_text.hpp"
+#include "status_line.hpp"
 #include "survey_text.hpp"
 #include "version.hpp"
 
@@ -28,8 +29,8 @@ nlohmann::ordered_json scale_error(const std::optional<Evaluation>& e, double Ev
 }
 
 std::string line(const char* name, const std::string& value, const std::string& note = "") {
-  return note.empty() ? fmt::format("  {:<20} {}\n", name, value)
-                      : fmt::format("  {:<20} {:<12} {}\n", name, value, note);
+  return note.empty() ? wrapped(fmt::format("  {:<20} {}", name, value), 23) + '\n'
+                      : wrapped(fmt::format("  {:<20} {:<12} {}", name, value, note), 36) + '\n';
 }
 
 std::string consistency_line(const Consistency& c) {

@@ -132,8 +132,18 @@ Recording open_uncalibrated(const SourceOptions& options) {
 
 bool is_live(const SourceOptions& options) { return options.recording.starts_with(kTcpPrefix); }
 
-Source open_source(const SourceOptions& options) {
-  Recording recording = open_uncalibrated(options);
+cv::Size recording_event_sensor(const Recording& recording) {
+  const DatasetInfo& info = recording.dataset->info();
+  if (!info.event_sensor.empty()) return info.event_sensor;
+  const RigCamera* camera = recording.calibration ? recording.calibration->rig.find(Modality::Events) : nullptr;
+  if (!camera)
+    throw InputError::format("{}: does not tell the size of its event sensor; give --geometry WIDTHxHEIGHT", info.name);
+  return {camera->model.width(), camera->model.height()};
+}
+
+Source open_source(const SourceOptions& options) { return calibrated(options, open_uncalibrated(options)); }
+
+Source calibrated(const SourceOptions& options, Recording recording) {
   if (!recording.calibration)
     throw InputError::format(
         "{}: brings no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE",

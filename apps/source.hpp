@@ -53,7 +53,12 @@ Recording open_uncalibrated(const SourceOptions& options);
 /// Whether it is measured now, and who is too slow for it misses something.
 bool is_live(const SourceOptions& options);
 
+/// Of the recording, else of its calibration. Throws InputError where nothing tells.
+cv::Size recording_event_sensor(const Recording& recording);
+
 /// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
 Source open_source(const SourceOptions& options);
+/// The same of a recording that is open.
+Source calibrated(const SourceOptions& options, Recording recording);
 
 }  // namespace edged

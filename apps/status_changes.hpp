@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When the status of a run changed, and why.
+// When the status of a run changed, and why; and when it was found again in the map.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,8 @@ inline constexpr std::size_t kMostChangesShown = 300;
 struct StatusChange {
   Timestamp t;
   TrackingStatus status;
-  std::string reason;  ///< what was missing last, while it lasts; "" where there is nothing to say
+  std::string reason;        ///< what was missing last, while it lasts; "" where there is nothing to say
+  bool found_again = false;  ///< in the map; the status may have been this before
 };
 
 /// Why the status is what it is: what a start waits for, what ended the estimate, how it started.

@@ -76,6 +76,19 @@ std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view
   return fmt::format("{:.1f}{} s {}", to_seconds(t - begin), whole, what);
 }
 
+std::string wrapped(const std::string& line, std::size_t indent) {
+  std::string text, rest = line;
+  while (rest.size() > kColumns) {
+    std::size_t at = rest.rfind(' ', kColumns);
+    if (at == std::string::npos || at <= indent) at = rest.find(' ', std::max(kColumns, indent));
+    if (at == std::string::npos) break;
+    const std::size_t end = rest.find_last_not_of(' ', at);
+    text += rest.substr(0, end + 1) + '\n';
+    rest = std::string(indent, ' ') + rest.substr(at + 1);
+  }
+  return text + rest;
+}
+
 std::string fit_columns(const std::string& text, std::size_t columns) {
   const std::string line = text.substr(0, text.find('\n'));
   return line.size() <= columns ? line : line.substr(0, columns);

@@ -49,6 +49,13 @@ std::string si_number(double value);
 /// "12.3 / 60.0 s read", of a job that has come to t; without the whole where it is not known.
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
 
+/// What a terminal has at least.
+inline constexpr std::size_t kColumns = 80;
+
+/// A line broken between words where it would be longer than that; what follows is indented. A word alone may be
+/// longer.
+std::string wrapped(const std::string& line, std::size_t indent);
+
 /// One line, cut to a number of columns.
 std::string fit_columns(const std::string& text, std::size_t columns);
 

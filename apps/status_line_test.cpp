@@ -13,6 +13,15 @@ TEST(StatusLine, CutsItsTextToOneLineOfTheTerminal) {
   EXPECT_EQ(fit_columns("ab\ncd", 10), "ab");
 }
 
+TEST(Wrapped, BreaksBetweenWordsAndIndentsWhatFollows) {
+  const std::string word(30, 'x'), line = word + " " + word + " " + word;
+  EXPECT_EQ(wrapped(word, 4), word);
+  EXPECT_EQ(wrapped(line, 4), word + " " + word + "\n    " + word);
+  const std::string endless(100, 'y');
+  EXPECT_EQ(wrapped(endless, 4), endless);
+  EXPECT_EQ(wrapped("    " + endless + " z", 4), "    " + endless + "\n    z");
+}
+
 TEST(StatusLine, IsNeverDueWhenQuiet) { EXPECT_FALSE(StatusLine(true).due()); }
 
 TEST(SiNumber, TakesThePrefixThatFits) {

@@ -42,6 +42,8 @@ class Run(WithFlight):
         self.assertEqual((a / "trajectory.tum").read_bytes(), (b / "trajectory.tum").read_bytes())
         self.assertIn("mean position error", again.stdout)
         self.assertIn("local error", again.stdout)
+        self.assertLessEqual(max(map(len, again.stdout.splitlines()[1:])), 80)  # the first names the folder
+        self.assertGreater((a / "pace.csv").stat().st_size, 1000)
         # The file says what metrics.json says.
         evaluated = json.loads(edged("eval", self.flight / "groundtruth.txt", a / "trajectory.tum", "--json").stdout)
         self.assertAlmostEqual(evaluated["ate_rmse_m"], summary["ate_rmse_m"], places=9)

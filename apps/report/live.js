@@ -14,7 +14,8 @@ const kPictures = {frame: 'frame', events: 'events, motion-compensated'};
 /** A run of which nothing has come yet, in the shape of the report's. */
 function emptyRun(about) {
   const columns = ['t', 'status', 'x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'bgx', 'bgy', 'bgz', 'bax', 'bay', 'baz', 'keyframe',
-                   'event_tracks', 'frame_tracks', 'landmarks', 'event_rate', 'depth', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
+                   'event_tracks', 'frame_tracks', 'landmarks', 'event_survival', 'frame_survival', 'map_found', 'map_reach', 'event_rate', 'depth',
+                   'processing', 'latency', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
   return {name: about.recording, folder: '', is_file: false, metrics: null, live: about, frame: about.frame, evaluation: null,
           rows: Object.fromEntries(columns.map(name => [name, []])), claimed: {}, truth: [], map: [], changes: [], pictures: []};
 }
@@ -43,6 +44,8 @@ function liveFacts(run, update) {
     ['position [m]', three(['x', 'y', 'z'], 3)],
     ['velocity [m/s]', three(['vx', 'vy', 'vz'], 2)],
     ['tracks', tracks.join(', ') + ', ' + now('landmarks') + ' landmarks'],
+    ['a packet takes', number(now('processing'), 'ms', 1)],
+    ['latency', number(now('latency'), 'ms', 1)],
     ['event rate', run.live.mode === 'frames' ? null : valueText(now('event_rate')) + ' 1/s'],
     ['scene depth', number(now('depth'), 'm', 2)],
     ['poses, keyframes', p.poses + ', ' + p.keyframes],

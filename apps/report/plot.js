@@ -11,6 +11,7 @@ class TimeGroup {
     this.plots = [];
     this.listeners = [];
     this.spans = [];  // of time, shaded: [{from, to, colour}]
+    this.marks = [];  // of time, an upright line each
     this.pending = false;
   }
   zoom(begin, end) {
@@ -62,7 +63,7 @@ class TimeGroup {
   }
 }
 
-/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, dash, band: {low, high}}]. */
+/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, dash, dots, band: {low, high}}]. */
 class TimePlot {
   constructor(group, spec, parent) {
     this.group = group;
@@ -167,6 +168,8 @@ class TimePlot {
       if (to > from) context.fillRect(from, 4, to - from, bottom - 4);
       context.globalAlpha = 1;
     }
+    context.fillStyle = colour('accent');
+    for (const t of this.group.marks) if (t >= a && t <= b) context.fillRect(this.xOf(t) - 1, 4, 2, bottom - 4);
     context.font = '11px system-ui, "DejaVu Sans", sans-serif';
     context.fillStyle = colour('soft');
     context.strokeStyle = colour('grid');
@@ -205,6 +208,11 @@ class TimePlot {
       for (let i = last; i >= first; --i) context.lineTo(this.xOf(series.t[i]), yOf(series.band.low[i] ?? 0));
       context.fill();
       context.globalAlpha = 1;
+    }
+    if (series.dots) {
+      context.fillStyle = ink;
+      for (let i = first; i <= last; ++i) if (series.y[i] !== null) context.fillRect(this.xOf(series.t[i]) - 1, yOf(series.y[i]) - 1, 2.5, 2.5);
+      return;
     }
     context.strokeStyle = ink;
     context.lineWidth = series.dash ? 1.4 : 1.6;

@@ -4,7 +4,8 @@
 'use strict';
 
 let report = null, runs = [], time = null, space = null;
-const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false};
+const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false, kept: false, links: true};
+const kLinkedAfter_s = 5;  // what is seen again sooner is near, and no place that one has come back to
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
 const kSays = {
   'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
@@ -84,6 +85,8 @@ function facts(run) {
   list.push(['first good pose', m.first_good_s === null ? 'never' : 'after ' + number(m.first_good_s, 's', 2)]);
   list.push(['poses, keyframes', m.poses + ', ' + m.keyframes]);
   if (m.consistency) list.push(['within 3 σ', number(100 * m.consistency.position.within_3_sigma, '% of the positions', 1)]);
+  const process = run.stages.find(stage => stage.stage === 'process');
+  if (process) list.push(['a packet takes', number(process.p50_ms, 'ms (median)', 1) + ', ' + number(process.p99_ms, 'ms (99 %)', 1)]);
   list.push(['speed', number(m.real_time_factor, '× real time', 2) + ', ' + number(m.cpu_s_per_s, 'CPU s per s', 2) + ', ' + number(m.peak_rss_mb, 'MB', 0)]);
   if (m.live) list.push(['latency', number(1e3 * m.live.latency_s.p50, 'ms (median)', 1) + ', ' + number(1e3 * m.live.latency_s.p99, 'ms (99 %)', 1)]);
   list.push(['recording', m.recording + ' (' + m.format + '), ' + m.mode + (m.seed === null ? '' : ', seed ' + m.seed)]);
@@ -129,10 +132,25 @@ function axisOf(flat, k) {
   return flat.filter((value, i) => i % 3 === k);
 }
 
+const place = (rows, i) => [rows.x[i], rows.y[i], rows.z[i]];
+
+/** From where the body saw a point again to where the keyframe was made that it belongs to. */
+function linksOf(run) {
+  const rows = run.rows, links = [];
+  (rows.map_reach || []).forEach((reach, i) => {
+    const from = place(rows, i), then = rows.t[i] - reach;
+    if (reach === null || reach < kLinkedAfter_s || then < rows.t[0]) return;  // a keyframe of an earlier run's map has no place on this path
+    const to = place(rows, rowAt(rows.t, then));
+    if (from[0] !== null && to[0] !== null) links.push({from, to});
+  });
+  return links;
+}
+
 function fillSpace() {
   const shadeMax = Math.max(1e-9, ...runs.map(run => (run.rows.error_m || []).reduce((a, b) => Math.max(a, b || 0), 0)));
   space.paths = [];
   space.points = [];
+  space.links = show.links ? runs.flatMap(linksOf) : [];
   runs.forEach((run, i) => {
     const rows = run.rows;
     if (show.map && run.map.length) space.points.push({xyz: run.map, colour: runs.length > 1 ? runColour(i) : 'truth', size: 2, alpha: 0.55});
@@ -140,6 +158,8 @@ function fillSpace() {
       const xyz = rows.t.flatMap((t, k) => rows.keyframe[k] && rows.x[k] !== null ? [rows.x[k], rows.y[k], rows.z[k]] : []);
       space.points.push({xyz, colour: 'ink', size: 5});
     }
+    const kept = run.map_keyframes;
+    if (show.kept && kept && kept.t) space.points.push({xyz: kept.t.flatMap((t, k) => place(kept, k)), colour: 'accent', size: 6});
     if (show.truth && run.truth.length) {
       space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'truth', width: 4, dash: true});
     }
@@ -159,8 +179,8 @@ function moveMarks() {
     const rows = run.rows;
     if (!rows.x || !rows.t.length) return [];
     const start = rows.x.findIndex(value => value !== null), last = run.live ? rows.t.length - 1 : -1, now = time.cursor === null ? last : rowAt(rows.t, time.cursor);
-    const marks = start < 0 ? [] : [{p: [rows.x[start], rows.y[start], rows.z[start]], colour: runColour(i), size: 4}];
-    if (now >= 0) marks.push({p: [rows.x[now], rows.y[now], rows.z[now]], colour: runColour(i), size: 7});
+    const marks = start < 0 ? [] : [{p: place(rows, start), colour: runColour(i), size: 4}];
+    if (now >= 0) marks.push({p: place(rows, now), colour: runColour(i), size: 7});
     return marks;
   });
   space.draw();
@@ -182,8 +202,10 @@ function pathCard() {
     }
     moveMarks();
   };
-  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe)};
-  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['final', 'final path (thin)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes']]) {
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe),
+               kept: runs.some(run => run.map_keyframes && run.map_keyframes.t), links: runs.some(run => run.live || linksOf(run).length)};
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['final', 'final path (thin)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
+                              ['links', 'seen again (lines)']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
     box.checked = show[key];
@@ -200,7 +222,8 @@ function pathCard() {
                button('Reset', () => { space.home(); space.draw(); }), scale);
   const world = runs.some(run => run.evaluation) ? 'World of the ground truth, z up.' : 'World of the estimate, z up; it begins at the origin.';
   const card = make('div', {class: 'card view'}, canvas, tools,
-                    make('p', {class: 'hint'}, world + ' Drag turns, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.'));
+                    make('p', {class: 'hint'}, world + ' Drag turns, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.' +
+                         (has.links ? ' A line leads from where a place was seen again, ' + kLinkedAfter_s + ' s later or more, to where it was seen first.' : '')));
   return [card, refresh];
 }
 

@@ -16,7 +16,7 @@ function columnPlot(parent, title, unit, key, more) {
     }
     if (!rows[key] || !(run.live || rows[key].some(value => value !== null))) return;
     if (about(run) && about(run).mode === (more && more.notIn)) return;
-    series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i)});
+    series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i), dots: more && more.dots});
   });
   if (!series.length) return;
   if (truth) series.unshift(truth);
@@ -55,7 +55,7 @@ function plotSection() {
   };
   const bar = make('div', {class: 'tools sticky'}, button('+', 'zoom in', () => time.scale(0.5)), button('−', 'zoom out', () => time.scale(2)),
                    button('Whole run', 'show the whole run', () => time.reset()), span);
-  const all = section('Over time', bar, make('p', {class: 'hint'}, 'One cursor for all, and for path and pictures. Drag zooms, a double click shows all; keys: arrows, + − and Home.' + (runs.length === 1 ? ' Shaded: not Good (see below).' : '')));
+  const all = section('Over time', bar, make('p', {class: 'hint'}, 'One cursor for all, and for path and pictures. Drag zooms, a double click shows all; keys: arrows, + − and Home.' + (runs.length === 1 ? ' Shaded: not Good (see below); upright line: found again in the map.' : '')));
   const truth = {truth: true};
   const triple = (parent, names, unit, keys, more) => keys.forEach((key, i) => columnPlot(parent, names[i], unit, key, more));
   const frames = [...new Set(runs.filter(run => !run.is_file).map(run => run.frame === 'body' ? 'the body (IMU)' : 'camera ' + run.frame))].join(', ');
@@ -73,9 +73,17 @@ function plotSection() {
   const seen = group('What it sees');
   columnPlot(seen, 'tracks on events', '', 'event_tracks', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'tracks on frames', '', 'frame_tracks', {zero: true, notIn: 'events'});
+  columnPlot(seen, 'health of events: corners that survive an image', '', 'event_survival', {zero: true, notIn: 'frames'});
+  columnPlot(seen, 'health of frames: corners that survive an image', '', 'frame_survival', {zero: true, notIn: 'events'});
   columnPlot(seen, 'landmarks', '', 'landmarks', {zero: true});
   columnPlot(seen, 'event rate', '1/s', 'event_rate', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'scene depth', 'm', 'depth', {zero: true});
+  const map = group('Map: what is seen again after it has left the window');
+  columnPlot(map, 'points found again', '', 'map_found', {zero: true, dots: true});
+  columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true, dots: true});
+  const pace = group('Time that a packet takes');
+  columnPlot(pace, 'processing', 'ms', 'processing', {zero: true});
+  columnPlot(pace, 'latency', 'ms', 'latency', {zero: true});
   for (const grid of [...all.querySelectorAll('.plots')]) if (!grid.children.length) grid.previousSibling.remove(), grid.remove();
   time.listeners.push(() => {
     const [a, b] = time.view;
@@ -105,12 +113,14 @@ function fillTimeline(all) {
     const spans = run.changes.map((change, k) => ({...change, length: (k + 1 < run.changes.length ? run.changes[k + 1].t : last) - change.t}));
     const bar = make('div', {class: 'timeline', role: 'img', 'aria-label': 'status over time'});
     for (const span of spans) {
-      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s'});
+      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s' + (span.found_again ? ', found again in the map' : '')});
+      if (span.found_again) piece.className = 'again';
       piece.style.flexGrow = Math.max(span.length, 1e-3);
       bar.append(piece);
     }
     if (runs.length === 1) {
       time.spans = spans.filter(span => span.status !== 'Good').map(span => ({from: span.t, to: span.t + span.length, colour: kStatusColours[span.status]}));
+      time.marks = spans.filter(span => span.found_again).map(span => span.t);
     }
     const rows = spans.map(span => {
       const status = make('td', {class: 'status', c: kStatusColours[span.status]}, span.status);

@@ -12,13 +12,14 @@ function errorColour(share) {
   return 'rgb(' + mixed.join(',') + ')';
 }
 
-/** paths: [{x, y, z, colour, dash, width, shade: values, shadeMax}], points: [{xyz: flat, colour, size}], marks: [{p, colour, size}]. */
+/** paths: [{x, y, z, colour, dash, width, shade: values, shadeMax}], points: [{xyz: flat, colour, size}], marks: [{p, colour, size}], links: [{from, to}]. */
 class SpaceView {
   constructor(canvas) {
     this.canvas = canvas;
     this.paths = [];
     this.points = [];
     this.marks = [];
+    this.links = [];
     this.home();
     this.listen();
   }
@@ -70,6 +71,7 @@ class SpaceView {
     }
     this.drawFloor(context);
     for (const cloud of this.points) this.drawPoints(context, cloud);
+    this.drawLinks(context);
     for (const path of this.paths) this.drawPath(context, path);
     for (const mark of this.marks) this.drawMark(context, mark);
     this.drawAxes(context, height);
@@ -124,6 +126,19 @@ class SpaceView {
       context.strokeStyle = key < 0 ? colour(path.colour) : errorColour((key + 0.5) / kShades);
       context.stroke(stroke);
     }
+  }
+
+  drawLinks(context) {
+    context.strokeStyle = colour('accent');
+    context.globalAlpha = 0.5;
+    context.lineWidth = 1;
+    context.beginPath();
+    for (const link of this.links) {
+      context.moveTo(...this.project(...link.from));
+      context.lineTo(...this.project(...link.to));
+    }
+    context.stroke();
+    context.globalAlpha = 1;
   }
 
   drawMark(context, mark) {

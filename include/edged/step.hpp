@@ -56,6 +56,9 @@ struct Step {
   /// The live corners by id, undistorted pixels on the event frame, as given on the standard frame. Where the packet
   /// brought no image of a camera they are those of its last one.
   std::vector<Track> event_tracks, frame_tracks;
+  /// Running mean of the share of corners that live through an image of that camera, 0 to 1: blur, noise and darkness
+  /// end them. Nothing where the mode has no such camera.
+  std::optional<double> event_survival, frame_survival;
   std::vector<Landmark> landmarks;   ///< in the window, where it was solved
   std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this packet
 

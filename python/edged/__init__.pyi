@@ -118,6 +118,11 @@ class Step(_BodyState):
     @property
     def frame_tracks(self) -> NDArray[np.void]: ...
     @property
+    def event_survival(self) -> float | None:
+        """Running mean of the share of corners that live through an image, 0 to 1; None without that camera."""
+    @property
+    def frame_survival(self) -> float | None: ...
+    @property
     def landmarks(self) -> NDArray[np.void]:
         """id (of the corner), p_W [m]; only where the window was solved."""
     @property

@@ -88,6 +88,8 @@ void bind_step(py::module_& module) {
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)
+      .def_readonly("event_survival", &Step::event_survival)
+      .def_readonly("frame_survival", &Step::frame_survival)
       .def_readonly("drawn", &Step::drawn)
       .def_readonly("event_rate_hz", &Step::event_rate_hz)
       .def_readonly("scene_depth", &Step::scene_depth)

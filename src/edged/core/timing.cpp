@@ -17,6 +17,7 @@ void StageTiming::add(double seconds) {
   ++count_;
   total_s_ += seconds;
   max_s_ = std::max(max_s_, seconds);
+  last_s_ = seconds;
 }
 
 double StageTiming::quantile_s(double q) const {
@@ -36,6 +37,11 @@ StageTimings::Scope StageTimings::measure(const std::string& stage) {
     found = stages_.insert(stages_.end(), Entry{stage, {}});
   }
   return Scope(found->timing);
+}
+
+const StageTiming* StageTimings::find(const std::string& stage) const {
+  const auto found = std::ranges::find(stages_, stage, &Entry::name);
+  return found == stages_.end() ? nullptr : &found->timing;
 }
 
 }  // namespace edged

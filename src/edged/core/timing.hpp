@@ -19,6 +19,7 @@ class StageTiming {
   double mean_s() const { return count_ == 0 ? 0.0 : total_s_ / static_cast<double>(count_); }
   double total_s() const { return total_s_; }
   double max_s() const { return max_s_; }
+  double last_s() const { return last_s_; }  ///< the newest call
   /// Upper edge of the bin that holds the share q in [0, 1] of the calls: exact to 5 %.
   double quantile_s(double q) const;
 
@@ -27,7 +28,7 @@ class StageTiming {
   std::array<std::uint64_t, kBins> bins_{};
   std::uint64_t count_ = 0;
   double total_s_ = 0.0;
-  double max_s_ = 0.0;
+  double max_s_ = 0.0, last_s_ = 0.0;
 };
 
 /// All stages of a run, in the order of their first use.
@@ -52,6 +53,8 @@ class StageTimings {
     StageTiming timing;
   };
   const std::vector<Entry>& all() const { return stages_; }
+  /// Null where it was never measured.
+  const StageTiming* find(const std::string& stage) const;
 
  private:
   std::vector<Entry> stages_;

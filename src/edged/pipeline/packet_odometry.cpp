@@ -122,7 +122,9 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
   step.started = result.started;
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
   for (const Channel& channel : channels_) {
-    (channel.camera.modality == Modality::Events ? step.event_tracks : step.frame_tracks) = channel.tracker.tracks();
+    const bool events = channel.camera.modality == Modality::Events;
+    (events ? step.event_tracks : step.frame_tracks) = channel.tracker.tracks();
+    (events ? step.event_survival : step.frame_survival) = channel.survival();
   }
   step.T_W_O = world_.T_W_S();
   step.found = mapper_.found(packet.t);

@@ -45,7 +45,8 @@ cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::
     return size;
   }
   if (said) return *said;
-  throw InputError::format("{}: does not hold the size of its sensor; give --geometry WIDTHxHEIGHT", file.string());
+  throw UnknownSensorSize(
+      fmt::format("{}: does not hold the size of its sensor; give --geometry WIDTHxHEIGHT", file.string()));
 }
 
 }  // namespace edged

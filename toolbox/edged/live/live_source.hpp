@@ -29,8 +29,11 @@ class LiveSource {
   /// threw, after all that came before. Warns in the log when shedding begins and ends.
   std::optional<Measurement> next();
 
-  /// What was measured until t has been worked up now.
-  void note_result(Timestamp t) { latency_.add(clock_.since_due_s(t)); }
+  /// What was measured until t has been worked up now. Returns its latency [s].
+  double note_result(Timestamp t) {
+    latency_.add(clock_.since_due_s(t));
+    return latency_.last_s();
+  }
 
   /// Ends the thread. Statistics stay.
   void stop();
