@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "edged/io/compression.hpp"
 #include "edged/io/ros/message_sink.hpp"
 
 namespace edged {
