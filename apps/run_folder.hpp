@@ -27,7 +27,7 @@ std::filesystem::path make_run_folder(const std::filesystem::path& wanted, Earli
 /// InputError when it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
-/// Count, mean, p50, p95, p99 and total of every stage, as json text.
+/// Count, mean, p50, p95, p99, total and, where it was taken, processor time of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
 
 /// trajectory.tum, trajectory_euroc.csv, trajectory.kitti and states.csv: complete lines up to the last packet,
