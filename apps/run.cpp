@@ -157,7 +157,7 @@ std::vector<std::string> Run::headed(const std::string& known_when) const {
 
 /// What contradicts is told as soon as it is known: who watches can stop there.
 void Run::check(const Measurement& measurement) {
-  const auto timer = program_timings_.measure("check");
+  const auto timer = program_timings_.measure_often("check");
   check_.add(measurement);
   for (const Finding& finding : check_.news()) spdlog::error("{}: {}", finding.text, finding.remedy);
 }
@@ -215,7 +215,7 @@ void Run::show_status(const Step& step) {
 }
 
 std::optional<Measurement> Run::read() {
-  const auto timer = program_timings_.measure(live_ ? "wait" : source_.seed ? "simulate" : "read");
+  const auto timer = program_timings_.measure_often(live_ ? "wait" : source_.seed ? "simulate" : "read");
   if (live_) return live_->next();
   // The price of making up a recording is no part of what it costs to estimate one.
   if (source_.seed) return meter_.without([this] { return source_.dataset->next(); });

@@ -183,6 +183,7 @@ std::string timing_json(const StageTimings& pipeline, const StageTimings& progra
                         {"p99_ms", 1e3 * timing.quantile_s(0.99)},
                         {"max_ms", 1e3 * timing.max_s()},
                         {"total_s", timing.total_s()}});
+      if (timing.cpu_s()) stages.back()["cpu_s"] = *timing.cpu_s();
     }
   }
   return nlohmann::ordered_json{{"stages", stages}}.dump(2) + "\n";

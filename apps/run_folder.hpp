@@ -31,7 +31,7 @@ std::filesystem::path beside(const std::filesystem::path& folder, const std::str
 /// InputError when it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
-/// Count, mean, p50, p95, p99 and total of every stage, as json text.
+/// Count, mean, p50, p95, p99, total and, where it was taken, processor time of every stage, as json text.
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
 
 /// Since the oldest keyframe of which the map found a point in this packet's image; nothing where it found none.

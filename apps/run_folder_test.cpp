@@ -192,13 +192,15 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
 TEST(TimingJson, ListsEveryStage) {
   StageTimings pipeline, program;
   { const auto scope = pipeline.measure("warp"); }
-  { const auto scope = program.measure("read"); }
+  { const auto scope = program.measure_often("read"); }
   const auto json = nlohmann::json::parse(timing_json(pipeline, program));
   ASSERT_EQ(json["stages"].size(), 2u);
   EXPECT_EQ(json["stages"][0]["stage"], "read");
   EXPECT_EQ(json["stages"][1]["count"], 1);
   for (const char* key : {"mean_ms", "p50_ms", "p95_ms", "p99_ms", "total_s"})
     EXPECT_TRUE(json["stages"][1].contains(key));
+  EXPECT_FALSE(json["stages"][0].contains("cpu_s"));
+  EXPECT_TRUE(json["stages"][1].contains("cpu_s"));
 }
 
 }  // namespace

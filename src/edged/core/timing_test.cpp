@@ -48,6 +48,15 @@ TEST(StageTimings, ListsStagesInTheOrderOfTheirFirstUse) {
   EXPECT_EQ(timings.all()[1].name, "detect");
 }
 
+TEST(StageTimings, HaveProcessorTimeWhereItWasAskedFor) {
+  StageTimings timings;
+  { const auto scope = timings.measure("warp"); }
+  { const auto scope = timings.measure_often("read"); }
+  ASSERT_TRUE(timings.all()[0].timing.cpu_s().has_value());
+  EXPECT_GE(*timings.all()[0].timing.cpu_s(), 0.0);
+  EXPECT_FALSE(timings.all()[1].timing.cpu_s().has_value());
+}
+
 TEST(StageTimings, NestedScopesOfNewStagesStayValid) {
   StageTimings timings;
   {

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/covariance.hpp"
 
-#include <Eigen/Cholesky>
-
+#include "edged/estimator/envelope_cholesky.hpp"
 #include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
@@ -19,11 +18,12 @@ std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKe
   const Eigen::MatrixXd H = normal_equations(window, cost, layout, Linearisation::FirstEstimates).H;
   const Eigen::Index m = layout.size - layout.leaving;
   const Eigen::VectorXd scale = unit_diagonal_scale(H);
-  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
-  if (llt.info() != Eigen::Success) return std::nullopt;
-  // The last block of the factor is that of the Schur complement: the information that the blocks have of their own.
-  const auto L = llt.matrixLLT().bottomRightCorner(m, m).triangularView<Eigen::Lower>();
-  const Eigen::MatrixXd root = L.solve(Eigen::MatrixXd::Identity(m, m)) * scale.tail(m).asDiagonal();
+  EnvelopeCholesky cholesky;
+  if (!cholesky.factorise(scale.asDiagonal() * H * scale.asDiagonal())) return std::nullopt;
+  // The information that the blocks have of their own.
+  const Eigen::MatrixXd L = cholesky.last_of_L(m);
+  const Eigen::MatrixXd root =
+      L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(m, m)) * scale.tail(m).asDiagonal();
   return root.transpose() * root;
 }
 

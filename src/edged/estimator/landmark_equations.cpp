@@ -10,60 +10,50 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-using Matrix26 = Eigen::Matrix<double, 2, 6>;
+/// A Jacobian of a residual, transposed: products of two are then made of vectors.
+template <int Size>
+using Transposed = Eigen::Matrix<double, Size, 2>;
 
-constexpr Index kCalibration = 6, kDepth = 10, kViews = 11;  // first columns of a landmark's own equations
-
-Index view_column(std::size_t residual) { return kViews + 6 * static_cast<Index>(residual); }
+/// J_a^T J_b; lazy, as it is too small for the kernel that Eigen takes otherwise.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Transposed<Columns>& b) {
+  return a.lazyProduct(b.transpose());
+}
 
 }  // namespace
 
-LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linearisation at)
+LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations)
     : layout_(layout),
+      equations_(equations),
       present_(window),
       taken_(at == Linearisation::Present ? present_ : CameraViews::at_first_estimates(window)),
       at_present_(at == Linearisation::Present),
-      loss_(window.visual_loss()) {}
-
-/// One residual of the term, at the weight of its loss.
-void LandmarkEquations::accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
-                                   const LandmarkTerm& term) {
-  const LandmarkResidual& at = term.residuals[residual];
-  const double correlation = at.correlation;
-  Vector2d r = at.weight * (error.e - correlation * before.e);
-  double rho[3];
-  loss_->Evaluate(r.squaredNorm(), rho);
-  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -correlation * weight;
-  r *= root;
-  Eigen::Matrix<double, 2, kViews> J;
-  Matrix26 J_seen = weight * error.by_seen, J_before = Matrix26::Zero();
-  J << weight * error.by_anchor, weight * error.by_calibration, weight * error.by_rho;
-  const Index column = view_column(residual);
-  r -= J_seen * taken_.moved(at.place);
-  if (correlation != 0.0) {
-    J.leftCols<6>() += weight_before * before.by_anchor;
-    J.middleCols<4>(kCalibration) += weight_before * before.by_calibration;
-    J.col(kDepth) += weight_before * before.by_rho;
-    J_before = weight_before * before.by_seen;
-    r -= J_before * taken_.moved(term.residuals[residual - 1].place);
-    H_.block<6, kViews>(column - 6, 0).noalias() += J_before.transpose() * J;
-    H_.block<6, 6>(column - 6, column - 6).noalias() += J_before.transpose() * J_before;
-    H_.block<6, 6>(column, column - 6).noalias() += J_seen.transpose() * J_before;
+      loss_(window.visual_loss()) {
+  constexpr Index kNowhere = -1;  // of a block that no term knows
+  const auto place_of = [&](BlockKey key) {
+    const auto found = layout.offset.find(key);
+    return found == layout.offset.end() ? kNowhere : found->second;
+  };
+  for (const auto& [id, state] : window.states) poses_.push_back(place_of({BlockKind::Pose, id}));
+  for (std::size_t i = 0; i < window.cameras.size(); ++i) {
+    calibrations_.push_back(place_of({BlockKind::Calibration, i}));
   }
-  r -= J.leftCols<6>() * taken_.moved(term.anchor_place);
-  if (correlation != 0.0) g_.segment<6>(column - 6).noalias() += J_before.transpose() * r;
-  H_.topLeftCorner<kViews, kViews>().noalias() += J.transpose() * J;
-  H_.block<6, kViews>(column, 0).noalias() += J_seen.transpose() * J;
-  H_.block<6, 6>(column, column).noalias() += J_seen.transpose() * J_seen;
-  g_.head<kViews>().noalias() += J.transpose() * r;
-  g_.segment<6>(column).noalias() += J_seen.transpose() * r;
+}
+
+void LandmarkEquations::place(const LandmarkTerm& term) {
+  H_.setZero();
+  g_.setZero();
+  coupling_.setZero();
+  depth_ = {};
+  depth_.inverse_depth = term.inverse_depth;
+  depth_.calibration = calibrations_[term.camera];
+  depth_.poses.reserve(term.residuals.size() + 1);
+  depth_.poses.push_back({poses_[term.anchor_place]});
+  for (const LandmarkResidual& residual : term.residuals) depth_.poses.push_back({poses_[residual.place]});
 }
 
 /// Residuals at the present values, Jacobians where they are taken.
 void LandmarkEquations::linearise(const LandmarkTerm& term) {
-  const Index size = view_column(term.residuals.size());
-  H_.setZero(size, size);
-  g_.setZero(size);
   const CameraViews &now = present_, &taken = taken_;
   const std::size_t c = term.camera;
   const AnchoredLandmark landmark(now.camera(c), now.at(c, term.anchor_place), term.point, *term.inverse_depth);
@@ -81,35 +71,101 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
   }
 }
 
-void LandmarkEquations::place(const LandmarkTerm& term) {
-  const auto at = [&](BlockKind kind, std::uint64_t id) { return layout_.offset.at({kind, id}); };
-  blocks_.clear();
-  blocks_.push_back({0, 6, at(BlockKind::Pose, term.anchor)});
-  blocks_.push_back({kCalibration, 4, at(BlockKind::Calibration, term.camera)});
-  if (term.coupled) blocks_.push_back({kDepth, 1, at(BlockKind::InverseDepth, term.id)});
-  for (std::size_t i = 0; i < term.residuals.size(); ++i) {
-    blocks_.push_back({view_column(i), 6, at(BlockKind::Pose, term.residuals[i].seen)});
+/// One residual of the term, at the weight of its loss.
+void LandmarkEquations::accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
+                                   const LandmarkTerm& term) {
+  const LandmarkResidual& at = term.residuals[residual];
+  Vector2d r = at.weight * (error.e - at.correlation * before.e);
+  double rho[3];
+  loss_->Evaluate(r.squaredNorm(), rho);
+  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -at.correlation * weight;
+  r *= root;
+  Transposed<6> J_anchor = weight * error.by_anchor.transpose();
+  Transposed<4> J_calibration = weight * error.by_calibration.transpose();
+  Vector2d J_depth = weight * error.by_rho;
+  const Transposed<6> J_seen = weight * error.by_seen.transpose();
+  Transposed<6> J_before = Transposed<6>::Zero();
+  const bool correlated = at.correlation != 0.0;
+  if (correlated) {
+    J_anchor += weight_before * before.by_anchor.transpose();
+    J_calibration += weight_before * before.by_calibration.transpose();
+    J_depth += weight_before * before.by_rho;
+    J_before = weight_before * before.by_seen.transpose();
   }
+  if (!at_present_) {
+    r -= J_anchor.transpose() * taken_.moved(term.anchor_place) + J_seen.transpose() * taken_.moved(at.place);
+    if (correlated) r -= J_before.transpose() * taken_.moved(term.residuals[residual - 1].place);
+  }
+
+  const auto add_view = [&](DepthByPose& view, const Transposed<6>& J_view) {
+    view.coupling += J_view * J_depth;
+    equations_.g.segment<6>(view.global) += J_view * r;
+    equations_.add(view.global, view.global, product(J_view, J_view));
+    equations_.add(view.global, depth_.poses.front().global, product(J_view, J_anchor));
+    equations_.add(depth_.calibration, view.global, product(J_calibration, J_view));
+  };
+  DepthByPose &view = depth_.poses[residual + 1], &view_before = depth_.poses[residual];
+  add_view(view, J_seen);
+  if (correlated) {
+    add_view(view_before, J_before);
+    equations_.add(view.global, view_before.global, product(J_seen, J_before));
+  }
+  Transposed<10> J;
+  J << J_anchor, J_calibration;
+  H_ += product(J, J);
+  g_ += J * r;
+  coupling_ += J * J_depth;
+  depth_.h += J_depth.squaredNorm();
+  depth_.g += J_depth.dot(r);
 }
 
-void LandmarkEquations::eliminate_depth(const LandmarkTerm& term, std::vector<EliminatedDepth>* eliminated) {
-  const double h = H_(kDepth, kDepth), g = g_[kDepth];
-  if (!(h > kNoInformation)) return;
-  const Index views = H_.rows() - kViews;
-  coupling_.resize(H_.rows());
-  coupling_ << H_.row(kDepth).head<kDepth>().transpose(), 0.0, H_.col(kDepth).tail(views);
-  H_.selfadjointView<Eigen::Lower>().rankUpdate(coupling_, -1.0 / h);
-  g_ -= coupling_ * (g / h);
-  if (eliminated != nullptr) eliminated->push_back({term.inverse_depth, h, g, coupling_, blocks_});
+/// Of the anchor and the calibration, which all residuals share.
+void LandmarkEquations::add_own() {
+  const Index anchor = depth_.poses.front().global, calibration = depth_.calibration;
+  equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());
+  equations_.add<4, 6>(calibration, anchor, H_.bottomLeftCorner<4, 6>());
+  equations_.add<4, 4>(calibration, calibration, H_.bottomRightCorner<4, 4>());
+  equations_.g.segment<6>(anchor) += g_.head<6>();
+  equations_.g.segment<4>(calibration) += g_.tail<4>();
+  depth_.poses.front().coupling = coupling_.head<6>();
+  depth_.by_calibration = coupling_.tail<4>();
 }
 
-void LandmarkEquations::add(const LandmarkTerm& term, NormalEquations& equations,
-                            std::vector<EliminatedDepth>* eliminated) {
+void LandmarkEquations::add_depth(Index place) {
+  for (const DepthByPose& pose : depth_.poses) equations_.add<1, 6>(place, pose.global, pose.coupling.transpose());
+  equations_.add<1, 4>(place, depth_.calibration, depth_.by_calibration.transpose());
+  equations_.H(place, place) += depth_.h;
+  equations_.g[place] += depth_.g;
+}
+
+/// (S1)
+void LandmarkEquations::eliminate_depth() {
+  const Eigen::Vector4d share = depth_.by_calibration / -depth_.h;
+  for (std::size_t i = 0; i < depth_.poses.size(); ++i) {
+    const DepthByPose& row = depth_.poses[i];
+    const Vector6d row_share = row.coupling / -depth_.h;
+    for (std::size_t j = 0; j <= i; ++j) {
+      const DepthByPose& column = depth_.poses[j];
+      equations_.add<6, 6>(row.global, column.global, row_share * column.coupling.transpose());
+    }
+    equations_.add<4, 6>(depth_.calibration, row.global, share * row.coupling.transpose());
+    equations_.g.segment<6>(row.global) += row_share * depth_.g;
+  }
+  equations_.add<4, 4>(depth_.calibration, depth_.calibration, share * depth_.by_calibration.transpose());
+  equations_.g.segment<4>(depth_.calibration) += share * depth_.g;
+}
+
+void LandmarkEquations::add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated) {
   if (term.residuals.empty()) return;
-  linearise(term);
   place(term);
-  if (!term.coupled) eliminate_depth(term, eliminated);
-  equations.add(H_, g_, blocks_);
+  linearise(term);
+  add_own();
+  if (term.coupled) {
+    add_depth(layout_.offset.at({BlockKind::InverseDepth, term.id}));
+  } else if (depth_.h > kNoInformation) {
+    eliminate_depth();
+    if (eliminated != nullptr) eliminated->push_back(std::move(depth_));
+  }
 }
 
 double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss) {

@@ -9,27 +9,34 @@
 
 namespace edged {
 
-/// Adds one landmark after the other; keeps its memory in between.
+/// Adds one landmark after the other.
 class LandmarkEquations {
  public:
-  LandmarkEquations(Window& window, const Layout& layout, Linearisation at);
-  void add(const LandmarkTerm& term, NormalEquations& equations, std::vector<EliminatedDepth>* eliminated);
+  /// All three must outlive this.
+  LandmarkEquations(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations);
+  /// An inverse depth without a place in the layout is eliminated, and added to `eliminated` if there is one.
+  void add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated);
 
  private:
+  void place(const LandmarkTerm& term);
   void linearise(const LandmarkTerm& term);
   void accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
                   const LandmarkTerm& term);
-  void place(const LandmarkTerm& term);
-  void eliminate_depth(const LandmarkTerm& term, std::vector<EliminatedDepth>* eliminated);
+  void add_own();
+  void add_depth(Eigen::Index place);
+  void eliminate_depth();
 
   const Layout& layout_;
+  NormalEquations& equations_;
   CameraViews present_, taken_;
   bool at_present_;  ///< the two are the same
   ceres::LossFunction* loss_;
-  // Columns: the anchor's pose, the camera's calibration, the inverse depth, the pose of every residual's state.
-  Eigen::MatrixXd H_;
-  Eigen::VectorXd g_, coupling_;
-  std::vector<Placed> blocks_;
+  std::vector<Eigen::Index> poses_, calibrations_;  ///< global places, by a state's place and a camera's index
+
+  // Of the landmark at hand. Columns: the anchor's pose, the camera's calibration.
+  Eigen::Matrix<double, 10, 10> H_;
+  Eigen::Matrix<double, 10, 1> g_, coupling_;
+  DepthEquation depth_;
 };
 
 /// Half the sum of its squares, the loss applied; infinite where it is behind a camera.

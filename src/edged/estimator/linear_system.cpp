@@ -9,8 +9,10 @@ Layout::Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& going
     offset.emplace(key, size);
     size += tangent_size(key.kind);
   };
-  for (const BlockKey& key : blocks) {
-    if (going.contains(key)) place(key);
+  for (const bool motions : {true, false}) {
+    for (const BlockKey& key : blocks) {
+      if (going.contains(key) && (key.kind == BlockKind::Motion) == motions) place(key);
+    }
   }
   leaving = size;
   for (const BlockKey& key : blocks) {

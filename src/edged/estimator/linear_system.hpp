@@ -13,7 +13,8 @@
 
 namespace edged {
 
-/// Where each block's tangent begins: those that leave in front, each part in the order of the keys.
+/// Where each block's tangent begins: those that leave in front, the motions first, which know their neighbours only
+/// (EnvelopeCholesky), each part in the order of the keys.
 struct Layout {
   explicit Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& leaving = {});
 
@@ -35,6 +36,15 @@ struct NormalEquations {
   /// A term's own equations; `blocks` in the order of their local places.
   void add(const Eigen::Ref<const Eigen::MatrixXd>& term_H, const Eigen::Ref<const Eigen::VectorXd>& term_g,
            std::span<const Placed> blocks);
+  /// What ties the block at `row` to that at `column`.
+  template <int Rows, int Columns>
+  void add(Eigen::Index row, Eigen::Index column, const Eigen::Matrix<double, Rows, Columns>& part) {
+    if (row >= column) {
+      H.block<Rows, Columns>(row, column) += part;
+    } else {
+      H.block<Columns, Rows>(column, row) += part.transpose();
+    }
+  }
 
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
@@ -45,12 +55,19 @@ struct NormalEquations {
 /// from there.
 enum class Linearisation { Present, FirstEstimates };
 
-/// What is needed to find a landmark's inverse depth again: its step is -(g + coupling^T d) / h.
-struct EliminatedDepth {
-  double* inverse_depth;
-  double h, g;
-  Eigen::VectorXd coupling;  ///< over the columns of `blocks`
-  std::vector<Placed> blocks;
+/// How a landmark's inverse depth and the pose of one of its views go together.
+struct DepthByPose {
+  Eigen::Index global = 0;
+  Vector6d coupling = Vector6d::Zero();
+};
+
+/// A landmark's inverse depth in the normal equations; eliminated from them, its step is -(g + couplings^T d) / h.
+struct DepthEquation {
+  double* inverse_depth = nullptr;
+  double h = 0.0, g = 0.0;
+  std::vector<DepthByPose> poses;  ///< the anchor's, then that of every residual's state
+  Eigen::Index calibration = 0;    ///< global place of its camera's
+  Eigen::Vector4d by_calibration = Eigen::Vector4d::Zero();
 };
 
 /// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in

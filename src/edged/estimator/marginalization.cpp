@@ -61,6 +61,7 @@ LinearPrior marginalize(Window& window, const Cost& cost, const std::set<BlockKe
     prior.J.row(row) = std::sqrt(D[i]) * L_T_P.row(i) * inverse_scale.asDiagonal();
     prior.r[row++] = y[i] / std::sqrt(D[i]);
   }
+  prior.information = prior.J.transpose() * prior.J;
   prior.blocks = layout.staying;
   for (const BlockKey& key : prior.blocks) {
     const double* x0 = window.linearisation_point(key);

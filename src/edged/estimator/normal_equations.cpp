@@ -59,6 +59,36 @@ bool linearise(Window& window, const Factor& factor, const Layout& layout, Linea
   return true;
 }
 
+/// The window's prior, whose J^T J is known: only turns take its derivatives away from those at its own place.
+void add_prior(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
+  const LinearPrior& prior = window.prior;
+  MatrixXd H = prior.information;
+  VectorXd d(H.cols());
+  std::vector<Placed> blocks;
+  std::vector<std::pair<Index, Eigen::Matrix3d>> turns;
+  Index column = 0;
+  for (std::size_t i = 0; i < prior.blocks.size(); ++i) {
+    const BlockKey& key = prior.blocks[i];
+    const Index size = tangent_size(key.kind);
+    const double* now = window.block(key);
+    tangent_difference(key.kind, now, prior.x0[i].data(), d.data() + column);
+    if (at == Linearisation::FirstEstimates && window.linearisation_point(key) != now) {
+      d.segment(column, size).setZero();  // steps count from there
+    } else if (key.kind == BlockKind::Pose) {
+      turns.emplace_back(column + 3, so3::right_jacobian_inverse(d.segment<3>(column + 3)));
+    }
+    blocks.push_back({column, size, layout.offset.at(key)});
+    column += size;
+  }
+  VectorXd g = H * d + prior.J.transpose() * prior.r;
+  for (const auto& [first, by_turn] : turns) {
+    H.middleCols<3>(first) *= by_turn;
+    H.middleRows<3>(first) = (by_turn.transpose() * H.middleRows<3>(first)).eval();
+    g.segment<3>(first) = (by_turn.transpose() * g.segment<3>(first)).eval();
+  }
+  equations.add(H, g, blocks);
+}
+
 double value_of(Window& window, const Factor& factor) {
   std::vector<const double*> now;
   for (const BlockKey& key : factor.blocks) now.push_back(window.block(key));
@@ -72,18 +102,22 @@ double value_of(Window& window, const Factor& factor) {
 }  // namespace
 
 NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
-                                 std::vector<EliminatedDepth>* eliminated) {
+                                 std::vector<DepthEquation>* eliminated) {
   NormalEquations equations(layout.size);
   LinearFactor linear;
   MatrixXd H;
   for (const Factor& factor : cost.factors) {
+    if (factor.kind == FactorKind::Prior) {
+      add_prior(window, layout, at, equations);
+      continue;
+    }
     if (!linearise(window, factor, layout, at, linear)) continue;
     H.setZero(linear.J.cols(), linear.J.cols());
     H.selfadjointView<Eigen::Lower>().rankUpdate(linear.J.transpose());
     equations.add(H, linear.J.transpose() * linear.r, linear.blocks);
   }
-  LandmarkEquations landmarks(window, layout, at);
-  for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, equations, eliminated);
+  LandmarkEquations landmarks(window, layout, at, equations);
+  for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, eliminated);
   return equations;
 }
 

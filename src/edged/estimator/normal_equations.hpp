@@ -12,7 +12,7 @@ namespace edged {
 /// landmark behind a camera) counts nothing. Inverse depths that the layout does not hold are eliminated, and what
 /// their steps follow from is added to `eliminated` if there is one.
 NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
-                                 std::vector<EliminatedDepth>* eliminated = nullptr);
+                                 std::vector<DepthEquation>* eliminated = nullptr);
 
 /// Half the sum of squares, robust losses applied, at the present values; infinite where a term is not defined.
 double value_of(Window& window, const Cost& cost);

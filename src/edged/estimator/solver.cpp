@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/solver.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "edged/estimator/envelope_cholesky.hpp"
 #include "edged/estimator/normal_equations.hpp"
 
 namespace edged {
@@ -22,7 +22,8 @@ constexpr double kConverged = 1e-6;  // a step that gains less of the cost is th
 /// The window around its present values: its linear system, and the way to another point and back.
 class Neighbourhood {
  public:
-  Neighbourhood(Window& window, const Cost& cost) : window_(window), cost_(cost), layout_(blocks_of(cost)) {}
+  Neighbourhood(Window& window, const Cost& cost)
+      : window_(window), cost_(cost), layout_(blocks_of(cost), blocks_of(cost)) {}
 
   void linearise() {
     eliminated_.clear();
@@ -34,12 +35,9 @@ class Neighbourhood {
   }
 
   /// The step that solves the system; false when it has none.
-  bool step(double damping, VectorXd& d) const {
-    Eigen::MatrixXd damped = H_;
-    damped.diagonal().array() += damping;
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(damped);
-    if (llt.info() != Eigen::Success) return false;
-    d = scale_.asDiagonal() * llt.solve(-g_);
+  bool step(double damping, VectorXd& d) {
+    if (!cholesky_.factorise(H_, damping)) return false;
+    d = scale_.asDiagonal() * cholesky_.solve(-g_);
     return d.allFinite();
   }
 
@@ -51,12 +49,10 @@ class Neighbourhood {
       before_.insert(before_.end(), block, block + block_size(key.kind));
       plus(key.kind, block, d.data() + offset);
     }
-    for (const EliminatedDepth& depth : eliminated_) {
+    for (const DepthEquation& depth : eliminated_) {
       before_.push_back(*depth.inverse_depth);
-      double coupled = depth.g;
-      for (const Placed& at : depth.blocks) {
-        coupled += depth.coupling.segment(at.local, at.size).dot(d.segment(at.global, at.size));
-      }
+      double coupled = depth.g + depth.by_calibration.dot(d.segment<4>(depth.calibration));
+      for (const DepthByPose& pose : depth.poses) coupled += pose.coupling.dot(d.segment<6>(pose.global));
       *depth.inverse_depth -= coupled / depth.h;
     }
   }
@@ -67,16 +63,17 @@ class Neighbourhood {
       std::copy_n(value, block_size(key.kind), window_.block(key));
       value += block_size(key.kind);
     }
-    for (const EliminatedDepth& depth : eliminated_) *depth.inverse_depth = *value++;
+    for (const DepthEquation& depth : eliminated_) *depth.inverse_depth = *value++;
   }
 
  private:
   Window& window_;
   const Cost& cost_;
   Layout layout_;
-  std::vector<EliminatedDepth> eliminated_;
+  std::vector<DepthEquation> eliminated_;
   VectorXd scale_, g_;
   Eigen::MatrixXd H_;
+  EnvelopeCholesky cholesky_;
   std::vector<double> before_;
 };
 

@@ -144,4 +144,21 @@ EventWarp::EventWarp(const CameraModel& ideal, const CameraMotion& motion, const
   bins_.back().end = Timestamp::max();
 }
 
+void EventWarp::warp(const Bin& bin, Block& block) {
+  const Bin b = bin;  // no other's memory: the loop is made of vectors of events
+  for (std::size_t k = 0; k < block.count; ++k) {
+    const float x = block.x[k], y = block.y[k], a = block.a[k], nearer = block.nearer[k];
+    const auto row = [&](int r) {
+      const float* f = b.h + 3 * r;
+      const float* d = b.dh + 3 * r;
+      return f[0] * x + f[1] * y + f[2] + a * (d[0] * x + d[1] * y + d[2]) +
+             nearer * (b.shift_begin[r] + a * b.shift_change[r]);
+    };
+    const float w = row(2), inverse = 1.0F / w;
+    block.x[k] = row(0) * inverse;
+    block.y[k] = row(1) * inverse;
+    block.w[k] = w;
+  }
+}
+
 }  // namespace edged

@@ -58,12 +58,8 @@ class EventWarp {
   /// out: events outside the table or what is used of the lens, and points that come to lie behind the camera.
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, Sink&& sink) const {
-    visit(events, table, [&sink](const Bin& bin, const Eigen::Vector2f& p, float a) {
-      const float w = bin.row(2, p, a);
-      if (w < kMinDepthRatio) return;
-      const float inverse = 1.0F / w;
-      sink(bin.row(0, p, a) * inverse, bin.row(1, p, a) * inverse);
-    });
+    visit(
+        events, table, [](const Eigen::Vector2f&) { return 0.0F; }, sink);
   }
 
   /// The same with the depth that the grid holds where the event is; the grid belongs to the reference time, and
@@ -71,14 +67,9 @@ class EventWarp {
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, const DepthGrid& depths,
                 Sink&& sink) const {
-    visit(events, table, [&](const Bin& bin, const Eigen::Vector2f& p, float a) {
-      const float nearer = depths.inverse_depth(p.x(), p.y()) - inverse_depth_;
-      const float w = bin.row(2, p, a) + nearer * bin.shift(2, a);
-      if (w < kMinDepthRatio) return;
-      const float inverse = 1.0F / w;
-      sink((bin.row(0, p, a) + nearer * bin.shift(0, a)) * inverse,
-           (bin.row(1, p, a) + nearer * bin.shift(1, a)) * inverse);
-    });
+    visit(
+        events, table, [&](const Eigen::Vector2f& p) { return depths.inverse_depth(p.x(), p.y()) - inverse_depth_; },
+        sink);
   }
 
  private:
@@ -90,29 +81,43 @@ class EventWarp {
     float per_ns = 0.0F;  ///< 1 / (end - begin)
     float h[9], dh[9];
     float shift_begin[3], shift_change[3];
-
-    float row(int r, const Eigen::Vector2f& p, float a) const {
-      const float* f = h + 3 * r;
-      const float* d = dh + 3 * r;
-      return f[0] * p.x() + f[1] * p.y() + f[2] + a * (d[0] * p.x() + d[1] * p.y() + d[2]);
-    }
-    float shift(int r, float a) const { return shift_begin[r] + a * shift_change[r]; }
   };
 
-  /// Calls use(bin, undistorted pixel, a) for every event inside the table.
-  template <typename Use>
-  void visit(std::span<const Event> events, const UndistortTable& table, Use&& use) const {
+  /// Events of one bin side by side, so that several are warped at once.
+  struct Block {
+    static constexpr std::size_t kMost = 64;
+    float x[kMost], y[kMost];  ///< undistorted pixel, then the warped one
+    float a[kMost];            ///< time in the bin, from 0 to 1
+    float nearer[kMost];       ///< inverse depth less the one that H holds
+    float w[kMost];            ///< depth after the warp over depth before it
+    std::size_t count = 0;
+  };
+  static void warp(const Bin& bin, Block& block);
+
+  /// nearer(undistorted pixel): its inverse depth less the one that H holds.
+  template <typename Nearer, typename Sink>
+  void visit(std::span<const Event> events, const UndistortTable& table, Nearer&& nearer, Sink&& sink) const {
     const auto width = static_cast<unsigned>(table.width());
     const auto height = static_cast<unsigned>(table.height());
+    Block block;
     std::size_t i = 0;
     for (const Bin& bin : bins_) {
-      for (; i < events.size() && events[i].t < bin.end; ++i) {
-        const Event& event = events[i];
-        if (event.x >= width || event.y >= height) continue;
-        const Eigen::Vector2f& p = table.at(event.x, event.y);
-        if (std::isnan(p.x())) continue;
-        const float a = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
-        use(bin, p, a);
+      const auto more = [&] { return i < events.size() && events[i].t < bin.end; };
+      while (more()) {
+        for (block.count = 0; block.count < Block::kMost && more(); ++i) {
+          const Event& event = events[i];
+          if (event.x >= width || event.y >= height) continue;
+          const Eigen::Vector2f& p = table.at(event.x, event.y);
+          if (std::isnan(p.x())) continue;
+          block.x[block.count] = p.x();
+          block.y[block.count] = p.y();
+          block.a[block.count] = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
+          block.nearer[block.count++] = nearer(p);
+        }
+        warp(bin, block);
+        for (std::size_t k = 0; k < block.count; ++k) {
+          if (!(block.w[k] < kMinDepthRatio)) sink(block.x[k], block.y[k]);
+        }
       }
     }
   }

@@ -31,7 +31,7 @@ struct Odometry::Impl {
 };
 
 std::optional<Packet> Odometry::Impl::next_packet() {
-  const auto timer = packet_odometry.timings().measure("packetize");
+  const auto timer = packet_odometry.timings().measure_often("packetize");
   while (true) {
     if (std::optional<Packet> packet = packetizer.next()) return packet;
     if (begins_time) {

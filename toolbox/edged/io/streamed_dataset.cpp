@@ -5,6 +5,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -54,11 +55,18 @@ std::optional<Measurement> StreamedDataset::merged() {
   }
 }
 
-void StreamedDataset::push_events(std::vector<Event> events) {
-  if (const cv::Size size = info_.event_sensor; !size.empty())
-    count_outside(std::erase_if(events, [size](const Event& e) { return e.x >= size.width || e.y >= size.height; }));
-  inside_ += events.size();
-  merger_.push(events);
+void StreamedDataset::push_events(std::span<const Event> events) {
+  const cv::Size size = info_.event_sensor;
+  const auto outside = [size](const Event& e) { return e.x >= size.width || e.y >= size.height; };
+  if (size.empty() || std::ranges::none_of(events, outside)) {
+    inside_ += events.size();
+    merger_.push(events);
+    return;
+  }
+  std::vector<Event> inside(events.begin(), events.end());
+  count_outside(std::erase_if(inside, outside));
+  inside_ += inside.size();
+  merger_.push(inside);
 }
 
 void StreamedDataset::push_frame(Timestamp t, cv::Mat image) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <span>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/bytes.hpp"
@@ -35,7 +36,7 @@ class StreamedDataset : public Dataset {
   void set_sensor(cv::Size size) { info_.event_sensor = size; }
 
   /// Events outside the sensor are left out; a recording with more than 1 % of them is refused (InputError).
-  void push_events(std::vector<Event> events);
+  void push_events(std::span<const Event> events);
   /// image: CV_8UC1. Throws Damage for another size than that of the first.
   void push_frame(Timestamp t, cv::Mat image);
   void push_imu(const ImuSample& sample) { merger_.push(sample); }

@@ -56,16 +56,14 @@ struct BiasDerivatives {
 }  // namespace
 
 ImuFactor::ImuFactor(const Preintegration& imu) : imu_(imu) {
-  Matrix15d covariance = Matrix15d::Zero();
-  covariance.topLeftCorner<9, 9>() = imu.covariance();
   // A floor far below any real noise keeps the factorisation sound for very short intervals.
-  covariance.topLeftCorner<9, 9>().diagonal().array() += 1e-14;
-  const double dt = std::max(imu.dt(), 1e-6);
-  covariance.diagonal().segment<3>(kBg).setConstant(imu.noise().gyro_walk * imu.noise().gyro_walk * dt);
-  covariance.diagonal().segment<3>(kBa).setConstant(imu.noise().accel_walk * imu.noise().accel_walk * dt);
-  const Eigen::LLT<Matrix15d> llt(covariance);
-  // covariance = L L^T, so L^-1 whitens.
-  sqrt_information_ = llt.matrixL().solve(Matrix15d::Identity());
+  constexpr double kFloor = 1e-14;
+  const Matrix9d covariance = imu.covariance() + kFloor * Matrix9d::Identity();
+  const Eigen::LLT<Matrix9d> llt(covariance);
+  whiten_motion_ = llt.matrixL().solve(Matrix9d::Identity());
+  const double root_dt = std::sqrt(std::max(imu.dt(), 1e-6));
+  whiten_biases_.head<3>().setConstant(1.0 / (imu.noise().gyro_walk * root_dt));
+  whiten_biases_.tail<3>().setConstant(1.0 / (imu.noise().accel_walk * root_dt));
 }
 
 bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
@@ -80,13 +78,13 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
   const Vector3d p_change_B0 =
       R_0_inv * (T_1.translation() - T_0.translation() - m_0.v * dt - 0.5 * kGravity_W * dt * dt);
 
-  Eigen::Map<Eigen::Matrix<double, 15, 1>> r(residuals);
+  Eigen::Matrix<double, 15, 1> r;
   r.segment<3>(kPhi) = dR_error;
   r.segment<3>(kV) = v_change_B0 - imu_.dv(bg, ba);
   r.segment<3>(kP) = p_change_B0 - imu_.dp(bg, ba);
   r.segment<3>(kBg) = m_1.bg - m_0.bg;
   r.segment<3>(kBa) = m_1.ba - m_0.ba;
-  r = sqrt_information_ * r;
+  Eigen::Map<Eigen::Matrix<double, 15, 1>>{residuals} = whitened(r);
   if (jacobians == nullptr) return true;
 
   const Matrix3d J_r_inv = so3::right_jacobian_inverse(dR_error);
@@ -96,7 +94,7 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     J.block<3, 3>(kV, kPosePhi) = skew(v_change_B0);
     J.block<3, 3>(kP, kPosePhi) = skew(p_change_B0);
     J.block<3, 3>(kP, kPosePos) = -R_0_inv;
-    Eigen::Map<PoseJacobian>(jacobians[0]).noalias() = sqrt_information_ * J;
+    Eigen::Map<PoseJacobian>{jacobians[0]} = whitened(J);
   }
   const BiasDerivatives by_bias(imu_, bg, J_r_inv, dR_error);
   if (jacobians[1] != nullptr) {
@@ -107,23 +105,23 @@ bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double*
     J.middleCols<3>(kMotionBa) = by_bias.accel;
     J.block<3, 3>(kBg, kMotionBg) = -Matrix3d::Identity();
     J.block<3, 3>(kBa, kMotionBa) = -Matrix3d::Identity();
-    Eigen::Map<MotionJacobian>(jacobians[1]).noalias() = sqrt_information_ * J;
+    Eigen::Map<MotionJacobian>{jacobians[1]} = whitened(J);
   }
   if (jacobians[2] != nullptr) {
     PoseJacobian J = PoseJacobian::Zero();
     J.block<3, 3>(kPhi, kPosePhi) = J_r_inv;
     J.block<3, 3>(kP, kPosePos) = R_0_inv;
-    Eigen::Map<PoseJacobian>(jacobians[2]).noalias() = sqrt_information_ * J;
+    Eigen::Map<PoseJacobian>{jacobians[2]} = whitened(J);
   }
   if (jacobians[3] != nullptr) {
     MotionJacobian J = MotionJacobian::Zero();
     J.block<3, 3>(kV, kMotionV) = R_0_inv;
     J.block<3, 3>(kBg, kMotionBg) = Matrix3d::Identity();
     J.block<3, 3>(kBa, kMotionBa) = Matrix3d::Identity();
-    Eigen::Map<MotionJacobian>(jacobians[3]).noalias() = sqrt_information_ * J;
+    Eigen::Map<MotionJacobian>{jacobians[3]} = whitened(J);
   }
   if (jacobians[4] != nullptr) {
-    Eigen::Map<IntrinsicsJacobian>(jacobians[4]).noalias() = sqrt_information_ * by_bias.by_intrinsics(imu_);
+    Eigen::Map<IntrinsicsJacobian>{jacobians[4]} = whitened(by_bias.by_intrinsics(imu_));
   }
   return true;
 }

@@ -20,8 +20,18 @@ class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 18> {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
+  /// L^-1 M for the covariance L L^T, whose random walks stand by themselves.
+  template <int Columns, int Options>
+  Eigen::Matrix<double, 15, Columns, Options> whitened(const Eigen::Matrix<double, 15, Columns, Options>& M) const {
+    Eigen::Matrix<double, 15, Columns, Options> white;
+    white.template topRows<9>() = whiten_motion_.lazyProduct(M.template topRows<9>());
+    white.template bottomRows<6>() = whiten_biases_.asDiagonal() * M.template bottomRows<6>();
+    return white;
+  }
+
   const Preintegration& imu_;
-  Matrix15d sqrt_information_;
+  Matrix9d whiten_motion_;
+  Vector6d whiten_biases_;
 };
 
 }  // namespace edged

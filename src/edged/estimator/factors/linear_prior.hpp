@@ -20,6 +20,7 @@ struct LinearPrior {
   std::vector<std::vector<double>> x0;  ///< one linearisation point a block
   Eigen::MatrixXd J;                    ///< rows x sum of tangent sizes
   Eigen::VectorXd r;
+  Eigen::MatrixXd information = {};  ///< J^T J, of what marginalisation leaves; else empty
 
   bool empty() const { return blocks.empty(); }
 };

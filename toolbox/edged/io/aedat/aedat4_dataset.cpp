@@ -77,7 +77,7 @@ void Aedat4Dataset::take_events(ByteSpan buffer) {
     // Negative ones become large, and so lie outside of any sensor.
     events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
   }
-  push_events(std::move(events));
+  push_events(events);
 }
 
 void Aedat4Dataset::take_frame(ByteSpan buffer) {

@@ -65,6 +65,7 @@ H5Array::H5Array(H5Handle data, std::string path) : data_(std::move(data)), path
   const int rank = space ? H5Sget_simple_extent_ndims(space.get()) : -1;
   if (!type || rank < 0) throw Damage("a data set without type or shape");
   type_ = H5Tget_class(type.get());
+  unsigned_ = type_ == H5T_INTEGER && H5Tget_sign(type.get()) == H5T_SGN_NONE;
   shape_.resize(static_cast<std::size_t>(rank));
   static_assert(sizeof(hsize_t) == sizeof(std::uint64_t));
   std::vector<hsize_t> sides(shape_.size());

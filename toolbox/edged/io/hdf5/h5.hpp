@@ -70,6 +70,8 @@ class H5Array {
   std::size_t columns() const { return columns_; }
   bool floating() const { return type_ == H5T_FLOAT; }
   bool compound() const { return type_ == H5T_COMPOUND; }
+  /// Whole numbers that cannot be negative.
+  bool unsigned_integer() const { return unsigned_; }
   /// Of a compound type.
   bool has_fields(std::initializer_list<const char*> names) const;
 
@@ -97,6 +99,7 @@ class H5Array {
   bool filtered_ = false, deflated_ = false;
   mutable std::uint64_t checked_rows_ = 0;  ///< the chunks before this row are what they should be
   H5T_class_t type_ = H5T_NO_CLASS;
+  bool unsigned_ = false;
 };
 
 /// An HDF5 file open for reading.

@@ -189,14 +189,14 @@ class Hdf5Dataset final : public StreamedDataset {
       if (at == shared->rows()) return false;
       const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
       read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
-        const std::vector<Event> read = shared->read(first, n);
-        std::ranges::copy_if(read, std::back_inserter(items),
-                             [this](const Event& e) { return is_stamp(e.t, "events"); });
+        std::vector<Event> read = shared->read(first, n);
+        std::erase_if(read, [this](const Event& e) { return !is_stamp(e.t, "events"); });
+        items.insert(items.end(), read.begin(), read.end());
       });
       at += count;
       return true;
     };
-    add_source<Event>(refill, [this](std::span<const Event> part) { push_events({part.begin(), part.end()}); });
+    add_source<Event>(refill, [this](std::span<const Event> part) { push_events(part); });
   }
 
   void add_images(H5Images images, bool cut) {

@@ -51,8 +51,9 @@ constexpr std::array kLayouts = {
 constexpr Timestamp kNoStamp = Timestamp::min();
 
 Timestamp stamp_of(std::int64_t value, std::int64_t unit_ns) {
-  const std::int64_t most = kMaxStampNs / unit_ns;
-  return value < -most || value > most ? kNoStamp : timestamp_from_ns(value * unit_ns);
+  std::int64_t ns = 0;
+  const bool fits = !__builtin_mul_overflow(value, unit_ns, &ns) && ns >= -kMaxStampNs && ns <= kMaxStampNs;
+  return fits ? timestamp_from_ns(ns) : kNoStamp;
 }
 
 Timestamp stamp_of(double value, std::int64_t unit_ns) {
@@ -83,6 +84,15 @@ std::int64_t unit_of(const H5Array& array) {
 
 std::uint16_t pixel(double v) { return v >= 0 && v < 65535 ? static_cast<std::uint16_t>(v) : 65535; }
 std::uint16_t pixel(std::int32_t v) { return v >= 0 && v < 65535 ? static_cast<std::uint16_t>(v) : 65535; }
+
+std::vector<std::uint16_t> read_pixels(const H5Array& array, std::uint64_t first, std::uint64_t count) {
+  // What is too large becomes 65535 on its way, as it should; what is negative would become 0.
+  if (array.unsigned_integer()) return array.read<std::uint16_t>(first, count);
+  std::vector<std::uint16_t> pixels(count);
+  std::ranges::transform(array.read<std::int32_t>(first, count), pixels.begin(),
+                         [](std::int32_t v) { return pixel(v); });
+  return pixels;
+}
 
 /// EcfEvent as a type of the library.
 H5Handle fields_type() {
@@ -170,11 +180,11 @@ std::vector<Event> H5Events::read(std::uint64_t first, std::uint64_t count) cons
 }
 
 std::vector<Event> H5Events::read_columns(std::uint64_t first, std::uint64_t count) const {
-  const auto x = arrays_[0].read<std::int32_t>(first, count), y = arrays_[1].read<std::int32_t>(first, count);
+  const auto x = read_pixels(arrays_[0], first, count), y = read_pixels(arrays_[1], first, count);
   const auto p = arrays_[2].read<std::int8_t>(first, count);
   const auto t = stamps_->read(first, count);
   std::vector<Event> events(count);
-  for (std::size_t i = 0; i < count; ++i) events[i] = {t[i], pixel(x[i]), pixel(y[i]), p[i] > 0};
+  for (std::size_t i = 0; i < count; ++i) events[i] = {t[i], x[i], y[i], p[i] > 0};
   return events;
 }
 

@@ -122,7 +122,7 @@ class PropheseeDataset final : public StreamedDataset {
     decoder_.decode(bytes, events);
     for (Event& event : events) event.t += time_offset_;
     decoded_ += events.size();
-    push_events(std::move(events));
+    push_events(events);
     count_left_out(before, decoder_.counts());
     return !bytes.empty();
   }

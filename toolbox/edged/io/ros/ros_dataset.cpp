@@ -79,7 +79,7 @@ void RosDataset::feed_events(const std::string& type, WireReader message) {
     const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
     set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));
   }
-  push_events(std::move(array.events));
+  push_events(array.events);
 }
 
 void RosDataset::feed_frame(const std::string& type, WireReader message) {

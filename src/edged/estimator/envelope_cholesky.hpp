@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// H = L L^T without the zeros in front of each row, which L has in the same places. A window's motions are tied to
+// their neighbours only: put first, they leave a third of the products.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace edged {
+
+class EnvelopeCholesky {
+ public:
+  /// Of H + damping I; of H the lower triangle counts. False when that is not positive definite.
+  bool factorise(const Eigen::MatrixXd& H, double damping = 0.0);
+  /// H^-1 b
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  /// The last rows and columns of L: the factor of the Schur complement of all before them.
+  Eigen::MatrixXd last_of_L(Eigen::Index size) const { return L_.bottomRightCorner(size, size); }
+
+ private:
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> L_;
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> first_;  ///< column of a row that is not zero
+  Eigen::VectorXd inverse_;                               ///< of the diagonal
+};
+
+}  // namespace edged
