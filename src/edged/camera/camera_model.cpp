@@ -242,8 +242,9 @@ CameraModel CameraModel::within(double limit_rad) const {
     throw InputError::format("a lens can be used up to more than 0 and less than {:.0f} degrees off its axis, not {:g}",
                              kWidest / kDegree, limit_rad / kDegree);
   CameraModel narrower = *this;
-  narrower.limit_ = limit_rad;
-  narrower.max_radius_ = std::min(max_radius_, std::tan(limit_rad));
+  narrower.limit_ =
+      std::min(limit_rad, distortion_ == DistortionModel::Equidistant ? max_theta_ : std::atan(max_radius_));
+  narrower.max_radius_ = std::tan(narrower.limit_);
   return narrower;
 }
 
@@ -253,7 +254,8 @@ bool CameraModel::in_limit(const Vector2d& pixel, double border_px) const {
 }
 
 Eigen::Vector3d CameraModel::pixel_to_ray(const Vector2d& pixel) const {
-  if (limit_ == 0.0 || distortion_ != DistortionModel::Equidistant) return pixel_to_point(pixel).homogeneous();
+  if (limit_ == 0.0) return pixel_to_point(pixel).homogeneous();
+  if (distortion_ != DistortionModel::Equidistant) return pixel_to_point(pixel).homogeneous().normalized();
   const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
   const double target = distorted.norm();
   if (target == 0.0) return Eigen::Vector3d::UnitZ();

@@ -98,7 +98,7 @@ struct EstimatorConfig {
   double max_noise_scale = 4.0;
   double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
   double sigma_inflation =
-      2.0;  ///< of what covariance() gives: what corners of one image have in common is not modelled
+      1.4;  ///< of what covariance() gives: what corners of one image have in common is not modelled
   TrackNoise track_noise;
   CalibrationConfig calibration;
   LandmarkConfig landmarks;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "edged/core/check.hpp"
 #include "edged/estimator/landmark_equations.hpp"
 
 namespace edged {
@@ -63,6 +64,7 @@ bool linearise(Window& window, const Factor& factor, const Layout& layout, Linea
 void add_prior(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
   const LinearPrior& prior = window.prior;
   MatrixXd H = prior.information;
+  EDGED_CHECK(H.cols() == prior.J.cols(), "a prior of {} columns whose J^T J has {}", prior.J.cols(), H.cols());
   VectorXd d(H.cols());
   std::vector<Placed> blocks;
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;

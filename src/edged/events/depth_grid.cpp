@@ -22,7 +22,7 @@ DepthGrid::DepthGrid(int width, int height, const DepthGridSettings& settings, s
     return static_cast<int>(std::clamp(px / settings.cell_px, 0.0, static_cast<double>(cells - 1)));
   };
   for (const DepthSample& sample : samples) {
-    if (!(sample.depth > 0.0)) continue;
+    if (!(sample.depth > 0.0) || !sample.pixel.allFinite()) continue;
     const Eigen::Vector2d &at = sample.pixel, reach = Eigen::Vector2d::Constant(settings.reach_px);
     const Eigen::Vector2d low = at - reach, high = at + reach;
     for (int row = cell_of(low.y(), rows_); row <= cell_of(high.y(), rows_); ++row) {

@@ -61,10 +61,10 @@ struct PatchConfig {
   void visit(ConfigFields& fields);
 };
 
-/// The first look of a corner, which images are aligned to. What it may differ by: event frames change with the motion.
+/// The first look of a corner, which images are aligned to.
 struct TemplateConfig {
   bool enabled = true;
-  PatchConfig patch = {.min_similarity = 0.7};
+  PatchConfig patch;
 
   void visit(ConfigFields& fields);
 };

@@ -60,8 +60,9 @@ std::optional<Template> template_of(const Patch& patch) {
 /// What the image shows in the patch's place; false where that is outside, or of one grey.
 bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, Samples& samples) {
   const Eigen::Vector2d reach = 0.5 * (kInner - 1) * A.cwiseAbs().rowwise().sum();
-  if (!((middle - reach).minCoeff() >= 0.0) || !(middle.x() + reach.x() < image.cols - 1) ||
-      !(middle.y() + reach.y() < image.rows - 1))
+  constexpr double kRounding = 1e-6;  // of the places added up below
+  if (!((middle - reach).minCoeff() >= kRounding) || !(middle.x() + reach.x() < image.cols - 1 - kRounding) ||
+      !(middle.y() + reach.y() < image.rows - 1 - kRounding))
     return false;
   for (int y = 0, i = 0; y < kInner; ++y) {
     Eigen::Vector2d place = middle + A * offset(0, y);

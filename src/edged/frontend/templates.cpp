@@ -36,14 +36,19 @@ void Templates::take(const cv::Mat& image, std::span<const Track> tracks) {
 }
 
 std::optional<Eigen::Vector2d> Templates::align(FeatureId id, const cv::Mat& image, const Eigen::Vector2d& pixel,
-                                                const Eigen::Vector3d& p_C) {
+                                                const Eigen::Vector3d& p_C) const {
   const auto known = looks_.find(id);
   if (known == looks_.end()) return std::nullopt;
-  Look& look = known->second;
+  const Look& look = known->second;
   const std::optional<Eigen::Matrix2d> A = warp(look, p_C);
   const std::optional<PatchMatch> match = A ? match_patch(look.patch, image, pixel, *A, 0.0, config_) : std::nullopt;
-  look.fits = match && (match->pixel - pixel).norm() < kFarthest_px;
-  return look.fits ? std::optional(match->pixel) : std::nullopt;
+  const bool near = match && (match->pixel - pixel).norm() < kFarthest_px;
+  return near ? std::optional(match->pixel) : std::nullopt;
+}
+
+void Templates::note(FeatureId id, bool fits) {
+  const auto known = looks_.find(id);
+  if (known != looks_.end()) known->second.fits = fits;
 }
 
 /// Pixels of the newest image by pixels of the patch; nothing where they are too different in size.

@@ -29,7 +29,9 @@ class Templates {
   /// has no look, or looks otherwise by now. p_C: where the corner is expected in the camera [m]: its neighbours are
   /// taken for as deep as it is.
   std::optional<Eigen::Vector2d> align(FeatureId id, const cv::Mat& image, const Eigen::Vector2d& pixel,
-                                       const Eigen::Vector3d& p_C);
+                                       const Eigen::Vector3d& p_C) const;
+  /// Whether the newest image looks as the corner did at first.
+  void note(FeatureId id, bool fits);
   void clear() { looks_.clear(); }
 
  private:
@@ -37,7 +39,7 @@ class Templates {
     Patch patch;
     SE3 T_cur_look;                        ///< camera at the look to camera now
     Eigen::Vector2d corner, right, below;  ///< on the unit plane: the corner and two of its neighbours
-    bool fits = true;                      ///< the newest image
+    bool fits = true;                      ///< as last noted
   };
   std::optional<Eigen::Matrix2d> warp(const Look& look, const Eigen::Vector3d& p_C) const;
 

@@ -56,6 +56,7 @@ TEST_F(FirstLooks, StayUntilTheyNoLongerFit) {
   // One that does not is.
   const cv::Mat other = random_texture(240, 180, 9);
   EXPECT_FALSE(templates_.align(track.id, other, track.pixel, in_camera(track, SE3())));
+  templates_.note(track.id, false);
   templates_.take(other, std::span(&track, 1));
   const auto again = templates_.align(track.id, other, track.pixel, in_camera(track, SE3()));
   ASSERT_TRUE(again);

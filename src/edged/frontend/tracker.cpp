@@ -219,8 +219,8 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
 
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
-                                              const std::vector<Eigen::Vector3d>& expected_C) {
-  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border)};
+                                              const std::vector<Eigen::Vector3d>& expected_C) const {
+  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0)};
   std::vector<std::size_t> alive;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
@@ -237,6 +237,7 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
     const auto aligned = templates_.align(tracks_[i].id, current_.image(), to_eigen(forward.points[k]), expected_C[i]);
     if (aligned && camera_.contains(*aligned, config_.border_px)) {
       matches.points[i] = to_cv(*aligned);
+      matches.as_at_first[i] = 1;
     } else {
       otherwise.push_back(i);
     }
@@ -262,7 +263,7 @@ void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std:
 }
 
 FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPrediction>& prediction,
-                                                  TrackSummary& summary) {
+                                                  TrackSummary& summary) const {
   std::vector<cv::Point2f> from;
   for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
   const std::vector<Eigen::Vector3d> expected_C = expected(prediction.value_or(TrackPrediction{}));
@@ -321,6 +322,7 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
         ++summary.merged;
         continue;
     }
+    templates_.note(tracks_[i].id, matches.as_at_first[i]);
     Track track = tracks_[i];
     track.previous_pixel = track.pixel;
     track.previous_point = track.point;

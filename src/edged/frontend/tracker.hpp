@@ -92,6 +92,7 @@ class FeatureTracker {
   struct Matches {
     std::vector<cv::Point2f> points;
     std::vector<Fate> fates;
+    std::vector<char> as_at_first;  ///< set to where the corner looks as it did at first
   };
 
   void check_image(const cv::Mat& image) const;
@@ -99,8 +100,8 @@ class FeatureTracker {
   std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
                                      const Eigen::Vector2d& offset_px) const;
   Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds,
-                const std::vector<Eigen::Vector3d>& expected_C);
-  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary);
+                const std::vector<Eigen::Vector3d>& expected_C) const;
+  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
   void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
   void apply(const Matches& matches, TrackSummary& summary);

@@ -85,8 +85,10 @@ Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, 
   for (const Candidate& candidate : search.candidates) {
     MapSight sight{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K, camera.pixel_to_point(candidate.pixel),
                    config_.filter.pixel_sigma / camera.mean_focal()};
-    sight.sigma *= camera.stretch(sight.seen);
-    const double expected_px = kSearchSigmas * camera.mean_focal() * filter.expected_error(sight, search.T_B_C);
+    const double stretch = camera.stretch(sight.seen);
+    sight.sigma *= stretch;
+    const double expected_px =
+        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(sight, search.T_B_C);
     const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
     const auto match =
         match_patch(candidate.point->patch, view.track, candidate.pixel, candidate.A, radius, config_.patch);

@@ -59,6 +59,7 @@ constexpr std::string_view kForEveryone[] = {
 OdometryConfig::OdometryConfig() {
   event_tracker.sigma_px = 1.5;      // the look of an event frame changes with the direction of motion,
   event_tracker.klt.window_px = 15;  // and in the dark, and in fast motion, it is noisy
+  event_tracker.templates.patch.min_similarity = 0.7;
 }
 
 void OdometryConfig::visit(ConfigFields& fields) {
