@@ -59,7 +59,8 @@ class Show(WithFlight):
     def test_what_cannot_be_shown_is_refused_in_a_line(self):
         self.assert_refused(edged("show", self.folder, "--out", self.folder / "x.html"), str(self.folder))
         self.assert_refused(edged("show", self.flight, "--out", "/proc/x", "--quiet"), "/proc/x", "--out")
-        self.assert_refused(edged("show", self.flight, "--window", 0, "--out", "x.html"), "--window", code=2)
+        for window in (0, 1e-10, 1e12, "nan"):
+            self.assert_refused(edged("show", self.flight, "--window", window, "--out", "x.html"), "--window", code=2)
 
     def test_enhance_draws_events_as_they_fell_without_imu_and_calibration(self):
         out = self.folder / "steps"
