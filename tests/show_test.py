@@ -72,6 +72,16 @@ class Show(WithFlight):
         self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_as_the_events_fell.png").exists())
         self.assertFalse((out / "02_events_without_compensation.png").exists())
 
+    def test_enhance_takes_the_events_up_to_the_moment_also_of_a_file_of_a_few(self):
+        events = self.folder / "few.txt"
+        call = ("enhance", events, "--geometry", "16x16", "--out", self.folder / "few", "--quiet", "--json")
+        events.write_text("".join(f"{t} {n % 16} {n // 16} 1\n" for t in (1.0, 1.001, 1.002) for n in range(256)))
+        made = edged(*call, "--at", 0.001, "--set", "packets.window_per_pixel=2")
+        self.assertEqual(json.loads(made.stdout)["events"], 512, made.stderr)
+        self.assertEqual(json.loads(edged(*call, "--at", 0).stdout)["events"], 89)
+        events.write_text("# t x y p\n")
+        self.assert_refused(edged(*call, "--at", 0), "few.txt")
+
     @unittest.skipUnless(CHROMIUM, "no chromium here: apt-get install chromium")
     def test_it_plays_in_a_browser_narrow_and_wide_light_and_dark(self):
         page = self.folder / "page.html"
