@@ -183,7 +183,7 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   show->add_option("--style", options->style,
                    "polarity: blue brighter, red darker; counts: grey (the page changes it) [polarity]")
       ->transform(CLI::Transformer(styles));
-  show->add_option("--max-mb", options->max_mb, "Size of the page [MB]; beyond, every second picture goes")
+  show->add_option("--max-mb", options->max_mb, "Size of the page's pictures [MB]; beyond, every second picture goes")
       ->check(CLI::Range(0.1, 200.0))
       ->capture_default_str();
   show->add_option("--max-pictures", options->max_pictures, "In a folder; it stops there")
