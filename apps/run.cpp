@@ -127,7 +127,14 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
     check_archive(archive_ = options.archive, earlier);  // before there is a folder
   const std::filesystem::path wanted = folder_;
   folder_ = make_run_folder(wanted, earlier);
-  if (options.archive == kArchiveBeside) check_archive(archive_ = beside(folder_, ".zip"), earlier);
+  if (options.archive == kArchiveBeside) {
+    try {
+      check_archive(archive_ = beside(folder_, ".zip"), earlier);
+    } catch (const InputError&) {
+      give_back_run_folder(folder_);
+      throw;
+    }
+  }
   const std::string resolved = options_text(config);
   write_file(folder_ / "config_resolved.yaml", config_text(resolved, info, mode_));
   write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
@@ -300,8 +307,8 @@ RunSummary Run::summarize() {
   for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   write_run_report(folder_);  // the log is part of it
-  if (!archive_.empty()) zip_folder(archive_, folder_);
   if (page_) page_->finish(progress(), to_json(summary), folder_);
+  if (!archive_.empty()) zip_folder(archive_, folder_);  // may fail, on a full disk
   return summary;
 }
 
