@@ -5,7 +5,9 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -163,17 +165,20 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   std::optional<Timestamp> begin = recording.dataset->info().begin;
   refuse_outside(options, begin, recording.dataset->info().end);
   Timestamp newest;
+  const auto is_later = [&](Timestamp t) { return to_seconds(t - *begin) > options.at_s; };
   while (const std::optional<Measurement> measurement = recording.dataset->next()) {
     const std::optional<Timestamp> t = last_stamp(*measurement);
     if (!t) continue;
     if (!begin) begin = first_stamp(*measurement);
     newest = *t;
-    if (to_seconds(newest - *begin) > options.at_s) break;
-    if (const auto* frame = std::get_if<Frame>(&*measurement)) moment.frame = frame->image;
     if (const auto* batch = std::get_if<EventBatch>(&*measurement))
-      events.insert(events.end(), batch->events.begin(), batch->events.end());
+      std::ranges::copy_if(batch->events, std::back_inserter(events),
+                           [&](const Event& event) { return !is_later(event.t); });
+    if (is_later(newest)) break;
+    if (const auto* frame = std::get_if<Frame>(&*measurement)) moment.frame = frame->image;
     if (events.size() > 2 * most) events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(most));
   }
+  if (!begin) throw too_few_events(options, 0, config);
   refuse_outside(options, begin, newest);
   moment.step.t = *begin + duration_from_seconds(options.at_s);
   const Timestamp oldest = moment.step.t - duration_from_seconds(config.packets.max_age_s);
@@ -182,7 +187,8 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   if (events.empty() || static_cast<double>(events.size()) < config.min_events_per_pixel * pixels)
     throw too_few_events(options, events.size(), config);
   moment.step.drawn = events.size();
-  moment.step.event_rate_hz = static_cast<double>(events.size()) / to_seconds(moment.step.t - events.front().t);
+  const double span_s = to_seconds(moment.step.t - events.front().t);
+  moment.step.event_rate_hz = span_s > 0.0 ? static_cast<double>(events.size()) / span_s : 0.0;
   moment.step.event_frame =
       draw_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
   return moment;

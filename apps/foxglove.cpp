@@ -88,9 +88,10 @@ Json compressed_image(Timestamp t, const std::string& camera, const std::vector<
   return {{"timestamp", time(t)}, {"frame_id", camera}, {"data", base64(jpeg)}, {"format", "jpeg"}};
 }
 
-Json camera_calibration(Timestamp t, const RigCamera& camera, bool distorted, double scale) {
+Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
   const CameraModel& m = camera.model;
-  const bool equidistant = m.distortion() == DistortionModel::Equidistant;
+  const bool equidistant = m.distortion() == DistortionModel::Equidistant,
+             distorted = m.distortion() != DistortionModel::None;
   const auto begin = m.coefficients().begin();
   const std::vector<double> D(begin, begin + (distorted ? equidistant ? 4 : 5 : 0));
   const double fx = scale * m.fx(), fy = scale * m.fy();

@@ -42,8 +42,8 @@ struct Lines {
 Json scene_update(Timestamp t, const char* frame, const Lines& lines);
 
 Json compressed_image(Timestamp t, const std::string& camera, const std::vector<unsigned char>& jpeg);
-/// Of images that are made smaller by `scale`; without distortion where they have none any more.
-Json camera_calibration(Timestamp t, const RigCamera& camera, bool distorted, double scale);
+/// Of images that are made smaller by `scale`.
+Json camera_calibration(Timestamp t, const RigCamera& camera, double scale);
 
 enum class Level { Info = 2, Warning = 3, Error = 4 };
 Json log(Timestamp t, Level level, const std::string& message);

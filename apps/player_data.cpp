@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "report_rows.hpp"
 #include "run_album.hpp"
@@ -14,6 +15,7 @@ namespace edged {
 namespace {
 
 constexpr int kWidestFrame_px = 400;
+constexpr std::size_t kBesides_bytes = 100;  // times, count and names, of a picture
 
 std::size_t text_size(const std::vector<unsigned char>& bytes) { return (bytes.size() + 2) / 3 * 4; }
 
@@ -32,22 +34,23 @@ void PlayerData::add(const EventPicture& picture) {
   cv::vconcat(picture.positive, picture.negative, both);
   Shot shot{picture.begin, picture.end, picture.events, {}, still_};
   cv::imencode(".png", both, shot.png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  bytes_ += bytes_of(shot, shots_.empty() ? nullptr : shots_.back().frame.get());
   shots_.push_back(std::move(shot));
-  thin_out();
+  while (bytes_ > limit_bytes_ && shots_.size() > 1) thin_out();
+}
+
+std::size_t PlayerData::bytes_of(const Shot& shot, const Still* before) {
+  const bool has_frame = shot.frame && shot.frame.get() != before;
+  return kBesides_bytes + text_size(shot.png) + (has_frame ? text_size(shot.frame->jpeg) : 0);
 }
 
 void PlayerData::thin_out() {
-  std::size_t bytes = 0;
-  const Still* before = nullptr;
-  for (const Shot& shot : shots_) {
-    bytes += text_size(shot.png);
-    if (shot.frame && shot.frame.get() != before) bytes += text_size(shot.frame->jpeg);
-    before = shot.frame.get();
-  }
-  if (bytes <= limit_bytes_ || shots_.size() < 2) return;
   for (std::size_t i = 0; 2 * i < shots_.size(); ++i) shots_[i] = shots_[2 * i];
   shots_.resize((shots_.size() + 1) / 2);
   every_ *= 2;
+  bytes_ = 0;
+  const Still* before = nullptr;
+  for (const Shot& shot : shots_) bytes_ += bytes_of(shot, std::exchange(before, shot.frame.get()));
 }
 
 nlohmann::ordered_json PlayerData::to_json() const {

@@ -40,9 +40,11 @@ class PlayerData {
     std::shared_ptr<const Still> frame;  ///< null where none has come
   };
 
+  /// What a shot takes in the page, its frame where that is another than the one before.
+  static std::size_t bytes_of(const Shot& shot, const Still* before);
   void thin_out();
 
-  std::size_t limit_bytes_;
+  std::size_t limit_bytes_, bytes_ = 0;
   std::size_t seen_ = 0, every_ = 1;
   std::vector<Shot> shots_;
   Frame newest_frame_;  ///< without an image: it is in still_, or there is none

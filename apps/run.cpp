@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -13,7 +14,6 @@
 #include "json_text.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
-#include "report_path.hpp"
 #include "run_archive.hpp"
 #include "run_hindsight.hpp"
 #include "serve_address.hpp"
@@ -60,18 +60,6 @@ std::string config_text(const std::string& options, const DatasetInfo& info, Mod
              "# every option of this run; give it to --config to repeat it\n# recording {}, mode {}, edged {}\n",
              info.name, mode_name(mode), kVersion) +
          options;
-}
-
-/// The truth while the run lasted, in the world of the estimate; nothing where they were not compared. shown: the
-/// estimate of the truth's sensor.
-Trajectory truth_beside(const Trajectory& shown, const RunSummary& summary, const std::optional<GroundTruth>& truth) {
-  Trajectory beside;
-  if (!summary.evaluation) return beside;
-  for (const StampedPose& pose : truth->trajectory) {
-    if (pose.t >= shown.front().t && pose.t <= shown.back().t)
-      beside.push_back({pose.t, summary.evaluation->alignment.T.inverse() * pose.T});
-  }
-  return beside;
 }
 
 std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
@@ -127,7 +115,14 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
     check_archive(archive_ = options.archive, earlier);  // before there is a folder
   const std::filesystem::path wanted = folder_;
   folder_ = make_run_folder(wanted, earlier);
-  if (options.archive == kArchiveBeside) check_archive(archive_ = beside(folder_, ".zip"), earlier);
+  if (options.archive == kArchiveBeside) {
+    try {
+      check_archive(archive_ = beside(folder_, ".zip"), earlier);
+    } catch (const InputError&) {
+      give_back_run_folder(folder_);
+      throw;
+    }
+  }
   const std::string resolved = options_text(config);
   write_file(folder_ / "config_resolved.yaml", config_text(resolved, info, mode_));
   write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
@@ -293,43 +288,43 @@ RunSummary Run::summarize() {
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
   write_file(folder_ / "metrics.json", json_text(to_json(summary)) + "\n");
-  write_overview(summary, body, truth);
-  if (mcap_) finish_mcap(summary, known, body, truth);
+  const ReportPath path = lay_onto_truth(body, {}, source_.calibration.rig, frame_.name(), truth, {});
+  write_overview(summary, path);
+  if (mcap_) finish_mcap(summary, known, path);
   album_.write(folder_, source_.calibration, odometry_.rig(), truth);
   for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
   for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
   spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
   write_run_report(folder_);  // the log is part of it
-  if (!archive_.empty()) zip_folder(archive_, folder_);
   if (page_) page_->finish(progress(), to_json(summary), folder_);
+  if (!archive_.empty()) zip_folder(archive_, folder_);  // may fail, on a full disk
   return summary;
 }
 
-void Run::finish_mcap(const RunSummary& summary, const Hindsight& known, const Trajectory& body,
-                      const std::optional<GroundTruth>& truth) {
-  const OutputFrame sensor(source_.calibration.rig, truth ? truth->frame : "body");
+void Run::finish_mcap(const RunSummary& summary, const Hindsight& known, const ReportPath& path) {
+  const OutputFrame sensor(source_.calibration.rig, path.frame);
+  const SE3 T_estimate_truth = path.alignment.T.inverse();
   Trajectory true_body;
-  for (const StampedPose& pose : truth_beside(sensor(body), summary, truth)) true_body.push_back(sensor.to_body(pose));
+  for (const StampedPose& pose : path.true_path)
+    true_body.push_back(sensor.to_body({pose.t, T_estimate_truth * pose.T}));
   mcap_->finish(known, album_, true_body, summary);
 }
 
-void Run::write_overview(const RunSummary& summary, const Trajectory& body,
-                         const std::optional<GroundTruth>& truth) const {
+void Run::write_overview(const RunSummary& summary, const ReportPath& path) const {
   OverviewContent content;
   content.title = fmt::format("{}, {}", summary.recording, summary.mode);
   content.wrong = what_is_wrong(summary);
   content.moment = moment_;
   content.changes = album_.changes();
   content.end = album_.last();
-  ReportPath path = lay_onto_truth(body, {}, source_.calibration.rig, frame_.name(), truth, {});
-  const Duration clock = body.empty() ? Duration(0) : path.shown.front().t - path.body.front().t;  // of that sensor
+  const Duration clock = path.body.empty() ? Duration(0) : path.shown.front().t - path.body.front().t;  // that sensor's
   for (StatusChange& change : content.changes) change.t += clock;
-  content.estimate = std::move(path.shown);
-  content.truth = std::move(path.true_path);
+  content.estimate = path.shown;
+  content.truth = path.true_path;
   if (path.evaluation) {
     const Evaluation& e = *path.evaluation;
     content.title += fmt::format(": ATE {:.1f} mm over {:.1f} m", 1e3 * e.ate_m.rmse, e.path_length_m);
-    content.error_m = std::move(path.error_m);
+    content.error_m = path.error_m;
   }
   std::vector<unsigned char> png;
   cv::imencode(".png", draw_overview(content), png);

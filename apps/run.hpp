@@ -14,6 +14,7 @@
 #include "live_page.hpp"
 #include "overview.hpp"
 #include "packet_pace.hpp"
+#include "report_path.hpp"
 #include "run_album.hpp"
 #include "run_check.hpp"
 #include "run_folder.hpp"
@@ -62,10 +63,9 @@ class Run {
   RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s(), pace_}; }
   RunSummary summarize();
   Hindsight hindsight();
-  void finish_mcap(const RunSummary& summary, const Hindsight& known, const Trajectory& body,
-                   const std::optional<GroundTruth>& truth);
+  void finish_mcap(const RunSummary& summary, const Hindsight& known, const ReportPath& path);
   std::vector<std::string> headed(const std::string& known_when) const;
-  void write_overview(const RunSummary& summary, const Trajectory& body, const std::optional<GroundTruth>& truth) const;
+  void write_overview(const RunSummary& summary, const ReportPath& path) const;
 
   const RunOptions& options_;
   Source source_;

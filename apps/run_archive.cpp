@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_archive.hpp"
 
-#include <fstream>
+#include <unistd.h>
+
+#include <cstdlib>
 
 #include "edged/core/check.hpp"
 
@@ -21,11 +23,12 @@ void check_archive(const std::filesystem::path& file, EarlierRun earlier) {
     throw InputError::format("{}: is there already; give another --archive=FILE, or --force to replace it",
                              file.string());
   // What cannot be written is told before the run, not after it.
-  std::filesystem::path trial = file;
-  trial += ".part";
-  if (!std::ofstream(trial))
+  std::string trial = file.string() + ".XXXXXX";
+  const int opened = mkstemp(trial.data());
+  if (opened < 0)
     throw InputError::format(
         "{}: cannot be written; give --archive=FILE in a folder that is there and may be written to", file.string());
+  close(opened);
   std::filesystem::remove(trial, error);
 }
 

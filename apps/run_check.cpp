@@ -85,11 +85,6 @@ bool confirms(const GyroAgreement& found, const RigCamera& given) {
 /// Up to its numbers.
 std::string subject_of(const Finding& finding) { return finding.text.substr(0, finding.text.find(':')); }
 
-/// As of a DAVIS: one turns as the other.
-bool same_lens(const RigCamera& a, const RigCamera& b) {
-  return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
-}
-
 void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
   constexpr double kLongest_m = 2.0;
   const double arm_m = camera.T_B_C.translation().norm();
@@ -110,7 +105,7 @@ RunCheck::RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode
     const RigCamera& camera = *calibration.rig.find(modality);
     cameras_.push_back({camera, VisualTurns(camera, kCorners)});
     cameras_.back().next_look = least_turning(camera);
-    cameras_.back().twin = cameras_.size() > 1 && same_lens(cameras_.front().given, camera);
+    cameras_.back().twin = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
     cameras_.back().waits = cameras_.back().twin;
   }
 }

@@ -158,6 +158,12 @@ std::filesystem::path make_run_folder(const std::filesystem::path& wanted, Earli
   return folder;
 }
 
+void give_back_run_folder(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::filesystem::remove(folder / kRunFiles[0], ignored);
+  std::filesystem::remove(folder, ignored);  // fails where it is not empty
+}
+
 void write_file(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path part = part_of(file);
   std::ofstream out = open_for_writing(part);

@@ -24,6 +24,9 @@ enum class EarlierRun { Keep, Replace };
 /// InputError when the path is something else: a file, or a folder that holds things but no run.
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep);
 
+/// Of a run that does not begin: takes its mark away, and the folder where nothing else is in it.
+void give_back_run_folder(const std::filesystem::path& folder);
+
 /// FOLDER with the suffix behind its name, also where it is written as FOLDER/ or `.`
 std::filesystem::path beside(const std::filesystem::path& folder, const std::string& suffix);
 

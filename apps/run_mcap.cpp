@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "edged/camera/undistort.hpp"
 #include "json_text.hpp"
 #include "track_picture.hpp"
 
@@ -100,6 +101,8 @@ RunMcap::RunMcap(const std::filesystem::path& file, Rig rig, const RunFacts& fac
       frame_pace_(kPicturePeriod),
       path_pace_(kPathPeriod),
       map_pace_(kMapPeriodOfFile) {
+  for (RigCamera& camera : rig_.cameras)
+    if (camera.modality == Modality::Events) camera.model = ideal_pinhole(camera.model);
   file_.write_metadata("edged", facts);
 }
 
@@ -128,15 +131,14 @@ void RunMcap::add(const Step& step, const RunAlbum& album) {
   }
 }
 
-/// As they were given; all in one message, as players that seek look for the last of a topic only.
+/// Poses as they were given; all in one message, as players that seek look for the last of a topic only.
 void RunMcap::describe_cameras(Timestamp t) {
   first_ = t;
   std::vector<foxglove::Transform> transforms;
   for (const RigCamera& camera : rig_.cameras) {
     transforms.push_back({kBody, camera.name, camera.T_B_C});
     put(topic_of(camera.modality, "calibration"), "foxglove.CameraCalibration", t,
-        foxglove::camera_calibration(t, camera, camera.modality == Modality::Frames,
-                                     picture_scale(camera.model.width())));
+        foxglove::camera_calibration(t, camera, picture_scale(camera.model.width())));
   }
   put("/tf_static", kFrameTransforms, t, foxglove::frame_transforms(t, transforms));
 }

@@ -53,12 +53,11 @@ class RunMcap {
   void put_status(const Step& step);
 
   McapWriter file_;
-  Rig rig_;
+  Rig rig_;  ///< as its pictures are: those of events without distortion
   std::map<std::string, std::size_t> topics_;
   std::optional<Timestamp> first_;
   Timestamp last_{};
   std::optional<TrackingStatus> status_;
-  std::optional<SE3> T_W_O_;
   Evenly<StampedPose> path_{300}, keyframes_{100};
   Pace event_pace_, frame_pace_, path_pace_, map_pace_;
 };

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/camera/undistort.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/test_support.hpp"
@@ -80,6 +81,24 @@ TEST_F(RunMcapFile, DescribesThePicturesThatItHolds) {
   EXPECT_EQ(calibration["height"], 480);
   EXPECT_EQ(calibration["frame_id"], "left");
   EXPECT_EQ(calibration["K"], foxglove::Json::parse("[250.0, 0, 319.5, 0, 255.0, 239.5, 0, 0, 1]"));
+  EXPECT_EQ(calibration["D"], foxglove::Json::array());
+}
+
+TEST_F(RunMcapFile, DescribesEventPicturesWithoutTheDistortionThatTheyHaveNoMore) {
+  const CameraModel lens(240, 180, 199, 200, 133, 114, DistortionModel::RadTan, {-0.38, 0.19, 0, 0, 0});
+  const CameraModel ideal = ideal_pinhole(lens);
+  RunMcap results(file_,
+                  {"davis", {{"events", Modality::Events, lens, SE3()}, {"left", Modality::Frames, lens, SE3()}}}, {});
+  add_steps(results, 1);
+  results.finish({}, album_, {}, {});
+  auto messages = read_results(file_);
+  const foxglove::Json events = messages.at("/events/calibration").at(0),
+                       frames = messages["/frames/calibration"].at(0);
+  EXPECT_EQ(events["D"], foxglove::Json::array());
+  EXPECT_EQ(events["distortion_model"], "");
+  EXPECT_EQ(events["K"], foxglove::Json({ideal.fx(), 0.0, ideal.cx(), 0.0, ideal.fy(), ideal.cy(), 0.0, 0.0, 1.0}));
+  EXPECT_EQ(frames["K"][0], 199.0);
+  EXPECT_EQ(frames["D"].size(), 5u);
 }
 
 TEST_F(RunMcapFile, ThatIsNeverFinishedGivesWhatCameBefore) {

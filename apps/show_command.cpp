@@ -174,7 +174,7 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   show->add_option("--out", options->out, "NAME.html: a page for a browser; else a folder for a PNG a picture")
       ->required();
   CLI::Option* window = show->add_option("--window", options->window_s, "Length of a picture [s]");
-  window->check(positive_number())->capture_default_str();
+  window->check(positive_number())->check(CLI::Range(1e-6, 3600.0))->capture_default_str();
   show->add_option("--events", options->events, "So many events a picture, however long they take")
       ->check(CLI::PositiveNumber)
       ->excludes(window);
@@ -183,7 +183,7 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   show->add_option("--style", options->style,
                    "polarity: blue brighter, red darker; counts: grey (the page changes it) [polarity]")
       ->transform(CLI::Transformer(styles));
-  show->add_option("--max-mb", options->max_mb, "Size of the page [MB]; beyond, every second picture goes")
+  show->add_option("--max-mb", options->max_mb, "Size of the page's pictures [MB]; beyond, every second picture goes")
       ->check(CLI::Range(0.1, 200.0))
       ->capture_default_str();
   show->add_option("--max-pictures", options->max_pictures, "In a folder; it stops there")

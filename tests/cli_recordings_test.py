@@ -205,6 +205,16 @@ class Recordings(WithFlight):
             archive.write(self.folder / "events.raw", "events.raw")
         self.assert_refused(edged("info", raw), "raw.zip/events.raw", "unpack it")
 
+    def test_pictures_are_read_wherever_their_list_says(self):
+        for place in ("./images/", ""):
+            recording = self.changed("images.txt", lambda text, place=place: text.replace("images/", place))
+            if not place:
+                for image in (recording / "images").iterdir():
+                    image.rename(recording / image.name)
+                (recording / "images").rmdir()
+            result = edged("info", recording, "--quiet")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+
     def test_convert_lists_the_formats_where_it_does_not_know_one(self):
         self.assert_refused(edged("convert", self.flight, self.folder / "a.xyz"), "`.xyz`", "raw (.raw)")
 

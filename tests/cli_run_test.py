@@ -249,17 +249,21 @@ class Run(WithFlight):
 
     def test_an_archive_that_cannot_be_written_is_refused_before_the_run(self):
         out, there = self.folder / "run", self.folder / "there.zip"
-        there.write_text("of somebody")
+        for file in (there, self.folder / "there.zip.part", self.folder / "run.zip"):
+            file.write_text("of somebody")
         piece = ("run", self.flight, "--duration", 0.3, "--quiet", "--out", out)
         self.assert_refused(edged(*piece, f"--archive={there}"), str(there), "is there already", "--force")
         self.assert_refused(edged(*piece, f"--archive={self.folder}"), "is a folder")
         self.assert_refused(edged(*piece, f"--archive={self.folder}/none/a.zip"), "none/a.zip: cannot be written")
         self.assert_refused(edged("run", self.flight, self.flight, f"--archive={there}"), "--archive", "beside each folder", code=2)
+        self.assert_refused(edged(*piece, "--archive"), f"{out}.zip", "is there already")
         self.assertEqual(there.read_text(), "of somebody")
         self.assertFalse(out.exists())
         edged(*piece, f"--archive={there}", "--force")
         with zipfile.ZipFile(there) as archive:
             self.assertIn("run/report.html", archive.namelist())
+        self.assertEqual((self.folder / "there.zip.part").read_text(), "of somebody")
+        self.assertEqual(len(list(self.folder.iterdir())), 4)
 
     def test_a_full_disk_is_told_in_one_line(self):
         # Files of at most 20 kB stand for it.

@@ -59,7 +59,8 @@ class Show(WithFlight):
     def test_what_cannot_be_shown_is_refused_in_a_line(self):
         self.assert_refused(edged("show", self.folder, "--out", self.folder / "x.html"), str(self.folder))
         self.assert_refused(edged("show", self.flight, "--out", "/proc/x", "--quiet"), "/proc/x", "--out")
-        self.assert_refused(edged("show", self.flight, "--window", 0, "--out", "x.html"), "--window", code=2)
+        for window in (0, 1e-10, 1e12, "nan"):
+            self.assert_refused(edged("show", self.flight, "--window", window, "--out", "x.html"), "--window", code=2)
 
     def test_enhance_draws_events_as_they_fell_without_imu_and_calibration(self):
         out = self.folder / "steps"
@@ -70,6 +71,16 @@ class Show(WithFlight):
         self.assertEqual(json.loads(made.stdout)["drawn_how"], "as the events fell")
         self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_as_the_events_fell.png").exists())
         self.assertFalse((out / "02_events_without_compensation.png").exists())
+
+    def test_enhance_takes_the_events_up_to_the_moment_also_of_a_file_of_a_few(self):
+        events = self.folder / "few.txt"
+        call = ("enhance", events, "--geometry", "16x16", "--out", self.folder / "few", "--quiet", "--json")
+        events.write_text("".join(f"{t} {n % 16} {n // 16} 1\n" for t in (1.0, 1.001, 1.002) for n in range(256)))
+        made = edged(*call, "--at", 0.001, "--set", "packets.window_per_pixel=2")
+        self.assertEqual(json.loads(made.stdout)["events"], 512, made.stderr)
+        self.assertEqual(json.loads(edged(*call, "--at", 0).stdout)["events"], 89)
+        events.write_text("# t x y p\n")
+        self.assert_refused(edged(*call, "--at", 0), "few.txt")
 
     @unittest.skipUnless(CHROMIUM, "no chromium here: apt-get install chromium")
     def test_it_plays_in_a_browser_narrow_and_wide_light_and_dark(self):

@@ -63,16 +63,21 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   return recording;
 }
 
-/// The folder of the first image that images.txt names; "" where there is none.
-std::string image_folder(const SourcePath& folder) {
+/// The folder of the first image that images.txt names, or the images that lie beside the list.
+std::set<std::string> images_of(const SourcePath& folder) {
   const SourcePath list = folder / "images.txt";
-  if (!list.is_file()) return "";
+  if (!list.is_file()) return {};
   constexpr std::size_t kHeadBytes = 4096;
   std::istringstream lines{std::string(as_text(list.head(kHeadBytes)))};
   std::string stamp, image;
   for (std::string line; image.empty() && std::getline(lines, line);)
     if (!line.starts_with('#')) std::istringstream(line) >> stamp >> image;
-  return image.substr(0, image.find('/'));
+  const std::filesystem::path path = std::filesystem::path(image).lexically_normal();
+  if (path.has_parent_path()) return {path.begin()->string()};
+  std::set<std::string> beside;
+  for (const std::string& name : folder.names())
+    if (path.has_extension() && name.ends_with(path.extension().string())) beside.insert(name);
+  return beside;
 }
 
 /// Of the sets whose files have names of their own, or nothing.
@@ -84,8 +89,10 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, co
     return open_loose_folder(folder, *file, rig, options);
   if (is_ecd_folder(folder)) {
     Recording recording = open_ecd(folder, rig);
-    tell_unread(folder, {"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
-                         "depthmaps.txt", "depthmaps", image_folder(folder)});
+    std::set<std::string> read = images_of(folder);
+    read.insert({"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
+                 "depthmaps.txt", "depthmaps"});
+    tell_unread(folder, read);
     return recording;
   }
   if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);

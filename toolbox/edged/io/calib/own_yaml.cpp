@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own format: docs/calibration.md.
 #include <algorithm>
+#include <cmath>
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
@@ -123,6 +124,9 @@ constexpr const char* kPoseToFillIn =
     "      - [0.0, 0.0, 0.0, 1.0]\n"
     "    time_offset: 0.0  # s: t_imu = t_cam + time_offset\n";
 
+/// As somebody wrote it, up to nine decimals, so that it reads back to the last bit.
+double plain_degrees(double angle_rad) { return std::round(1e9 * kDegreesPerRadian * angle_rad) / 1e9; }
+
 std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   std::string out =
@@ -138,7 +142,7 @@ std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel whole(m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy(), m.distortion(), k);
   if (m.view_limit() != whole.view_limit())
     out += fmt::format("    max_angle: {}  # deg off the axis: further out nothing is used\n",
-                       *m.view_limit() * kDegreesPerRadian);
+                       plain_degrees(*m.view_limit()));
   return out + (has_extrinsics ? pose_yaml(camera) : kPoseToFillIn);
 }
 

@@ -96,11 +96,6 @@ class Judge {
   std::string path_;
 };
 
-/// A lens that gives events and frames is judged once.
-bool is_same_lens(const RigCamera& a, const RigCamera& b) {
-  return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
-}
-
 }  // namespace
 
 std::vector<std::string> implausibilities(const Calibration& calibration, const SourcePath& path) {
@@ -108,6 +103,7 @@ std::vector<std::string> implausibilities(const Calibration& calibration, const 
   const auto& cameras = calibration.rig.cameras;
   for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
     for (auto before = cameras.begin(); before != camera; ++before) judge.sizes(*before, *camera);
+    // A lens that gives events and frames is judged once.
     if (std::any_of(cameras.begin(), camera, [&](const RigCamera& c) { return is_same_lens(c, *camera); })) continue;
     judge.field(*camera);
     judge.centre(*camera);

@@ -76,7 +76,9 @@ TEST_F(Plausibility, AFisheyeMaySeeBehindItself) {
   const Calibration narrow = load_calibration(file);
   EXPECT_NEAR(*narrow.rig.cameras[0].model.view_limit(), 0.8727, 1e-4);
   EXPECT_THAT(describe(narrow), HasSubstr("used up to 50 deg off its axis"));
-  EXPECT_THAT(to_yaml(narrow), HasSubstr("max_angle: 50"));
+  EXPECT_THAT(to_yaml(narrow), HasSubstr("max_angle: 50 "));
+  const Calibration odd = load_calibration(folder_.write("odd.yaml", fisheye("191", "\n    max_angle: 48").text()));
+  EXPECT_EQ(load_calibration(folder_.write("again.yaml", to_yaml(odd))).rig.cameras[0].model, odd.rig.cameras[0].model);
   EXPECT_THAT(to_yaml(load_calibration(folder_.write("c.yaml", fisheye("191").text()))), Not(HasSubstr("max_angle")));
 }
 
