@@ -9,7 +9,7 @@ namespace edged {
 namespace {
 
 constexpr double kNeighbour_px = 4.0;
-constexpr double kFarthest_px = 2.0;  // from where flow has found it: beyond, it is something else
+constexpr double kFarthest_px = 1.0;  // from where flow has found it: beyond, it is something else
 constexpr double kLeastArea = 0.4,
                  kMostArea = 2.5;  // of the patch in the image over that then: else it shows too little
 constexpr double kMinDepth_m = 0.05;

@@ -217,9 +217,10 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   return seeds;
 }
 
+/// expected_C: of each track, for the warp of its first look [m]; empty where that is not known.
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
-                                              const std::vector<Eigen::Vector3d>& expected_C) const {
+                                              std::span<const Eigen::Vector3d> expected_C) const {
   Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0)};
   std::vector<std::size_t> alive;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -234,7 +235,10 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
     const bool inside = camera_.contains(to_eigen(forward.points[k]), config_.border_px);
     matches.fates[i] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
     if (matches.fates[i] != Fate::Kept) continue;
-    const auto aligned = templates_.align(tracks_[i].id, current_.image(), to_eigen(forward.points[k]), expected_C[i]);
+    std::optional<Eigen::Vector2d> aligned;
+    if (!expected_C.empty()) {
+      aligned = templates_.align(tracks_[i].id, current_.image(), to_eigen(forward.points[k]), expected_C[i]);
+    }
     if (aligned && camera_.contains(*aligned, config_.border_px)) {
       matches.points[i] = to_cv(*aligned);
       matches.as_at_first[i] = 1;
@@ -266,16 +270,16 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
                                                   TrackSummary& summary) const {
   std::vector<cv::Point2f> from;
   for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
-  const std::vector<Eigen::Vector3d> expected_C = expected(prediction.value_or(TrackPrediction{}));
-  if (!prediction) return match(from, from, expected_C);
+  if (!prediction) return match(from, from, {});
 
+  const std::vector<Eigen::Vector3d> expected_C = expected(*prediction);
   const std::vector<cv::Point2f> seeds = projected(expected_C, prediction->offset_px);
   Matches matches = match(from, seeds, expected_C);
   const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
   const auto all = static_cast<double>(from.size());
   if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
-    // Those that a bad prediction left alive are likely to be wrong: all or nothing.
-    Matches again = match(from, from, expected_C);
+    // Those that a bad prediction left alive are likely to be wrong, and so is its warp: all or nothing.
+    Matches again = match(from, from, {});
     summary.prediction_failed = kept(again) > kept(matches);
     if (summary.prediction_failed) return again;
   }

@@ -100,7 +100,7 @@ class FeatureTracker {
   std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
                                      const Eigen::Vector2d& offset_px) const;
   Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds,
-                const std::vector<Eigen::Vector3d>& expected_C) const;
+                std::span<const Eigen::Vector3d> expected_C) const;
   Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
   void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
