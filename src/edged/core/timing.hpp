@@ -53,9 +53,9 @@ class StageTimings {
   };
 
   /// Of this thread, in both kinds of time.
-  [[nodiscard]] Scope measure(const std::string& stage) { return Scope(timing_of(stage), true); }
+  [[nodiscard]] Scope measure(const std::string& stage) { return {timing_of(stage), true}; }
   /// Without processor time, which costs a system call: for what is entered thousands of times a second.
-  [[nodiscard]] Scope measure_often(const std::string& stage) { return Scope(timing_of(stage), false); }
+  [[nodiscard]] Scope measure_often(const std::string& stage) { return {timing_of(stage), false}; }
   struct Entry {
     std::string name;
     StageTiming timing;
