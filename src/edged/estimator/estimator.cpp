@@ -28,6 +28,8 @@ constexpr double kStartSigmaInflation = 2.5;
 constexpr double kMaxStandstillSpeed = 0.15;
 // [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
 constexpr double kRestGyroBiasSigma = 5e-4;
+// Of sigmas, events alone, times that of the options: what moves by itself leads them astray more easily.
+constexpr double kEventsAloneInflation = 1.4;
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
 bool plausible(const NavState& state) {
@@ -39,6 +41,16 @@ bool plausible(const NavState& state) {
 bool agrees(const NavState& a, const NavState& b) {
   const Eigen::Vector3d v_a = a.T_W_B.rotation().conjugate() * a.v_W, v_b = b.T_W_B.rotation().conjugate() * b.v_W;
   return (v_a - v_b).norm() < kSameVelocity * std::max(v_a.norm(), v_b.norm()) + kSameVelocity_mps;
+}
+
+bool sees_frames(const Window& window) {
+  return std::ranges::count(window.cameras, Modality::Frames, &RigCamera::modality) > 0;
+}
+
+/// Of covariances.
+double inflation(const Window& window, const EstimatorConfig& config) {
+  const double sigmas = config.sigma_inflation * (sees_frames(window) ? 1.0 : kEventsAloneInflation);
+  return sigmas * sigmas;
 }
 
 }  // namespace
@@ -121,14 +133,14 @@ Eigen::Vector3d Estimator::gyro_bias() const { return initialized_ ? newest().bi
 std::optional<Matrix15d> Estimator::covariance() {
   if (!initialized_) return std::nullopt;
   std::optional<Matrix15d> P = edged::covariance(window_, window_.states.rbegin()->first);
-  if (P) *P *= config_.sigma_inflation * config_.sigma_inflation;
+  if (P) *P *= inflation(window_, config_);
   return P;
 }
 
 std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) {
   if (!initialized_) return std::nullopt;
   const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
-  return P ? std::optional<Eigen::Matrix4d>(*P * config_.sigma_inflation * config_.sigma_inflation) : std::nullopt;
+  return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;
 }
 
 std::optional<double> Estimator::depth(FeatureId id) const {
@@ -193,7 +205,7 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 /// frames, which do not drift like that, events count by so much less.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
-  const bool frames = std::ranges::count(window_.cameras, Modality::Frames, &RigCamera::modality) > 0;
+  const bool frames = sees_frames(window_);
   for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
     const std::optional<double> spread = median_residual(window_, camera);
     if (!spread) continue;
