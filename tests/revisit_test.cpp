@@ -33,7 +33,7 @@ Errors errors(const Flight& flight, Mode mode, bool with_map) {
 }
 
 TEST(Revisits, HoldTheDriftOfTheOdometry) {
-  std::map<Mode, double> log_ratio, log_final;
+  std::map<Mode, double> log_ratio, log_final, log_causal_mm;
   for (const int seed : {5, 7}) {
     const Flight flight = simulate_flight("room", seed, kDuration_s);
     for (const Mode mode : {Mode::Frames, Mode::Events}) {
@@ -42,10 +42,14 @@ TEST(Revisits, HoldTheDriftOfTheOdometry) {
                 << " mm, final " << 1e3 * with.final << " mm\n";
       EXPECT_EQ(without.final, without.causal) << "nothing more is known without a map";
       log_ratio[mode] += std::log(with.causal / without.causal) / 2.0;
+      log_causal_mm[mode] += std::log(1e3 * with.causal) / 2.0;
       log_final[mode] += std::log(with.final / with.causal) / 2.0;
     }
   }
-  EXPECT_LT(std::exp(log_ratio[Mode::Frames]), 0.8);   // 0.68
+  // Corners that keep to their first looks leave the map less drift to hold: 0.68 of more, 3.5 mm, before them; 0.88
+  // now.
+  EXPECT_LT(std::exp(log_causal_mm[Mode::Frames]), 3.0);  // 2.6
+  EXPECT_LT(std::exp(log_ratio[Mode::Frames]), 0.95);
   EXPECT_LT(std::exp(log_ratio[Mode::Events]), 0.95);  // 0.87
   for (const auto& [mode, log] : log_final) EXPECT_LT(std::exp(log), 1.0) << mode_name(mode);
 }
