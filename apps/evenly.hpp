@@ -8,6 +8,13 @@
 
 namespace edged {
 
+/// The first stays.
+template <typename T>
+void keep_every_second(std::vector<T>& values) {
+  for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+  values.resize((values.size() + 1) / 2);
+}
+
 template <typename T>
 class Evenly {
  public:
@@ -18,8 +25,7 @@ class Evenly {
     if (seen_++ % stride_ != 0) return false;
     kept_.push_back(value);
     if (kept_.size() < most_) return false;
-    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-    kept_.resize((kept_.size() + 1) / 2);
+    keep_every_second(kept_);
     stride_ *= 2;
     return true;
   }

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "evenly.hpp"
 #include "report_rows.hpp"
 #include "run_album.hpp"
 #include "track_picture.hpp"
@@ -45,8 +46,7 @@ std::size_t PlayerData::bytes_of(const Shot& shot, const Still* before) {
 }
 
 void PlayerData::thin_out() {
-  for (std::size_t i = 0; 2 * i < shots_.size(); ++i) shots_[i] = shots_[2 * i];
-  shots_.resize((shots_.size() + 1) / 2);
+  keep_every_second(shots_);
   every_ *= 2;
   bytes_ = 0;
   const Still* before = nullptr;
