@@ -97,7 +97,11 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   }
   check_image(image);
   current_.build(image, config_.klt);
-  if (prediction) templates_.move(prediction->T_cur_prev);
+  if (prediction && prediction->first_looks) {
+    templates_.move(prediction->T_cur_prev);
+  } else {
+    templates_.clear();
+  }
   if (!tracks_.empty()) {
     Matches matches = match_all(prediction, summary);
     merge(matches);

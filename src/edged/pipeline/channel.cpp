@@ -20,14 +20,10 @@ Eigen::Matrix3d Channel::since_keyframe(const SE3& T_W_B) const {
   return R_B_C.transpose() * R_Bkf_B.toRotationMatrix() * R_B_C;
 }
 
-void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, double scene_depth,
-                    const std::function<std::optional<double>(FeatureId)>& depth) {
-  std::optional<TrackPrediction> prediction;
-  if (any_image_) {
-    const SE3 T_cur_prev = T_W_C(T_W_B).inverse() * T_W_C(T_W_Blast);
-    prediction = TrackPrediction{T_cur_prev, scene_depth, depth, alignment_px_};
-  }
-  const TrackSummary summary = tracker.track(image, t, prediction);
+void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, TrackPrediction prediction) {
+  prediction.T_cur_prev = T_W_C(T_W_B).inverse() * T_W_C(T_W_Blast);
+  prediction.offset_px = alignment_px_;
+  const TrackSummary summary = tracker.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
   align(summary);
   weigh(summary, t);
   any_image_ = true;

@@ -3,9 +3,7 @@
 // One camera of the rig at work: its tracks, and where the body was at its last image and last keyframe.
 #pragma once
 
-#include <functional>
 #include <opencv2/core/mat.hpp>
-#include <optional>
 #include <span>
 
 #include "edged/frontend/tracker.hpp"
@@ -25,10 +23,9 @@ class Channel {
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
   Eigen::Matrix3d since_keyframe(const SE3& T_W_B) const;
 
-  /// Follows the tracks into the image. T_W_B: the body now, as predicted; scene_depth [m] for corners whose depth is
-  /// not known.
-  void track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, double scene_depth,
-             const std::function<std::optional<double>(FeatureId)>& depth);
+  /// Follows the tracks into the image. T_W_B: the body now, as predicted; prediction: what else is known, without its
+  /// pose and offset.
+  void track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, TrackPrediction prediction);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
   void reject(const SE3& T_W_B, bool trust_gyro);
   /// Finds new corners in the image, up to `most` live ones, and makes it the keyframe.

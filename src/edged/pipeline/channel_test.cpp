@@ -24,7 +24,7 @@ class ChannelHealth : public testing::Test {
   }
 
   static void show(Channel& channel, const cv::Mat& image, int index) {
-    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, 2.0, {});
+    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, {});
   }
 
   /// Nothing but noise, another one every time.

@@ -215,8 +215,12 @@ std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, const Ev
 void PacketOdometry::track(const ChannelView& view, Timestamp t, double scene_depth) {
   Channel& channel = *view.channel;
   const auto timer = timings_.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
-  channel.track(view.track, t, T_W_B_of(channel), scene_depth,
-                [this](FeatureId id) { return estimator_.initialized() ? estimator_.depth(id) : std::nullopt; });
+  TrackPrediction prediction;
+  prediction.scene_depth = scene_depth;
+  prediction.depth = [this](FeatureId id) { return estimator_.initialized() ? estimator_.depth(id) : std::nullopt; };
+  // The start takes the errors of a track for independent, as its thresholds do: against one look they are not.
+  prediction.first_looks = !estimator_.provisional();
+  channel.track(view.track, t, T_W_B_of(channel), std::move(prediction));
 }
 
 void PacketOdometry::reject(const ChannelView& view) {
