@@ -26,9 +26,9 @@ struct KeyframeMapConfig {
 
 /// Of the filter of poses.
 struct MapFilterConfig {
-  double drift_m = 0.001;  ///< of the odometry, in 1 s, each axis
-  double drift_yaw_deg = 0.1;
-  double drift_tilt_deg = 0.2;
+  double drift_m = 0.002;  ///< of the odometry, in 1 s, each axis
+  double drift_yaw_deg = 0.2;
+  double drift_tilt_deg = 0.4;
   double pixel_sigma = 2.0;  ///< of a found patch [px]; its errors are much the same each time
   int min_sights = 8;
   double min_found_share = 0.4;
@@ -39,7 +39,7 @@ struct MapFilterConfig {
 struct MapConfig {
   bool enabled = true;
   double min_interval_s = 0.24;  ///< between images in which the map is looked for
-  int max_sights = 40;           ///< points looked for in an image
+  int max_sights = 80;           ///< points looked for in an image
   double search_px = 6.0;        ///< a point is looked for within three sigmas of where it is expected, at most so far
   PatchConfig patch;
   KeyframeMapConfig keyframes;
