@@ -25,7 +25,7 @@ CameraViews::CameraViews(const Window& window, const std::vector<SE3>& poses)
   }
 }
 
-CameraViews CameraViews::at_first_estimates(Window& window) {
+CameraViews CameraViews::at_first_estimates(const Window& window) {
   std::vector<SE3> poses;
   std::vector<Vector6d> moved;
   for (const auto& [id, state] : window.states) {

@@ -43,12 +43,12 @@ std::set<FeatureId> coupled_depths(const std::vector<Factor>& factors) {
   return coupled;
 }
 
-std::vector<LandmarkTerm> landmark_terms(Window& window, Observations observations,
+std::vector<LandmarkTerm> landmark_terms(const Window& window, Observations observations,
                                          const std::set<FeatureId>& coupled) {
   std::map<StateId, std::size_t> place;
   for (const auto& [id, state] : window.states) place.emplace(id, place.size());
   std::vector<LandmarkTerm> terms;
-  for (auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features) {
     if (!feature.anchor) continue;
     const StateId anchor = *feature.anchor;
     LandmarkTerm term{id,
@@ -71,7 +71,7 @@ std::vector<LandmarkTerm> landmark_terms(Window& window, Observations observatio
 
 }  // namespace
 
-Cost cost_of(Window& window, Observations observations) {
+Cost cost_of(const Window& window, Observations observations) {
   Cost cost;
   const auto add_prior = [&](FactorKind kind, const LinearPrior& prior) {
     cost.factors.push_back({kind, std::make_unique<LinearPriorFactor>(prior), nullptr, prior.blocks});

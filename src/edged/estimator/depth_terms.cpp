@@ -58,7 +58,7 @@ double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::
   return std::max(kLeastSigma, std::hypot(config.noise_share * depth.sigma_ln, sampling));
 }
 
-Factor depth_factor(Window& window, StateId state, const Middle& middle) {
+Factor depth_factor(const Window& window, StateId state, const Middle& middle) {
   const RegionDepth& depth = *window.states.at(state).depth;
   const auto [scale, ln_s] = *window.ln_scale.rbegin();
   std::vector<BlockKey> poses = {{BlockKind::Pose, state}}, depths;
@@ -111,14 +111,14 @@ bool depth_due(const Window& window) {
                       [&](const auto& state) { return state.second.depth && state.second.t > before; });
 }
 
-void add_depth_factors(Window& window, std::vector<Factor>& out) {
+void add_depth_factors(const Window& window, std::vector<Factor>& out) {
   for (const auto& [id, state] : window.states) {
     if (!state.depth) continue;
     if (const auto middle = middle_landmarks(window, id)) out.push_back(depth_factor(window, id, *middle));
   }
 }
 
-std::optional<double> depth_error_sigmas(Window& window, StateId state, const LogScale& scale) {
+std::optional<double> depth_error_sigmas(const Window& window, StateId state, const LogScale& scale) {
   const std::optional<Middle> middle = middle_landmarks(window, state);
   if (!middle) return std::nullopt;
   const RegionDepth& depth = *window.states.at(state).depth;
@@ -126,7 +126,7 @@ std::optional<double> depth_error_sigmas(Window& window, StateId state, const Lo
   return std::abs(error) / std::hypot(sigma_ln(window.depth_config, depth, middle->in_region), scale.sigma);
 }
 
-double worst_depth_error(Window& window, const LogScale& scale) {
+double worst_depth_error(const Window& window, const LogScale& scale) {
   double worst = 0.0;
   for (const auto& [id, state] : window.states) {
     if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, scale).value_or(0.0));

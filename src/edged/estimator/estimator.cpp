@@ -130,14 +130,14 @@ Preintegration Estimator::since_newest(const EstimatorInput& input) const {
 
 Eigen::Vector3d Estimator::gyro_bias() const { return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero(); }
 
-std::optional<Matrix15d> Estimator::covariance() {
+std::optional<Matrix15d> Estimator::covariance() const {
   if (!initialized_) return std::nullopt;
   std::optional<Matrix15d> P = edged::covariance(window_, window_.states.rbegin()->first);
   if (P) *P *= inflation(window_, config_);
   return P;
 }
 
-std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) {
+std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) const {
   if (!initialized_) return std::nullopt;
   const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
   return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;

@@ -49,9 +49,9 @@ class Estimator {
 
   /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the
   /// start.
-  std::optional<Matrix15d> covariance();
+  std::optional<Matrix15d> covariance() const;
   /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
-  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera);
+  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
 
   /// z-depth of a landmark in its own camera at the newest state [m].
   std::optional<double> depth(FeatureId id) const;

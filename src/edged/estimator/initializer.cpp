@@ -68,7 +68,7 @@ std::string scale_text(double sigma, double most) {
 }
 
 /// Standard deviation of the newest state's tilt, of the worst direction [rad].
-double tilt_sigma(Window& window) {
+double tilt_sigma(const Window& window) {
   const std::optional<Matrix15d> P = covariance(window, window.states.rbegin()->first);
   if (!P) return kFree;
   const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_W_B().R().topRows<2>();
@@ -78,7 +78,7 @@ double tilt_sigma(Window& window) {
 
 }  // namespace
 
-double scale_sigma(Window& window) {
+double scale_sigma(const Window& window) {
   const auto way_of = [](const auto& entry) { return entry.second.T_W_B().translation(); };
   const auto farthest = std::max_element(window.states.begin(), window.states.end(), [&](const auto& a, const auto& b) {
     return way_of(a).norm() < way_of(b).norm();
@@ -224,7 +224,7 @@ void Initializer::weigh_observations(Window& window) const {
 }
 
 /// What speaks against a solved window, empty when nothing does.
-std::string Initializer::doubt_about(Window& window, double most_tilt_deg) const {
+std::string Initializer::doubt_about(const Window& window, double most_tilt_deg) const {
   const auto landmarks = std::count_if(window.features.begin(), window.features.end(),
                                        [](const auto& entry) { return entry.second.anchor.has_value(); });
   if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);

@@ -33,7 +33,7 @@ bool goes(const Factor& factor, const std::set<BlockKey>& leaving, StateId oldes
 
 /// The terms that go into the prior when the oldest state leaves. inherited: the landmarks anchored there, and whether
 /// the heir goes on with them; of landmarks anchored in younger keyframes only an observation goes.
-Cost cost_leaving(Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
+Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
                   StateId heir) {
   const StateId oldest = window.states.begin()->first;
   Cost cost = cost_of(window, Observations::OfKeyframes);

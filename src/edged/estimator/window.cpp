@@ -153,7 +153,7 @@ Eigen::Vector3d Window::position(const Feature& feature) const {
   return T_W_C(*feature.anchor, feature.camera) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
 }
 
-double* Window::block(BlockKey key) {
+const double* Window::block(BlockKey key) const {
   if (key.kind == BlockKind::InverseDepth) {
     const auto found = features.find(key.id);
     return found == features.end() ? nullptr : &found->second.inverse_depth;
@@ -169,11 +169,44 @@ double* Window::block(BlockKey key) {
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
-const double* Window::linearisation_point(BlockKey key) {
+const double* Window::linearisation_point(BlockKey key) const {
   if (is_calibration(key)) return block(key);
   const auto in_prior = std::find(prior.blocks.begin(), prior.blocks.end(), key);
   if (in_prior == prior.blocks.end()) return block(key);
   return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
+}
+
+void Window::move(BlockKey key, std::span<const double> step) {
+  const double* values = block(key);
+  const auto size = static_cast<std::size_t>(tangent_size(key.kind));
+  EDGED_CHECK(values != nullptr, "block {} of kind {} is not in the window", key.id, static_cast<int>(key.kind));
+  EDGED_CHECK(step.size() == size, "a step of {} numbers in a tangent space of {}", step.size(), size);
+  plus(key.kind, const_cast<double*>(values), step.data());
+}
+
+template <typename Self, typename Visit>
+void Window::for_each_block(Self& self, const Visit& visit) {
+  for (auto& [id, state] : self.states) visit(std::span(state.pose)), visit(std::span(state.motion));
+  for (auto& [id, feature] : self.features) visit(std::span(&feature.inverse_depth, 1));
+  for (auto& [piece, ln_s] : self.ln_scale) visit(std::span(&ln_s, 1));
+  for (auto& of_camera : self.calibration) visit(std::span(of_camera));
+  visit(std::span(self.imu_intrinsics));
+}
+
+std::vector<double> Window::estimates() const {
+  std::vector<double> all;
+  for_each_block(*this, [&](auto values) { all.insert(all.end(), values.begin(), values.end()); });
+  return all;
+}
+
+void Window::restore(const std::vector<double>& estimates) {
+  std::span<const double> left = estimates;
+  for_each_block(*this, [&](auto values) {
+    EDGED_CHECK(left.size() >= values.size(), "the window has more blocks than when its estimates were taken");
+    std::copy_n(left.begin(), values.size(), values.begin());
+    left = left.subspan(values.size());
+  });
+  EDGED_CHECK(left.empty(), "the window has fewer blocks than when its estimates were taken");
 }
 
 void Window::drop_orphaned_priors() {

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -96,19 +97,29 @@ class Window {
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
-  /// Storage of a block, null when it is no longer in the window.
-  double* block(BlockKey key);
+  /// The present values of a block, null when it is no longer in the window.
+  const double* block(BlockKey key) const;
   /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are
   /// linearised anew: they can be observed, and are far off at first.
-  const double* linearisation_point(BlockKey key);
+  const double* linearisation_point(BlockKey key) const;
+
+  /// Moves a block by a step in its tangent space.
+  void move(BlockKey key, std::span<const double> step);
+  /// The values of all blocks, for restore() to bring them back while the window holds the same ones.
+  std::vector<double> estimates() const;
+  void restore(const std::vector<double>& estimates);
 
   /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
   void drop_orphaned_priors();
 
-  ceres::LossFunction* visual_loss() { return visual_loss_.get(); }
-  ceres::LossFunction* depth_loss() { return depth_loss_.get(); }
+  ceres::LossFunction* visual_loss() const { return visual_loss_.get(); }
+  ceres::LossFunction* depth_loss() const { return depth_loss_.get(); }
 
  private:
+  /// Calls visit with the values of each block, all in one order.
+  template <typename Self, typename Visit>
+  static void for_each_block(Self& self, const Visit& visit);
+
   StateId next_state_ = 0;
   std::vector<StateId> last_image_;  ///< newest state with an image, one a camera
   std::unique_ptr<ceres::LossFunction> visual_loss_, depth_loss_;

@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-std::size_t terms_of(Window& window) {
+std::size_t terms_of(const Window& window) {
   const Cost cost = cost_of(window);
   std::size_t terms = cost.factors.size();
   for (const LandmarkTerm& landmark : cost.landmarks) terms += landmark.residuals.size();
@@ -123,7 +123,7 @@ TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
       last{BlockKind::Pose, window.states.rbegin()->first};
   window.prior = window.soft_priors.back();
   const double made_at = window.block(first)[0];
-  window.block(first)[0] += 0.5;
+  window.move(first, std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0});
   EXPECT_EQ(window.linearisation_point(first)[0], made_at);
   EXPECT_EQ(window.linearisation_point(last), window.block(last));
   EXPECT_EQ(window.block({BlockKind::InverseDepth, 123456}), nullptr);
