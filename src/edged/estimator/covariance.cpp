@@ -33,9 +33,9 @@ std::optional<Matrix15d> covariance(const Window& window, StateId state) {
 }
 
 LogScale estimate_scale(const Window& window) {
-  const auto& [id, ln_s] = *window.ln_scale.rbegin();
-  const auto P = covariance(window, {{BlockKind::LogScale, id}});
-  return {ln_s, P ? std::sqrt((*P)(0, 0)) : window.depth_config.scale_sigma};
+  const BlockKey scale = *window.scale_block();
+  const auto P = covariance(window, {scale});
+  return {*window.block(scale), P ? std::sqrt((*P)(0, 0)) : window.depth_config().scale_sigma};
 }
 
 }  // namespace edged

@@ -66,7 +66,7 @@ class Estimator {
   void settle_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);
-  bool take_depth();
+  bool take_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise(double imu_strain);
   std::vector<KeyframeRecord> slide();

@@ -35,8 +35,8 @@ LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout,
     const auto found = layout.offset.find(key);
     return found == layout.offset.end() ? kNowhere : found->second;
   };
-  for (const auto& [id, state] : window.states) poses_.push_back(place_of({BlockKind::Pose, id}));
-  for (std::size_t i = 0; i < window.cameras.size(); ++i) {
+  for (const auto& [id, state] : window.states()) poses_.push_back(place_of({BlockKind::Pose, id}));
+  for (std::size_t i = 0; i < window.cameras().size(); ++i) {
     calibrations_.push_back(place_of({BlockKind::Calibration, i}));
   }
 }

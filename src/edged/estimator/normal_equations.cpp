@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "edged/core/check.hpp"
 #include "edged/estimator/landmark_equations.hpp"
 
 namespace edged {
@@ -62,9 +61,8 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
 
 /// The window's prior, whose J^T J is known: only turns take its derivatives away from those at its own place.
 void add_prior(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
-  const LinearPrior& prior = window.prior;
+  const LinearPrior& prior = window.prior();
   MatrixXd H = prior.information;
-  EDGED_CHECK(H.cols() == prior.J.cols(), "a prior of {} columns whose J^T J has {}", prior.J.cols(), H.cols());
   VectorXd d(H.cols());
   std::vector<Placed> blocks;
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;

@@ -60,9 +60,9 @@ class CeresBlocks {
 void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& all, ceres::Problem& problem) {
   const auto pose = [&](StateId state) { return all.at({BlockKind::Pose, state}); };
   const auto view = [&](StateId state, const Eigen::Vector2d& point) {
-    return LandmarkView{point, window.states.at(state).rate()};
+    return LandmarkView{point, window.states().at(state).rate()};
   };
-  const SE3& T_B_C = window.cameras[term.camera].T_B_C;
+  const SE3& T_B_C = window.cameras()[term.camera].given.T_B_C;
   const LandmarkView anchor = view(term.anchor, term.point);
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];
@@ -88,7 +88,7 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
-  for (const auto& [id, state] : window.states) {
+  for (const auto& [id, state] : window.states()) {
     problem.AddParameterBlock(all.at({BlockKind::Pose, id}), 7, &manifold);
   }
   for (Factor& factor : cost.factors) {
@@ -113,20 +113,18 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
 Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
   Window window = tracked_window(world, options);
   triangulate_features(window, {});
-  window.track_noise = {0.95, 0.8, 2.0};
+  window.set_track_noise({0.95, 0.8, 2.0});
   window.free_calibration({});
   int i = 0;
-  for (auto& [id, state] : window.states) {
-    state.pose =
-        to_block(state.T_W_B() * SE3(so3::exp({0.004, -0.002 * i, 0.002}), Eigen::Vector3d(0.004 * i, -0.01, 0.008)));
-    state.motion[0] += 0.02;
+  for (const auto& [id, state] : window.states()) {
+    displace(window, id, {0.004, -0.002 * i, 0.002}, {0.004 * i, -0.01, 0.008});
+    window.move({BlockKind::Motion, id}, std::array{0.02, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
     ++i;
   }
-  for (auto& [id, feature] : window.features) feature.inverse_depth *= 1.03;
+  stretch_depths(window, 1.03);
   // Without it the scale is so weak a direction that two solvers need many steps to agree on it.
-  const auto first = window.states.begin();
-  window.soft_priors.push_back(
-      motion_prior({BlockKind::Motion, first->first}, first->second.motion, {0.02, 1e-3, 1e-2}));
+  const auto& [first, state] = *window.states().begin();
+  window.add_soft_prior(motion_prior({BlockKind::Motion, first}, state.motion, {0.02, 1e-3, 1e-2}));
   return window;
 }
 
@@ -143,12 +141,12 @@ TEST(Solve, ComesToWhereCeresComes) {
     EXPECT_NEAR(summary.final_cost / by_ceres, 1.0, 1e-4);
     EXPECT_LT(summary.final_cost, 0.2 * summary.initial_cost);
     if (iterations < 20) continue;
-    for (const auto& [id, state] : window.states) {
+    for (const auto& [id, state] : window.states()) {
       Vector6d difference;
       tangent_difference(BlockKind::Pose, state.pose.data(), blocks.at({BlockKind::Pose, id}), difference.data());
       EXPECT_LT(difference.norm(), 3e-4) << id;  // the one stops where a step gains 1e-6 of the cost
     }
-    for (const auto& [id, feature] : window.features) {
+    for (const auto& [id, feature] : window.features()) {
       if (feature.anchor) {
         EXPECT_NEAR(feature.inverse_depth, *blocks.at({BlockKind::InverseDepth, id}), 3e-4) << id;
       }
@@ -170,13 +168,13 @@ TEST(Solve, IsNotUsableWithALandmarkBehindItsCamera) {
   TestWorld world(options);
   Window window = disturbed_window(world, options);
   const auto landmark =
-      std::ranges::find_if(window.features, [](const auto& f) { return f.second.anchor.has_value(); });
-  ASSERT_NE(landmark, window.features.end());
-  WindowState& seen = window.states.at(landmark->second.seen.rbegin()->first);
-  seen.pose = to_block(seen.T_W_B() * SE3(so3::exp({0.0, 3.1, 0.0}), Eigen::Vector3d::Zero()));
-  const PoseBlock turned = seen.pose;
+      std::ranges::find_if(window.features(), [](const auto& f) { return f.second.anchor.has_value(); });
+  ASSERT_NE(landmark, window.features().end());
+  const StateId seen = landmark->second.seen.rbegin()->first;
+  displace(window, seen, {0.0, 3.1, 0.0}, {0.0, 0.0, 0.0});
+  const std::vector<double> turned = window.estimates();
   EXPECT_FALSE(solve(window, 5).usable);
-  EXPECT_EQ(seen.pose, turned);
+  EXPECT_EQ(window.estimates(), turned);
 }
 
 /// The gradient that the normal equations have against differences of the cost.
