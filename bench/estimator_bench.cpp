@@ -35,12 +35,11 @@ Window full_window(TestWorld& world) {
     Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
     state.keyframe = i < kKeyframes;
     if (i > 0) state.imu = input.motion;
-    window.add_observations(window.add_state(std::move(state)), input.observations);
+    window.add_state(std::move(state), input.observations);
   }
-  const auto first = window.states.begin();
-  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
-  window.soft_priors.push_back(
-      motion_prior({BlockKind::Motion, first->first}, first->second.motion, {0.1, 0.02, 0.15}));
+  const auto& [first, state] = *window.states().begin();
+  window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, 1e-4, 1e-4));
+  window.add_soft_prior(motion_prior({BlockKind::Motion, first}, state.motion, {0.1, 0.02, 0.15}));
   LandmarkConfig config;
   config.max_per_camera = kLandmarksPerCamera;
   triangulate_features(window, config);
@@ -49,38 +48,19 @@ Window full_window(TestWorld& world) {
 
 std::size_t count_observations(const Window& window) {
   std::size_t observations = 0;
-  for (const auto& [id, feature] : window.features) observations += feature.anchor ? feature.seen.size() - 1 : 0;
+  for (const auto& [id, feature] : window.features()) observations += feature.anchor ? feature.seen.size() - 1 : 0;
   return observations;
-}
-
-struct Values {
-  std::vector<std::pair<PoseBlock, MotionBlock>> states;
-  std::vector<double> inverse_depths;
-};
-
-Values values_of(const Window& window) {
-  Values values;
-  for (const auto& [id, state] : window.states) values.states.emplace_back(state.pose, state.motion);
-  for (const auto& [id, feature] : window.features) values.inverse_depths.push_back(feature.inverse_depth);
-  return values;
-}
-
-void restore(Window& window, const Values& values) {
-  auto state_values = values.states.begin();
-  for (auto& [id, state] : window.states) std::tie(state.pose, state.motion) = *state_values++;
-  auto depth = values.inverse_depths.begin();
-  for (auto& [id, feature] : window.features) feature.inverse_depth = *depth++;
 }
 
 /// range(0): solver iterations. Items are observations.
 void BM_SolveWindow(benchmark::State& state) {
   TestWorld world({.cameras = 2});
   Window window = full_window(world);
-  const Values start = values_of(window);
+  const std::vector<double> start = window.estimates();
   const std::size_t observations = count_observations(window);
   int iterations = 0;
   for (auto _ : state) {
-    restore(window, start);
+    window.restore(start);
     iterations = solve(window, static_cast<int>(state.range(0))).iterations;
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * observations));
@@ -93,7 +73,7 @@ void BM_Marginalize(benchmark::State& state) {
   TestWorld world({.cameras = 2});
   Window window = full_window(world);
   solve(window, 10);
-  const StateId oldest = window.states.begin()->first;
+  const StateId oldest = window.oldest_id();
   const std::set<BlockKey> leaving = {{BlockKind::Pose, oldest}, {BlockKind::Motion, oldest}};
   Cost cost = cost_of(window);
   std::erase_if(cost.factors, [&](const Factor& factor) {

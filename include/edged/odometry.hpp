@@ -75,7 +75,7 @@ class Odometry {
   Rig rig() const;
   /// How well that is known of a camera of the mode: rotation about its axes [rad], then time offset [s]. Nothing where
   /// there is no estimate.
-  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
+  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
 
   OdometryCounters counters() const;
   /// "packetize", "process", and the stages of the latter.

@@ -16,7 +16,7 @@ class CameraViews {
   /// At the present values.
   explicit CameraViews(const Window& window);
   /// With the states' poses at Window::linearisation_point.
-  static CameraViews at_first_estimates(Window& window);
+  static CameraViews at_first_estimates(const Window& window);
 
   const CameraOnBody& camera(std::size_t camera) const { return cameras_[camera]; }
   /// place: of the state in the window, the oldest being 0.

@@ -16,8 +16,8 @@ namespace {
 constexpr double kRestSigma_m = 2e-3, kRestSigma_rad = 1e-3;
 
 void add_motion_factors(const Window& window, std::vector<Factor>& out) {
-  if (window.states.empty()) return;
-  for (auto b = std::next(window.states.begin()); b != window.states.end(); ++b) {
+  if (window.states().empty()) return;
+  for (auto b = std::next(window.states().begin()); b != window.states().end(); ++b) {
     const BlockKey pose_a{BlockKind::Pose, std::prev(b)->first}, pose_b{BlockKind::Pose, b->first};
     const BlockKey motion_a{BlockKind::Motion, pose_a.id}, motion_b{BlockKind::Motion, pose_b.id};
     out.push_back({FactorKind::Imu,
@@ -43,12 +43,12 @@ std::set<FeatureId> coupled_depths(const std::vector<Factor>& factors) {
   return coupled;
 }
 
-std::vector<LandmarkTerm> landmark_terms(Window& window, Observations observations,
+std::vector<LandmarkTerm> landmark_terms(const Window& window, Observations observations,
                                          const std::set<FeatureId>& coupled) {
   std::map<StateId, std::size_t> place;
-  for (const auto& [id, state] : window.states) place.emplace(id, place.size());
+  for (const auto& [id, state] : window.states()) place.emplace(id, place.size());
   std::vector<LandmarkTerm> terms;
-  for (auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const StateId anchor = *feature.anchor;
     LandmarkTerm term{id,
@@ -71,13 +71,13 @@ std::vector<LandmarkTerm> landmark_terms(Window& window, Observations observatio
 
 }  // namespace
 
-Cost cost_of(Window& window, Observations observations) {
+Cost cost_of(const Window& window, Observations observations) {
   Cost cost;
   const auto add_prior = [&](FactorKind kind, const LinearPrior& prior) {
     cost.factors.push_back({kind, std::make_unique<LinearPriorFactor>(prior), nullptr, prior.blocks});
   };
-  if (!window.prior.empty()) add_prior(FactorKind::Prior, window.prior);
-  for (const LinearPrior& soft : window.soft_priors) add_prior(FactorKind::SoftPrior, soft);
+  if (!window.prior().empty()) add_prior(FactorKind::Prior, window.prior());
+  for (const LinearPrior& soft : window.soft_priors()) add_prior(FactorKind::SoftPrior, soft);
   add_motion_factors(window, cost.factors);
   add_depth_factors(window, cost.factors);
   cost.landmarks = landmark_terms(window, observations, coupled_depths(cost.factors));
@@ -100,13 +100,13 @@ std::set<BlockKey> blocks_of(const Cost& cost) {
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Observations observations) {
   std::vector<TrackStep> steps;
   const auto anchor = feature.seen.find(*feature.anchor);
-  const double at_once = window.track_noise.of(window.cameras[feature.camera].modality);
+  const double at_once = window.track_noise().of(window.cameras()[feature.camera].given.modality);
   const auto follow = [&](auto first, auto last) {
     StateId before = anchor->first;
     for (auto observation = first; observation != last; ++observation) {
-      if (observations == Observations::OfKeyframes && !window.states.at(observation->first).keyframe) continue;
-      const double dt = std::abs(to_seconds(window.states.at(observation->first).t - window.states.at(before).t));
-      const double correlation = at_once * std::exp(-dt / window.track_noise.time_s);
+      if (observations == Observations::OfKeyframes && !window.states().at(observation->first).keyframe) continue;
+      const double dt = std::abs(to_seconds(window.states().at(observation->first).t - window.states().at(before).t));
+      const double correlation = at_once * std::exp(-dt / window.track_noise().time_s);
       const double own = std::sqrt(1.0 - correlation * correlation);
       steps.push_back({before, observation->first, correlation, observation->second.sigma * own});
       before = observation->first;
@@ -118,16 +118,16 @@ std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
 }
 
 double imu_strain(const Window& window) {
-  if (window.states.size() < 2) return 0.0;
+  if (window.states().size() < 2) return 0.0;
   double sum = 0.0;
-  for (auto a = window.states.begin(), b = std::next(a); b != window.states.end(); ++a, ++b) {
+  for (auto a = window.states().begin(), b = std::next(a); b != window.states().end(); ++a, ++b) {
     const double* blocks[] = {a->second.pose.data(), a->second.motion.data(), b->second.pose.data(),
-                              b->second.motion.data(), window.imu_intrinsics.data()};
+                              b->second.motion.data(), window.block(kImuIntrinsicsKey)};
     Eigen::Matrix<double, 15, 1> r;
     ImuFactor(b->second.imu).Evaluate(blocks, r.data(), nullptr);
     sum += r.squaredNorm();
   }
-  return std::sqrt(sum / (15.0 * static_cast<double>(window.states.size() - 1)));
+  return std::sqrt(sum / (15.0 * static_cast<double>(window.states().size() - 1)));
 }
 
 }  // namespace edged

@@ -42,9 +42,9 @@ struct LandmarkTerm {
   std::size_t camera = 0;
   StateId anchor = 0;
   std::size_t anchor_place = 0;
-  Eigen::Vector2d point;            ///< in the anchor view
-  double* inverse_depth = nullptr;  ///< in the window
-  bool coupled = false;             ///< its depth shares a factor with another's: not to be eliminated by itself
+  Eigen::Vector2d point;                  ///< in the anchor view
+  const double* inverse_depth = nullptr;  ///< in the window
+  bool coupled = false;                   ///< its depth shares a factor with another's: not to be eliminated by itself
   std::vector<LandmarkResidual> residuals;
 };
 
@@ -54,7 +54,7 @@ struct Cost {
   std::vector<LandmarkTerm> landmarks;
 };
 
-Cost cost_of(Window& window, Observations observations = Observations::All);
+Cost cost_of(const Window& window, Observations observations = Observations::All);
 
 /// The blocks that its terms are of; not the inverse depths that can be eliminated one by one.
 std::set<BlockKey> blocks_of(const Cost& cost);

@@ -7,7 +7,7 @@
 
 namespace edged {
 
-std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks) {
+std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<BlockKey>& blocks) {
   const Cost cost = cost_of(window);
   const std::set<BlockKey> all = blocks_of(cost);
   std::set<BlockKey> others = all;
@@ -27,15 +27,15 @@ std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKe
   return root.transpose() * root;
 }
 
-std::optional<Matrix15d> covariance(Window& window, StateId state) {
+std::optional<Matrix15d> covariance(const Window& window, StateId state) {
   const auto P = covariance(window, {{BlockKind::Pose, state}, {BlockKind::Motion, state}});
   return P ? std::optional<Matrix15d>(*P) : std::nullopt;
 }
 
-LogScale estimate_scale(Window& window) {
-  const auto& [id, ln_s] = *window.ln_scale.rbegin();
-  const auto P = covariance(window, {{BlockKind::LogScale, id}});
-  return {ln_s, P ? std::sqrt((*P)(0, 0)) : window.depth_config.scale_sigma};
+LogScale estimate_scale(const Window& window) {
+  const BlockKey scale = *window.scale_block();
+  const auto P = covariance(window, {scale});
+  return {*window.block(scale), P ? std::sqrt((*P)(0, 0)) : window.depth_config().scale_sigma};
 }
 
 }  // namespace edged

@@ -12,14 +12,14 @@ namespace edged {
 
 /// Covariance of some blocks over their tangent spaces, stacked in the order of their keys: the marginal of the whole
 /// window. Nothing when a direction of it is not determined, or a block is in no factor.
-std::optional<Eigen::MatrixXd> covariance(Window& window, const std::set<BlockKey>& blocks);
+std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<BlockKey>& blocks);
 
 /// Of a state: position [m] in the window's world, rotation [rad] (right perturbation, body axes), velocity
 /// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start,
 /// where the gauge is held.
-std::optional<Matrix15d> covariance(Window& window, StateId state);
+std::optional<Matrix15d> covariance(const Window& window, StateId state);
 
 /// ln s given everything in the window and before it.
-LogScale estimate_scale(Window& window);
+LogScale estimate_scale(const Window& window);
 
 }  // namespace edged

@@ -25,12 +25,10 @@ SE3 T_B_E(const Window& window, const RegionDepth& depth) {
 }
 
 /// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.
-std::optional<Middle> middle_landmarks(const Window& window, StateId state) {
-  const WindowState& at = window.states.at(state);
-  const RegionDepth& region = *at.depth;
-  const SE3 T_E_W = (at.T_W_B() * T_B_E(window, region)).inverse();
+std::optional<Middle> middle_landmarks(const Window& window, StateId state, const RegionDepth& region) {
+  const SE3 T_E_W = (window.states().at(state).T_W_B() * T_B_E(window, region)).inverse();
   std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor || !feature.seen.contains(state) || feature.inverse_depth <= 0.0) continue;
     const Eigen::Vector3d p_E = T_E_W * window.position(feature);
     if (p_E.z() * feature.inverse_depth < kNearestShare) continue;
@@ -39,7 +37,7 @@ std::optional<Middle> middle_landmarks(const Window& window, StateId state) {
       seen.emplace_back(-std::log(p_E.z()), id);
     }
   }
-  if (seen.size() < static_cast<std::size_t>(window.depth_config.min_landmarks)) return std::nullopt;
+  if (seen.size() < static_cast<std::size_t>(window.depth_config().min_landmarks)) return std::nullopt;
   std::sort(seen.begin(), seen.end());
   const std::size_t n = std::min((seen.size() + 1) / 2, kMostLandmarks), begin = (seen.size() - n) / 2;
   Middle middle;
@@ -58,13 +56,13 @@ double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::
   return std::max(kLeastSigma, std::hypot(config.noise_share * depth.sigma_ln, sampling));
 }
 
-Factor depth_factor(Window& window, StateId state, const Middle& middle) {
-  const RegionDepth& depth = *window.states.at(state).depth;
-  const auto [scale, ln_s] = *window.ln_scale.rbegin();
+Factor depth_factor(const Window& window, StateId state, const Middle& middle) {
+  const RegionDepth& depth = *window.states().at(state).depth;
+  const BlockKey scale = *window.scale_block();
   std::vector<BlockKey> poses = {{BlockKind::Pose, state}}, depths;
   std::vector<DepthLandmark> landmarks;
   for (const FeatureId id : middle.landmarks) {
-    const Feature& feature = window.features.at(id);
+    const Feature& feature = window.features().at(id);
     const BlockKey anchor{BlockKind::Pose, *feature.anchor};
     const auto known = std::find(poses.begin(), poses.end(), anchor);
     landmarks.push_back({window.calibrated(feature.camera).T_B_C, feature.seen.at(*feature.anchor).point,
@@ -72,16 +70,16 @@ Factor depth_factor(Window& window, StateId state, const Middle& middle) {
     if (known == poses.end()) poses.push_back(anchor);
     depths.push_back({BlockKind::InverseDepth, id});
   }
-  double weight = 1.0 / sigma_ln(window.depth_config, depth, middle.in_region);
+  double weight = 1.0 / sigma_ln(window.depth_config(), depth, middle.in_region);
   // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
-  if (window.depth_config.form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(ln_s);
+  if (window.depth_config().form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(*window.block(scale));
   Factor factor{FactorKind::SceneDepth};
   factor.state = state;
   factor.lasting = poses.size() == 1;
-  factor.cost = std::make_unique<DepthFactor>(window.depth_config.form, T_B_E(window, depth), std::move(landmarks),
+  factor.cost = std::make_unique<DepthFactor>(window.depth_config().form, T_B_E(window, depth), std::move(landmarks),
                                               poses.size(), depth.depth_m, weight);
   factor.loss = window.depth_loss();
-  factor.blocks = {{BlockKind::LogScale, scale}};
+  factor.blocks = {scale};
   factor.blocks.insert(factor.blocks.end(), poses.begin(), poses.end());
   factor.blocks.insert(factor.blocks.end(), depths.begin(), depths.end());
   return factor;
@@ -105,42 +103,43 @@ void DepthFactorConfig::visit(ConfigFields& fields) {
 }
 
 bool depth_due(const Window& window) {
-  if (!window.depth_config.enabled) return false;
-  const Timestamp before = window.newest().t - duration_from_seconds(window.depth_config.min_interval_s);
-  return std::none_of(window.states.begin(), window.states.end(),
+  if (!window.depth_config().enabled) return false;
+  const Timestamp before = window.newest().t - duration_from_seconds(window.depth_config().min_interval_s);
+  return std::none_of(window.states().begin(), window.states().end(),
                       [&](const auto& state) { return state.second.depth && state.second.t > before; });
 }
 
-void add_depth_factors(Window& window, std::vector<Factor>& out) {
-  for (const auto& [id, state] : window.states) {
+void add_depth_factors(const Window& window, std::vector<Factor>& out) {
+  for (const auto& [id, state] : window.states()) {
     if (!state.depth) continue;
-    if (const auto middle = middle_landmarks(window, id)) out.push_back(depth_factor(window, id, *middle));
+    const auto middle = middle_landmarks(window, id, *state.depth);
+    if (middle) out.push_back(depth_factor(window, id, *middle));
   }
 }
 
-std::optional<double> depth_error_sigmas(Window& window, StateId state, const LogScale& scale) {
-  const std::optional<Middle> middle = middle_landmarks(window, state);
+std::optional<double> depth_error_sigmas(const Window& window, StateId state, const RegionDepth& depth,
+                                         const LogScale& scale) {
+  const std::optional<Middle> middle = middle_landmarks(window, state, depth);
   if (!middle) return std::nullopt;
-  const RegionDepth& depth = *window.states.at(state).depth;
   const double error = middle->mean_ln - scale.value + std::log(depth.depth_m);
-  return std::abs(error) / std::hypot(sigma_ln(window.depth_config, depth, middle->in_region), scale.sigma);
+  return std::abs(error) / std::hypot(sigma_ln(window.depth_config(), depth, middle->in_region), scale.sigma);
 }
 
-double worst_depth_error(Window& window, const LogScale& scale) {
+double worst_depth_error(const Window& window, const LogScale& scale) {
   double worst = 0.0;
-  for (const auto& [id, state] : window.states) {
-    if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, scale).value_or(0.0));
+  for (const auto& [id, state] : window.states()) {
+    if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, *state.depth, scale).value_or(0.0));
   }
   return worst;
 }
 
 LinearPrior begin_scale(Window& window, double dt_s) {
-  const auto [id, ln_s] = *window.ln_scale.rbegin();
-  window.ln_scale.emplace(id + 1, ln_s);
+  const BlockKey before = *window.scale_block(), after = window.begin_scale();
+  const double ln_s = *window.block(after);
   // Without any walk a piece is the one before, up to what numbers can hold.
-  const double sigma = std::max(1e-4, window.depth_config.scale_walk * std::sqrt(dt_s));
+  const double sigma = std::max(1e-4, window.depth_config().scale_walk * std::sqrt(dt_s));
   LinearPrior walk;
-  walk.blocks = {{BlockKind::LogScale, id}, {BlockKind::LogScale, id + 1}};
+  walk.blocks = {before, after};
   walk.x0 = {{ln_s}, {ln_s}};
   walk.J = Eigen::RowVector2d(-1.0, 1.0) / sigma;
   walk.r = Eigen::VectorXd::Zero(1);

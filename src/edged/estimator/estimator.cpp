@@ -44,7 +44,8 @@ bool agrees(const NavState& a, const NavState& b) {
 }
 
 bool sees_frames(const Window& window) {
-  return std::ranges::count(window.cameras, Modality::Frames, &RigCamera::modality) > 0;
+  return std::ranges::any_of(window.cameras(),
+                             [](const WindowCamera& camera) { return camera.given.modality == Modality::Frames; });
 }
 
 /// Of covariances.
@@ -71,7 +72,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   append(input);
   result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
-  const bool new_depth = take_depth();
+  const bool new_depth = take_depth(input);
   optimize(result, config_.iterations);
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
@@ -111,7 +112,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
 /// The start holds calibrations, and takes the errors of a track for independent, as its thresholds do.
 void Estimator::leave_start() {
   window_.free_calibration(config_.calibration);
-  window_.track_noise = config_.track_noise;
+  window_.set_track_noise(config_.track_noise);
 }
 
 /// What a provisional start has seen since may have told it the scale.
@@ -130,23 +131,23 @@ Preintegration Estimator::since_newest(const EstimatorInput& input) const {
 
 Eigen::Vector3d Estimator::gyro_bias() const { return initialized_ ? newest().bias_gyro : Eigen::Vector3d::Zero(); }
 
-std::optional<Matrix15d> Estimator::covariance() {
+std::optional<Matrix15d> Estimator::covariance() const {
   if (!initialized_) return std::nullopt;
-  std::optional<Matrix15d> P = edged::covariance(window_, window_.states.rbegin()->first);
+  std::optional<Matrix15d> P = edged::covariance(window_, window_.newest_id());
   if (P) *P *= inflation(window_, config_);
   return P;
 }
 
-std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) {
+std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) const {
   if (!initialized_) return std::nullopt;
   const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
   return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;
 }
 
 std::optional<double> Estimator::depth(FeatureId id) const {
-  const auto found = window_.features.find(id);
-  if (found == window_.features.end() || !found->second.anchor) return std::nullopt;
-  const StateId newest = window_.states.rbegin()->first;
+  const auto found = window_.features().find(id);
+  if (found == window_.features().end() || !found->second.anchor) return std::nullopt;
+  const StateId newest = window_.newest_id();
   const double z = (window_.T_W_C(newest, found->second.camera).inverse() * window_.position(found->second)).z();
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
@@ -158,29 +159,27 @@ std::optional<LogScale> Estimator::depth_scale() const {
 void Estimator::append(const EstimatorInput& input) {
   const NavState before = newest();
   Preintegration imu = since_newest(input);
-  NavState state = propagate(before, imu);
-  state.t = input.t;
-  const StateId id =
-      window_.add_state(window_state(state, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe));
-  window_.add_observations(id, input.observations);
-  if (input.keyframe && depth_due(window_)) window_.states.at(id).depth = input.depth;
-  if (standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed)) {
-    window_.states.at(id).rested = true;
-    NavState rest;
-    rest.bias_gyro = standstill_.mean_gyro_B();
-    const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;
-    window_.soft_priors.push_back(
-        motion_prior({BlockKind::Motion, id}, motion_block(rest), {config_.zero_velocity_sigma, bias_sigma, kFree}));
-  }
+  NavState nav = propagate(before, imu);
+  nav.t = input.t;
+  WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
+  const bool rested = standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed);
+  state.rested = rested;
+  const StateId id = window_.add_state(std::move(state), input.observations);
+  if (!rested) return;
+  NavState rest;
+  rest.bias_gyro = standstill_.mean_gyro_B();
+  const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;
+  window_.add_soft_prior(
+      motion_prior({BlockKind::Motion, id}, motion_block(rest), {config_.zero_velocity_sigma, bias_sigma, kFree}));
 }
 
-/// The newest state's depth, if it has one that is believable. True when it has.
-bool Estimator::take_depth() {
-  std::optional<RegionDepth>& depth = window_.states.rbegin()->second.depth;
-  if (!depth) return false;
-  const auto error = depth_error_sigmas(window_, window_.states.rbegin()->first, depth_scale_);
-  if (!error || *error > config_.depth_factor.gate) depth.reset();
-  return depth.has_value();
+/// The input's depth, where one is due and it is believable. True when it is in the window.
+bool Estimator::take_depth(const EstimatorInput& input) {
+  if (!input.keyframe || !input.depth || !depth_due(window_)) return false;
+  const auto error = depth_error_sigmas(window_, window_.newest_id(), *input.depth, depth_scale_);
+  if (!error || *error > config_.depth_factor.gate) return false;
+  window_.set_depth(*input.depth);
+  return true;
 }
 
 void Estimator::optimize(EstimatorResult& result, int iterations) {
@@ -189,10 +188,10 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   const std::vector<FeatureId> outliers = remove_outliers(window_, config_.landmarks);
   result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());
   result.imu_strain = imu_strain(window_);
-  const StateId newest_id = window_.states.rbegin()->first;
+  const StateId newest_id = window_.newest_id();
   result.landmarks.clear();
   result.landmarks_seen = 0;
-  for (const auto& [id, feature] : window_.features) {
+  for (const auto& [id, feature] : window_.features()) {
     if (!feature.anchor) continue;
     result.landmarks.push_back({id, window_.position(feature)});
     if (feature.last_seen == newest_id) ++result.landmarks_seen;
@@ -206,31 +205,28 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
   const bool frames = sees_frames(window_);
-  for (std::size_t camera = 0; camera < window_.cameras.size(); ++camera) {
+  for (std::size_t camera = 0; camera < window_.cameras().size(); ++camera) {
     const std::optional<double> spread = median_residual(window_, camera);
     if (!spread) continue;
-    const bool beside_frames = frames && window_.cameras[camera].modality == Modality::Events;
+    const bool beside_frames = frames && window_.cameras()[camera].given.modality == Modality::Events;
     const double inflation = config_.noise_inflation * (beside_frames ? config_.event_noise_inflation : 1.0);
     const double wanted = std::max(*spread, 1e-3) * inflation;
-    double& scale = window_.noise_scale[camera];
-    scale = std::clamp(scale * std::pow(wanted, config_.noise_gain) * doubt, config_.min_noise_scale,
-                       config_.max_noise_scale);
+    const double scale = window_.cameras()[camera].noise_scale * std::pow(wanted, config_.noise_gain) * doubt;
+    window_.set_noise_scale(camera, std::clamp(scale, config_.min_noise_scale, config_.max_noise_scale));
   }
 }
 
 std::vector<KeyframeRecord> Estimator::slide() {
   std::vector<KeyframeRecord> left;
   // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
-  if (window_.states.size() > static_cast<std::size_t>(config_.recent_states)) {
-    const auto aged = std::prev(window_.states.end(), config_.recent_states + 1);
+  if (window_.states().size() > static_cast<std::size_t>(config_.recent_states)) {
+    const auto aged = std::prev(window_.states().end(), config_.recent_states + 1);
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
-  while (static_cast<int>(window_.states.size()) > config_.recent_states + config_.keyframes) {
+  while (static_cast<int>(window_.states().size()) > config_.recent_states + config_.keyframes) {
     left.push_back(drop_oldest_keyframe(window_, config_.landmarks));
   }
-  // Tracks that ended before they became landmarks.
-  std::erase_if(window_.features,
-                [&](const auto& entry) { return !entry.second.anchor && !window_.alive(entry.second); });
+  window_.forget_ended_tracks();
   return left;
 }
 

@@ -49,9 +49,9 @@ class Estimator {
 
   /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the
   /// start.
-  std::optional<Matrix15d> covariance();
+  std::optional<Matrix15d> covariance() const;
   /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
-  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera);
+  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
 
   /// z-depth of a landmark in its own camera at the newest state [m].
   std::optional<double> depth(FeatureId id) const;
@@ -66,7 +66,7 @@ class Estimator {
   void settle_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);
-  bool take_depth();
+  bool take_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise(double imu_strain);
   std::vector<KeyframeRecord> slide();

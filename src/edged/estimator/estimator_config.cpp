@@ -4,6 +4,27 @@
 
 namespace edged {
 
+void CalibrationConfig::visit(ConfigFields& fields) {
+  fields.add("rotation_sigma_deg", rotation_sigma_deg,
+             {"deg", 0, 10, "how far each camera's rotation against the IMU may be off; 0 holds it as given"});
+  fields.add("time_offset_sigma_ms", time_offset_sigma_ms,
+             {"ms", 0, 50, "how far each camera's time offset may be off; 0 holds it as given"});
+  fields.add(
+      "imu_sigma", imu_sigma,
+      {"1", 0, 0.1, "how far scale and axes of gyro and accelerometer may be off, as a share; 0 holds them as given"});
+}
+
+void TrackNoise::visit(ConfigFields& fields) {
+  fields.add(
+      "correlation", correlation,
+      {"1", 0, 0.999, "of the errors of two observations of a track right after one another; 0: all independent"});
+  fields.add("event_correlation", event_correlation,
+             {"1", 0, 0.999,
+              "the same on event frames; higher: more accurate where all stands still, and what moves "
+              "slowly is believed"});
+  fields.add("time_s", time_s, {"s", 0.01, 1000, "after this time the correlation has fallen to 1/e of that"});
+}
+
 void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("recent_states", recent_states, {"", 1, 20, "newest states in the window, keyframes or not"});
   fields.add("keyframes", keyframes, {"", 2, 30, "older keyframes in the window; more are slower and more accurate"});

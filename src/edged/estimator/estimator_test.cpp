@@ -169,8 +169,8 @@ TEST(Estimator, FindsWhatScaleAndAxesOfTheGyroAreOffBy) {
     TestWorld world(options);
     Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
     for (int i = 1; i <= 300; ++i) estimator.add(world.packet(0.05 * i, 0.05, i % 4 == 0));
-    const auto& block = estimator.window().imu_intrinsics;
-    const Eigen::Matrix3d found = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(block.data());
+    const double* block = estimator.window().block(kImuIntrinsicsKey);
+    const Eigen::Matrix3d found = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(block);
     const Eigen::Matrix3d off = 0.5 * (found + found.transpose()) - options.gyro_error;
     EXPECT_LT(off.norm(), 0.5 * options.gyro_error.norm()) << off;
   }
@@ -242,8 +242,8 @@ TEST(Estimator, KeepsTheWindowBounded) {
   const EstimatorConfig config;
   Estimator estimator(world.rig(), world.noise(), config);
   for (int i = 1; i <= 200; ++i) estimator.add(world.packet(i * 0.05, 0.05, i % 2 == 0));
-  EXPECT_LE(static_cast<int>(estimator.window().states.size()), config.recent_states + config.keyframes);
-  EXPECT_LE(estimator.window().features.size(), 400U);
+  EXPECT_LE(static_cast<int>(estimator.window().states().size()), config.recent_states + config.keyframes);
+  EXPECT_LE(estimator.window().features().size(), 400U);
 }
 
 }  // namespace

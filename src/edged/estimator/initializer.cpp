@@ -42,7 +42,7 @@ void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) 
 double visual_rms(const Window& window) {
   double sum = 0.0;
   int n = 0;
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const Eigen::Vector3d p_W = window.position(feature);
     for (const auto& [state, seen] : feature.seen) {
@@ -68,8 +68,8 @@ std::string scale_text(double sigma, double most) {
 }
 
 /// Standard deviation of the newest state's tilt, of the worst direction [rad].
-double tilt_sigma(Window& window) {
-  const std::optional<Matrix15d> P = covariance(window, window.states.rbegin()->first);
+double tilt_sigma(const Window& window) {
+  const std::optional<Matrix15d> P = covariance(window, window.newest_id());
   if (!P) return kFree;
   const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_W_B().R().topRows<2>();
   const Eigen::Matrix2d tilt = horizontal * P->block<3, 3>(3, 3) * horizontal.transpose();
@@ -78,11 +78,11 @@ double tilt_sigma(Window& window) {
 
 }  // namespace
 
-double scale_sigma(Window& window) {
+double scale_sigma(const Window& window) {
   const auto way_of = [](const auto& entry) { return entry.second.T_W_B().translation(); };
-  const auto farthest = std::max_element(window.states.begin(), window.states.end(), [&](const auto& a, const auto& b) {
-    return way_of(a).norm() < way_of(b).norm();
-  });
+  const auto farthest =
+      std::max_element(window.states().begin(), window.states().end(),
+                       [&](const auto& a, const auto& b) { return way_of(a).norm() < way_of(b).norm(); });
   const std::optional<Matrix15d> P = covariance(window, farthest->first);
   const Eigen::Vector3d way = way_of(*farthest);
   if (!P || way.isZero()) return kFree;
@@ -157,13 +157,13 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
   Window window(rig_, config_.cauchy_scale, config_.depth_factor);
-  const StateId id = window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true));
-  window.add_observations(id, input.observations);
+  const StateId id =
+      window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true), input.observations);
+  const WindowState& first = window.newest();
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
-  window.soft_priors.push_back(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
-  window.soft_priors.push_back(rest_prior(pose, window.states.at(id).pose, motion, window.states.at(id).motion,
-                                          standstill.mean_accel_B(), kRestAccelSigma));
-  window.soft_priors.push_back(
+  window.add_soft_prior(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
+  window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(), kRestAccelSigma));
+  window.add_soft_prior(
       motion_prior(motion, motion_block(state),
                    {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
   return window;
@@ -211,21 +211,16 @@ void Initializer::solve_start(Window& window) const {
 
 /// What an observation is worth is told by how well the solved window fits it.
 void Initializer::weigh_observations(Window& window) const {
-  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+  for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Newness::Any);
     if (!spread) continue;
-    const double scale = std::clamp(*spread * kStartNoiseInflation, kLeastStartNoise, config_.max_noise_scale);
-    window.noise_scale[camera] = scale;
-    for (auto& [id, feature] : window.features) {
-      if (feature.camera != camera) continue;
-      for (auto& [state, observation] : feature.seen) observation.sigma *= scale;
-    }
+    window.rescale_noise(camera, std::clamp(*spread * kStartNoiseInflation, kLeastStartNoise, config_.max_noise_scale));
   }
 }
 
 /// What speaks against a solved window, empty when nothing does.
-std::string Initializer::doubt_about(Window& window, double most_tilt_deg) const {
-  const auto landmarks = std::count_if(window.features.begin(), window.features.end(),
+std::string Initializer::doubt_about(const Window& window, double most_tilt_deg) const {
+  const auto landmarks = std::count_if(window.features().begin(), window.features().end(),
                                        [](const auto& entry) { return entry.second.anchor.has_value(); });
   if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);
   const double rms = visual_rms(window);
@@ -255,17 +250,16 @@ Window Initializer::aligned_window(const Alignment& alignment) const {
     const NavState& nav = alignment.states[i];
     Preintegration imu =
         i == 0 ? Preintegration{} : Preintegration(buffer_[i].imu, nav.bias_gyro, nav.bias_accel, noise_);
-    const StateId id = window.add_state(window_state(nav, buffer_[i].imu.back().gyro_B, std::move(imu), true));
-    window.add_observations(id, buffer_[i].observations);
-    if (depth_due(window)) window.states.at(id).depth = buffer_[i].depth;
+    window.add_state(window_state(nav, buffer_[i].imu.back().gyro_B, std::move(imu), true), buffer_[i].observations);
+    if (buffer_[i].depth && depth_due(window)) window.set_depth(*buffer_[i].depth);
   }
-  std::erase_if(window.features, [&](const auto& entry) { return alignment.outliers.contains(entry.first); });
-  const auto& [first, state] = *window.states.begin();
-  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
+  for (const FeatureId id : alignment.outliers) window.forget_feature(id);
+  const auto& [first, state] = *window.states().begin();
+  window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
   NavState unbiased = state.nav();
   unbiased.bias_accel.setZero();
-  window.soft_priors.push_back(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
-                                            {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+  window.add_soft_prior(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
+                                     {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
   return window;
 }
 

@@ -34,7 +34,7 @@ struct StartResult {
 
 /// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state
 /// tells it.
-double scale_sigma(Window& window);
+double scale_sigma(const Window& window);
 
 class Initializer {
  public:
@@ -57,7 +57,7 @@ class Initializer {
   Window aligned_window(const Alignment& alignment) const;
   void solve_start(Window& window) const;
   void weigh_observations(Window& window) const;
-  std::string doubt_about(Window& window, double most_tilt_deg) const;
+  std::string doubt_about(const Window& window, double most_tilt_deg) const;
 
   Rig rig_;
   ImuNoise noise_;

@@ -43,7 +43,7 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
     Started started;
     started.after_s = i * kEvery_s;
     std::vector<Eigen::Vector3d> estimated, truth;
-    for (const auto& [id, state] : estimator.window().states) {
+    for (const auto& [id, state] : estimator.window().states()) {
       estimated.push_back(state.T_W_B().translation());
       truth.push_back(world.T_W_B(to_seconds(state.t)).translation());
     }

@@ -22,7 +22,8 @@ Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Tr
 
 }  // namespace
 
-LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations)
+LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout, Linearisation at,
+                                     NormalEquations& equations)
     : layout_(layout),
       equations_(equations),
       present_(window),
@@ -34,8 +35,8 @@ LandmarkEquations::LandmarkEquations(Window& window, const Layout& layout, Linea
     const auto found = layout.offset.find(key);
     return found == layout.offset.end() ? kNowhere : found->second;
   };
-  for (const auto& [id, state] : window.states) poses_.push_back(place_of({BlockKind::Pose, id}));
-  for (std::size_t i = 0; i < window.cameras.size(); ++i) {
+  for (const auto& [id, state] : window.states()) poses_.push_back(place_of({BlockKind::Pose, id}));
+  for (std::size_t i = 0; i < window.cameras().size(); ++i) {
     calibrations_.push_back(place_of({BlockKind::Calibration, i}));
   }
 }
@@ -45,7 +46,7 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
   g_.setZero();
   coupling_.setZero();
   depth_ = {};
-  depth_.inverse_depth = term.inverse_depth;
+  depth_.landmark = term.id;
   depth_.calibration = calibrations_[term.camera];
   depth_.poses.reserve(term.residuals.size() + 1);
   depth_.poses.push_back({poses_[term.anchor_place]});

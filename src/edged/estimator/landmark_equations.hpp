@@ -13,7 +13,7 @@ namespace edged {
 class LandmarkEquations {
  public:
   /// All three must outlive this.
-  LandmarkEquations(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations);
+  LandmarkEquations(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations);
   /// An inverse depth without a place in the layout is eliminated, and added to `eliminated` if there is one.
   void add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated);
 

@@ -16,7 +16,7 @@ namespace {
 /// The oldest keyframe that sees the feature.
 std::optional<StateId> oldest_keyframe(const Window& window, const Feature& feature) {
   for (const auto& [state, observation] : feature.seen) {
-    if (window.states.at(state).keyframe) return state;
+    if (window.states().at(state).keyframe) return state;
   }
   return std::nullopt;
 }
@@ -25,9 +25,9 @@ bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
   return inverse_depth > 1.0 / config.max_depth_m && inverse_depth < 1.0 / config.min_depth_m;
 }
 
-bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig& config) {
+void triangulate_feature(Window& window, FeatureId id, const Feature& feature, const LandmarkConfig& config) {
   const std::optional<StateId> anchor = oldest_keyframe(window, feature);
-  if (!anchor || feature.seen.size() < 3) return false;
+  if (!anchor || feature.seen.size() < 3) return;
   std::vector<View> views;
   double sigma = 0.0;
   for (const auto& [state, observation] : feature.seen) {
@@ -35,19 +35,16 @@ bool triangulate_feature(Window& window, Feature& feature, const LandmarkConfig&
     sigma = observation.sigma;
   }
   const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
-  if (!point || point->rms_residual > config.max_residual_sigma * sigma) return false;
-  const double depth = (window.T_W_C(*anchor, feature.camera).inverse() * point->p_W).z();
-  if (!depth_in_bounds(1.0 / depth, config)) return false;
-  feature.anchor = anchor;
-  feature.inverse_depth = 1.0 / depth;
-  return true;
+  if (!point || point->rms_residual > config.max_residual_sigma * sigma) return;
+  const auto inverse_depth = inverse_depth_in(window, *anchor, feature.camera, point->p_W, config);
+  if (inverse_depth) window.make_landmark(id, *anchor, *inverse_depth);
 }
 
 /// How well observations fit the window as it stands.
 class Fit {
  public:
   explicit Fit(const Window& window) : views_(window) {
-    for (const auto& [id, state] : window.states) place_.emplace(id, place_.size());
+    for (const auto& [id, state] : window.states()) place_.emplace(id, place_.size());
   }
 
   /// Where a landmark is expected less where it was seen, on the unit plane; false when it is behind the camera.
@@ -81,24 +78,21 @@ class Fit {
   std::map<StateId, std::size_t> place_;  ///< of a state in the window
 };
 
-/// Takes out the observations beyond the limit. True when the track's newest is among them.
-bool take_out_observations(const Fit& fit, Feature& feature, double max_sigmas) {
-  bool newest = false;
-  std::erase_if(feature.seen, [&](const auto& observation) {
-    if (observation.first == *feature.anchor) return false;
-    const bool bad = fit.sigmas(feature, observation.first) > max_sigmas;
-    newest = newest || (bad && observation.first == feature.last_seen);
-    return bad;
-  });
-  return newest;
+/// The states whose observations are beyond the limit, but for the anchor's.
+std::vector<StateId> bad_observations(const Fit& fit, const Feature& feature, double max_sigmas) {
+  std::vector<StateId> bad;
+  for (const auto& [state, observation] : feature.seen) {
+    if (state != *feature.anchor && fit.sigmas(feature, state) > max_sigmas) bad.push_back(state);
+  }
+  return bad;
 }
 
 /// One a camera: what its landmarks may be off by, over all their views [sigma].
 std::vector<double> misfit_limits(const Window& window, const Fit& fit, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
   constexpr double kLeastMedian = 0.2;  // [sigma]: the best of fits condemns nothing
-  std::vector<std::vector<double>> rms(window.cameras.size());
-  for (const auto& [id, feature] : window.features) {
+  std::vector<std::vector<double>> rms(window.cameras().size());
+  for (const auto& [id, feature] : window.features()) {
     if (const auto value = fit.rms_sigmas(feature)) rms[feature.camera].push_back(*value);
   }
   std::vector<double> limits;
@@ -130,76 +124,80 @@ void LandmarkConfig::visit(ConfigFields& fields) {
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
   const bool ended_too = tracks == Tracks::All;
   // Landmarks out of sight still hold the window together, but must not take the places of those in view.
-  std::vector<int> landmarks(window.cameras.size(), 0), total(window.cameras.size(), 0);
-  std::vector<Feature*> candidates;
-  for (auto& [id, feature] : window.features) {
+  std::vector<int> landmarks(window.cameras().size(), 0), total(window.cameras().size(), 0);
+  std::vector<std::map<FeatureId, Feature>::const_iterator> candidates;
+  for (auto entry = window.features().begin(); entry != window.features().end(); ++entry) {
+    const Feature& feature = entry->second;
     if (feature.anchor) {
       ++total[feature.camera];
       if (window.alive(feature)) ++landmarks[feature.camera];
     } else if (ended_too || window.alive(feature)) {
-      candidates.push_back(&feature);
+      candidates.push_back(entry);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Feature* a, const Feature* b) { return a->seen.size() > b->seen.size(); });
-  for (Feature* feature : candidates) {
-    const std::size_t camera = feature->camera;
-    const bool alive = window.alive(*feature);
+  std::ranges::stable_sort(candidates, std::ranges::greater(),
+                           [](const auto& entry) { return entry->second.seen.size(); });
+  for (const auto& candidate : candidates) {
+    const auto& [id, feature] = *candidate;
+    const std::size_t camera = feature.camera;
+    const bool alive = window.alive(feature);
     if (total[camera] >= 2 * config.max_per_camera || (alive && landmarks[camera] >= config.max_per_camera)) continue;
-    if (!triangulate_feature(window, *feature, config)) continue;
+    triangulate_feature(window, id, feature, config);
+    if (!feature.anchor) continue;
     ++total[camera];
     if (alive) ++landmarks[camera];
   }
 }
 
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config) {
-  const StateId newest = window.states.rbegin()->first;
+  const StateId newest = window.newest_id();
   const Fit fit(window);
   std::vector<FeatureId> unexpected;
-  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+  for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
     std::vector<FeatureId> far;
     std::size_t seen = 0;
-    for (const auto& [id, feature] : window.features) {
+    for (const auto& [id, feature] : window.features()) {
       if (feature.camera != camera || !feature.anchor || !feature.seen.contains(newest)) continue;
       ++seen;
       if (fit.sigmas(feature, newest) > config.max_innovation_sigma) far.push_back(id);
     }
     if (2 * far.size() > seen) continue;
-    for (const FeatureId id : far) window.features.at(id).seen.erase(newest);
+    for (const FeatureId id : far) window.forget_observation(id, newest);
     unexpected.insert(unexpected.end(), far.begin(), far.end());
   }
   return unexpected;
 }
 
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config) {
-  std::vector<FeatureId> wrong;
   const Fit fit(window);
   const std::vector<double> limits = misfit_limits(window, fit, config.max_misfit);
-  for (auto it = window.features.begin(); it != window.features.end();) {
-    Feature& feature = it->second;
-    if (!feature.anchor) {
-      ++it;
-      continue;
-    }
+  std::vector<FeatureId> wrong, gone;
+  std::vector<std::pair<FeatureId, StateId>> taken_out;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor) continue;
     // Before its worst observations are taken out: that it has some says more about it than those that are left.
-    bool dropped = !depth_in_bounds(feature.inverse_depth, config) ||
-                   fit.rms_sigmas(feature).value_or(0.0) > limits[feature.camera];
-    const bool newest_wrong = !dropped && take_out_observations(fit, feature, config.max_residual_sigma);
+    const bool misfit = !depth_in_bounds(feature.inverse_depth, config) ||
+                        fit.rms_sigmas(feature).value_or(0.0) > limits[feature.camera];
+    const auto bad = misfit ? std::vector<StateId>() : bad_observations(fit, feature, config.max_residual_sigma);
+    const bool newest_bad = !bad.empty() && bad.back() == feature.last_seen;
     // Right after a change of anchor a landmark has one observation until its camera's next image.
-    dropped = dropped || (feature.seen.size() < 2 && !window.alive(feature));
-    if (window.alive(feature) && (dropped || newest_wrong)) wrong.push_back(it->first);
-    it = dropped ? window.features.erase(it) : std::next(it);
+    const bool goes = misfit || (feature.seen.size() - bad.size() < 2 && !window.alive(feature));
+    if (goes) gone.push_back(id);
+    for (const StateId state : bad) taken_out.emplace_back(id, state);
+    if (window.alive(feature) && (goes || newest_bad)) wrong.push_back(id);
   }
+  for (const auto& [id, state] : taken_out) window.forget_observation(id, state);
+  for (const FeatureId id : gone) window.forget_feature(id);
   return wrong;
 }
 
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {
   constexpr std::size_t kFewestObservations = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
-  const StateId newest = window.states.rbegin()->first;
+  const StateId newest = window.newest_id();
   const Fit fit(window);
   std::vector<double> residuals;
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (feature.camera != camera || !feature.anchor) continue;
     Eigen::Vector2d before = Eigen::Vector2d::Zero(), error;
     for (const TrackStep& step : track_steps(window, feature)) {
@@ -215,13 +213,10 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 
-bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config) {
-  const double depth = (window.T_W_C(to, feature.camera).inverse() * window.position(feature)).z();
-  feature.anchor.reset();
-  if (!depth_in_bounds(1.0 / depth, config)) return false;
-  feature.anchor = to;
-  feature.inverse_depth = 1.0 / depth;
-  return true;
+std::optional<double> inverse_depth_in(const Window& window, StateId state, std::size_t camera,
+                                       const Eigen::Vector3d& p_W, const LandmarkConfig& config) {
+  const double inverse_depth = 1.0 / (window.T_W_C(state, camera).inverse() * p_W).z();
+  return depth_in_bounds(inverse_depth, config) ? std::optional(inverse_depth) : std::nullopt;
 }
 
 }  // namespace edged

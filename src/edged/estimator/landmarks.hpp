@@ -35,8 +35,9 @@ enum class Newness { Newest, Any };
 /// too few of them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
-/// Moves the landmark to another view of the window in which it was seen, keeping its place in the world. False, and
-/// the feature is a plain track again, when it would lie out of the depth bounds there.
-bool move_anchor(Window& window, Feature& feature, StateId to, const LandmarkConfig& config);
+/// The inverse depth at which a point of the world would be anchored in the view of a camera at a state [1/m]; nothing
+/// out of the depth bounds.
+std::optional<double> inverse_depth_in(const Window& window, StateId state, std::size_t camera,
+                                       const Eigen::Vector3d& p_W, const LandmarkConfig& config);
 
 }  // namespace edged

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "edged/estimator/test_world.hpp"
 
@@ -15,34 +16,46 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Keyframes at the true poses, 0.2 s apart, with what the cameras see.
-Window window_at_truth(TestWorld& world, int states = 6) {
-  Window window(world.rig(), 1.0);
-  for (int i = 0; i < states; ++i) {
-    const double t = 1.0 + 0.2 * i;
+/// More of a flight: keyframes at the true poses, 0.2 s apart, with what the cameras see.
+struct Leg {
+  int states = 6;
+  bool keyframes = true;
+  std::function<void(CameraObservations&)> spoil = [](CameraObservations&) {};
+};
+
+void fly(Window& window, TestWorld& world, const Leg& leg = {}) {
+  for (int i = 0; i < leg.states; ++i) {
+    const double t = 1.0 + 0.2 * static_cast<double>(window.states().size());
     WindowState state;
     state.t = timestamp_from_seconds(t);
     state.pose = to_block(world.T_W_B(t));
-    state.keyframe = true;
-    const StateId id = window.add_state(std::move(state));
+    state.keyframe = leg.keyframes;
+    std::vector<CameraObservations> observations;
     for (std::size_t camera = 0; camera < world.rig().cameras.size(); ++camera) {
-      window.add_observations(id, {world.observe(t, camera)});
+      leg.spoil(observations.emplace_back(world.observe(t, camera)));
     }
+    window.add_state(std::move(state), observations);
   }
+}
+
+Window window_at_truth(TestWorld& world, int states = 6) {
+  Window window(world.rig(), 1.0);
+  fly(window, world, {.states = states});
   return window;
 }
 
-int count_landmarks(const Window& window) {
-  return static_cast<int>(std::count_if(window.features.begin(), window.features.end(),
-                                        [](const auto& entry) { return entry.second.anchor.has_value(); }));
+/// Shifts a corner's observation on the unit plane.
+std::function<void(CameraObservations&)> shift(FeatureId id, double x, double y) {
+  return [=](CameraObservations& view) {
+    for (FeatureObservation& seen : view.features) {
+      if (seen.id == id) seen.point += Eigen::Vector2d(x, y);
+    }
+  };
 }
 
-/// A landmark that every state sees.
-FeatureId seen_by_all(const Window& window) {
-  for (const auto& [id, feature] : window.features) {
-    if (feature.anchor && feature.seen.size() == window.states.size()) return id;
-  }
-  return 0;
+int count_landmarks(const Window& window) {
+  return static_cast<int>(std::count_if(window.features().begin(), window.features().end(),
+                                        [](const auto& entry) { return entry.second.anchor.has_value(); }));
 }
 
 constexpr LandmarkConfig kGenerous = [] {
@@ -52,12 +65,23 @@ constexpr LandmarkConfig kGenerous = [] {
   return config;
 }();
 
+/// A corner that all six states of such a window see, and a landmark there.
+FeatureId lasting_corner(TestWorld& world) {
+  Window window = window_at_truth(world);
+  triangulate_features(window, kGenerous);
+  for (const auto& [id, feature] : window.features()) {
+    if (feature.anchor && feature.seen.size() == window.states().size()) return id;
+  }
+  ADD_FAILURE() << "no corner stays in view";
+  return 0;
+}
+
 TEST(TriangulateFeatures, PutsLandmarksWhereThePointsAreInEveryCamera) {
   TestWorld world({.cameras = 2, .pixel_noise = 0.0});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   std::size_t landmarks[2] = {0, 0};
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     ++landmarks[feature.camera];
     EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 1e-4) << id;
@@ -79,7 +103,7 @@ TEST(TriangulateFeatures, KeepsTheBudgetOfEachCameraAndPrefersTheLongestTracks) 
   Window window = window_at_truth(world);
   triangulate_features(window, {.max_per_camera = 15});
   std::size_t landmarks[2] = {0, 0}, shortest_landmark[2] = {99, 99}, longest_track[2] = {0, 0};
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     const std::size_t observations = feature.seen.size(), c = feature.camera;
     if (feature.anchor) {
       ++landmarks[c];
@@ -105,23 +129,22 @@ TEST(TriangulateFeatures, RefusesDepthsOutOfBoundsAndTracksThatContradictThemsel
   triangulate_features(far, {.max_depth_m = 1.0});
   EXPECT_EQ(count_landmarks(far), 0);
 
-  Window wrong = window_at_truth(world);
+  const FeatureId id = lasting_corner(world);
+  Window wrong = window_at_truth(world, 3);
+  fly(wrong, world, {.states = 1, .spoil = shift(id, 0.0, 0.1)});  // 20 px
+  fly(wrong, world, {.states = 2});
   triangulate_features(wrong, kGenerous);
-  const FeatureId id = seen_by_all(wrong);
-  wrong.features.at(id).anchor.reset();
-  std::next(wrong.features.at(id).seen.begin(), 3)->second.point.y() += 0.1;  // 20 px
-  triangulate_features(wrong, kGenerous);
-  EXPECT_FALSE(wrong.features.at(id).anchor.has_value());
+  EXPECT_FALSE(wrong.features().at(id).anchor.has_value());
 }
 
 TEST(TriangulateFeatures, AnchorsInTheOldestKeyframe) {
   TestWorld world({.pixel_noise = 0.0});
-  Window window = window_at_truth(world);
-  window.states.begin()->second.keyframe = false;
+  const FeatureId id = lasting_corner(world);
+  Window window(world.rig(), 1.0);
+  fly(window, world, {.states = 1, .keyframes = false});
+  fly(window, world, {.states = 5});
   triangulate_features(window, kGenerous);
-  const FeatureId id = seen_by_all(window);
-  ASSERT_NE(id, 0U);
-  EXPECT_EQ(*window.features.at(id).anchor, std::next(window.states.begin())->first);
+  EXPECT_EQ(window.features().at(id).anchor, std::next(window.states().begin())->first);
 }
 
 TEST(RemoveOutliers, KeepsWhatFits) {
@@ -135,36 +158,35 @@ TEST(RemoveOutliers, KeepsWhatFits) {
 
 TEST(RemoveOutliers, ReportsATrackWhoseNewestObservationIsWrongAndKeepsTheLandmark) {
   TestWorld world({.pixel_noise = 0.0});
-  Window window = window_at_truth(world);
+  const FeatureId id = lasting_corner(world);
+  Window window = window_at_truth(world, 5);
   triangulate_features(window, kGenerous);
-  const FeatureId id = seen_by_all(window);
-  window.features.at(id).seen.rbegin()->second.point.x() += 0.05;  // 10 px
+  fly(window, world, {.states = 1, .spoil = shift(id, 0.05, 0.0)});  // 10 px
   EXPECT_THAT(remove_outliers(window, kGenerous), ElementsAre(id));
-  EXPECT_EQ(window.features.at(id).seen.size(), window.states.size() - 1);
-  EXPECT_TRUE(window.features.at(id).anchor.has_value());
+  EXPECT_EQ(window.features().at(id).seen.size(), window.states().size() - 1);
+  EXPECT_TRUE(window.features().at(id).anchor.has_value());
 }
 
 TEST(RemoveOutliers, TakesOutAnOldWrongObservationWithoutEndingTheTrack) {
   TestWorld world({.pixel_noise = 0.0});
-  Window window = window_at_truth(world);
+  const FeatureId id = lasting_corner(world);
+  Window window = window_at_truth(world, 3);
   triangulate_features(window, kGenerous);
-  const FeatureId id = seen_by_all(window);
-  std::next(window.features.at(id).seen.begin(), 2)->second.point.x() += 0.05;
+  fly(window, world, {.states = 1, .spoil = shift(id, 0.05, 0.0)});
+  fly(window, world, {.states = 2});
   EXPECT_THAT(remove_outliers(window, kGenerous), IsEmpty());
-  EXPECT_EQ(window.features.at(id).seen.size(), window.states.size() - 1);
+  EXPECT_EQ(window.features().at(id).seen.size(), window.states().size() - 1);
 }
 
 TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoObservationAlone) {
   TestWorld world({});
-  Window window = window_at_truth(world);
+  const FeatureId id = lasting_corner(world);
+  Window window = window_at_truth(world, 3);
   triangulate_features(window, kGenerous);
   const int landmarks = count_landmarks(window);
-  const FeatureId id = seen_by_all(window);
   // It walks: to and fro by less than any one observation is taken out for.
-  double step = 1.5;
-  for (auto& [state, observation] : window.features.at(id).seen) {
-    observation.point.y() += step * observation.sigma;
-    step = -step;
+  for (const double sigmas : {4.0, -4.0, 4.0}) {
+    fly(window, world, {.states = 1, .spoil = shift(id, 0.0, sigmas / 200.0)});
   }
   LandmarkConfig strict = kGenerous;
   strict.max_residual_sigma = 20.0;
@@ -176,31 +198,36 @@ TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoObservationAlone)
 
 TEST(RemoveOutliers, DropsALandmarkOutOfBoundsAndReportsItWhileItIsTracked) {
   TestWorld world({.pixel_noise = 0.0});
-  Window window = window_at_truth(world);
+  const FeatureId tracked = lasting_corner(world);
+  Window window = window_at_truth(world, 5);
   triangulate_features(window, kGenerous);
-  const FeatureId tracked = seen_by_all(window);
-  window.features.at(tracked).inverse_depth = -0.1;
-  // The newest image no longer shows this one.
-  const FeatureId ended = std::find_if(window.features.begin(), window.features.end(), [&](const auto& entry) {
+  const FeatureId ended = std::find_if(window.features().begin(), window.features().end(), [&](const auto& entry) {
                             return entry.second.anchor && entry.first != tracked;
                           })->first;
-  window.features.at(ended).inverse_depth = 1e-4;
-  window.features.at(ended).last_seen = window.states.begin()->first;
+  fly(window, world, {.states = 1, .spoil = [&](CameraObservations& view) {
+                        std::erase_if(view.features, [&](const auto& seen) { return seen.id == ended; });
+                      }});
+  for (const auto& [id, inverse_depth] : {std::pair(tracked, -0.1), std::pair(ended, 1e-4)}) {
+    const double step = inverse_depth - window.features().at(id).inverse_depth;
+    window.move({BlockKind::InverseDepth, id}, {&step, 1});
+  }
   const std::vector<FeatureId> wrong = remove_outliers(window, kGenerous);
   EXPECT_THAT(wrong, ElementsAre(tracked));
-  EXPECT_FALSE(window.features.contains(tracked));
-  EXPECT_FALSE(window.features.contains(ended));
+  EXPECT_FALSE(window.features().contains(tracked));
+  EXPECT_FALSE(window.features().contains(ended));
 }
 
-/// Moves what the newest state sees of the first `count` landmarks by 20 px.
-int move_newest_observations(Window& window, int count) {
-  const StateId newest = window.states.rbegin()->first;
+/// Another state, in which `count` landmarks are seen 20 px off. How many there were.
+int fly_on_with_some_off(Window& window, TestWorld& world, int count) {
   int moved = 0;
-  for (auto& [id, feature] : window.features) {
-    if (moved == count || !feature.anchor || !feature.seen.contains(newest)) continue;
-    feature.seen.at(newest).point.x() += 0.1;
-    ++moved;
-  }
+  fly(window, world, {.states = 1, .spoil = [&](CameraObservations& view) {
+                        for (FeatureObservation& seen : view.features) {
+                          const auto known = window.features().find(seen.id);
+                          if (moved == count || known == window.features().end() || !known->second.anchor) continue;
+                          seen.point.x() += 0.1;
+                          ++moved;
+                        }
+                      }});
   return moved;
 }
 
@@ -209,7 +236,7 @@ TEST(RejectUnexpected, EndsTracksFarFromWhereTheImuExpectsThem) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
-  ASSERT_EQ(move_newest_observations(window, 10), 10);
+  ASSERT_EQ(fly_on_with_some_off(window, world, 10), 10);
   EXPECT_EQ(reject_unexpected(window, kGenerous).size(), 10U);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
 }
@@ -218,37 +245,37 @@ TEST(RejectUnexpected, DoubtsThePredictionWhenItFitsTheLesserPartOnly) {
   TestWorld world({});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
-  move_newest_observations(window, 1000);
+  EXPECT_GT(fly_on_with_some_off(window, world, 1000), 10);
   EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
 }
 
-TEST(MoveAnchor, KeepsThePlaceInTheWorld) {
+TEST(InverseDepthIn, KeepsALandmarkWhereItIsInTheWorld) {
   TestWorld world({.cameras = 2});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   int moved = 0;
-  for (auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const Eigen::Vector3d before = window.position(feature);
     const StateId to = feature.seen.rbegin()->first;
-    ASSERT_TRUE(move_anchor(window, feature, to, kGenerous));
-    EXPECT_EQ(*feature.anchor, to);
+    const auto inverse_depth = inverse_depth_in(window, to, feature.camera, before, kGenerous);
+    ASSERT_TRUE(inverse_depth);
+    window.make_landmark(id, to, *inverse_depth);
     // The ray is the new anchor's own observation, half a pixel beside the old one's: the depth is kept.
     const double depth = (window.T_W_C(to, feature.camera).inverse() * before).z();
-    EXPECT_NEAR(1.0 / feature.inverse_depth, depth, 1e-9);
+    EXPECT_NEAR(1.0 / *inverse_depth, depth, 1e-9);
     EXPECT_LT((window.position(feature) - before).norm(), 8.0 * 0.5 / 200.0 * depth);
     ++moved;
   }
   EXPECT_GT(moved, 80);
 }
 
-TEST(MoveAnchor, MakesAPlainTrackOfALandmarkThatWouldLieOutOfBounds) {
+TEST(InverseDepthIn, IsNothingOutOfTheBounds) {
   TestWorld world({.pixel_noise = 0.0});
-  Window window = window_at_truth(world);
-  triangulate_features(window, kGenerous);
-  Feature& feature = window.features.at(seen_by_all(window));
-  EXPECT_FALSE(move_anchor(window, feature, feature.seen.rbegin()->first, {.max_depth_m = 1.0}));
-  EXPECT_FALSE(feature.anchor.has_value());
+  const Window window = window_at_truth(world);
+  const Eigen::Vector3d p_W = world.point_W(lasting_corner(world));
+  EXPECT_TRUE(inverse_depth_in(window, window.newest_id(), 0, p_W, kGenerous));
+  EXPECT_FALSE(inverse_depth_in(window, window.newest_id(), 0, p_W, {.max_depth_m = 1.0}));
 }
 
 }  // namespace

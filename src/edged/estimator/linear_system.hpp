@@ -63,7 +63,7 @@ struct DepthByPose {
 
 /// A landmark's inverse depth in the normal equations; eliminated from them, its step is -(g + couplings^T d) / h.
 struct DepthEquation {
-  double* inverse_depth = nullptr;
+  std::uint64_t landmark = 0;  ///< FeatureId
   double h = 0.0, g = 0.0;
   std::vector<DepthByPose> poses;  ///< the anchor's, then that of every residual's state
   Eigen::Index calibration = 0;    ///< global place of its camera's

@@ -33,7 +33,7 @@ void eliminate(Eigen::Index leaving, NormalEquations& eq) {
 
 }  // namespace
 
-LinearPrior marginalize(Window& window, const Cost& cost, const std::set<BlockKey>& leaving) {
+LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<BlockKey>& leaving) {
   std::set<BlockKey> all_leaving = leaving;
   for (const LandmarkTerm& term : cost.landmarks) all_leaving.insert({BlockKind::InverseDepth, term.id});
   const Layout layout(blocks_of(cost), all_leaving);

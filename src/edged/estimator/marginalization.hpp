@@ -12,6 +12,6 @@ namespace edged {
 /// Linearises `cost` (Linearisation::FirstEstimates) and eliminates by Schur complement the blocks in `leaving` and all
 /// inverse depths that it is of. Returns the prior on the remaining blocks, at their linearisation points; `cost` must
 /// hold every term that touches a leaving block, the old prior included.
-LinearPrior marginalize(Window& window, const Cost& cost, const std::set<BlockKey>& leaving);
+LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<BlockKey>& leaving);
 
 }  // namespace edged

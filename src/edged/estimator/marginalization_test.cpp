@@ -19,20 +19,18 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
   const PoseBlock solved = window.newest().pose;
   const MotionBlock solved_motion = window.newest().motion;
 
-  const StateId first = window.states.begin()->first;
+  const StateId first = window.oldest_id();
   const std::set<BlockKey> leaving = {{BlockKind::Pose, first}, {BlockKind::Motion, first}};
   Cost touching = cost_of(window);
   std::erase_if(touching.factors, [&](const Factor& f) {
     return std::none_of(f.blocks.begin(), f.blocks.end(), [&](const BlockKey& k) { return leaving.contains(k); });
   });
-  window.prior = marginalize(window, touching, leaving);
-  window.states.erase(first);
-  window.drop_orphaned_priors();
+  window.drop_oldest(marginalize(window, touching, leaving), window.newest_id(), {});
 
   // Start elsewhere: the prior alone must bring the states back.
-  for (auto& [id, state] : window.states) {
-    for (int i = 0; i < 3; ++i) state.pose[static_cast<std::size_t>(i)] += 0.02;
-    for (double& m : state.motion) m += 0.01;
+  for (const auto& [id, state] : window.states()) {
+    window.move({BlockKind::Pose, id}, std::array{0.02, 0.02, 0.02, 0.0, 0.0, 0.0});
+    window.move({BlockKind::Motion, id}, std::vector<double>(9, 0.01));
   }
   solve(window, 50);
   double difference[9];

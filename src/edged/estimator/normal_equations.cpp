@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "edged/core/check.hpp"
 #include "edged/estimator/landmark_equations.hpp"
 
 namespace edged {
@@ -24,7 +23,7 @@ struct LinearFactor {
 };
 
 /// False where the factor is not defined at the present values.
-bool linearise(Window& window, const Factor& factor, const Layout& layout, Linearisation at, LinearFactor& out) {
+bool linearise(const Window& window, const Factor& factor, const Layout& layout, Linearisation at, LinearFactor& out) {
   const std::size_t n = factor.blocks.size();
   const int rows = factor.cost->num_residuals();
   std::vector<const double*> now(n), taken(n);
@@ -61,10 +60,9 @@ bool linearise(Window& window, const Factor& factor, const Layout& layout, Linea
 }
 
 /// The window's prior, whose J^T J is known: only turns take its derivatives away from those at its own place.
-void add_prior(Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
-  const LinearPrior& prior = window.prior;
+void add_prior(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
+  const LinearPrior& prior = window.prior();
   MatrixXd H = prior.information;
-  EDGED_CHECK(H.cols() == prior.J.cols(), "a prior of {} columns whose J^T J has {}", prior.J.cols(), H.cols());
   VectorXd d(H.cols());
   std::vector<Placed> blocks;
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;
@@ -91,7 +89,7 @@ void add_prior(Window& window, const Layout& layout, Linearisation at, NormalEqu
   equations.add(H, g, blocks);
 }
 
-double value_of(Window& window, const Factor& factor) {
+double value_of(const Window& window, const Factor& factor) {
   std::vector<const double*> now;
   for (const BlockKey& key : factor.blocks) now.push_back(window.block(key));
   VectorXd r(factor.cost->num_residuals());
@@ -103,7 +101,7 @@ double value_of(Window& window, const Factor& factor) {
 
 }  // namespace
 
-NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
                                  std::vector<DepthEquation>* eliminated) {
   NormalEquations equations(layout.size);
   LinearFactor linear;
@@ -123,7 +121,7 @@ NormalEquations normal_equations(Window& window, const Cost& cost, const Layout&
   return equations;
 }
 
-double value_of(Window& window, const Cost& cost) {
+double value_of(const Window& window, const Cost& cost) {
   double sum = 0.0;
   for (const Factor& factor : cost.factors) sum += value_of(window, factor);
   const CameraViews views(window);

@@ -11,10 +11,10 @@ namespace edged {
 /// Linearises the terms. Robust losses act with their present weight; what is not defined at the present values (a
 /// landmark behind a camera) counts nothing. Inverse depths that the layout does not hold are eliminated, and what
 /// their steps follow from is added to `eliminated` if there is one.
-NormalEquations normal_equations(Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
                                  std::vector<DepthEquation>* eliminated = nullptr);
 
 /// Half the sum of squares, robust losses applied, at the present values; infinite where a term is not defined.
-double value_of(Window& window, const Cost& cost);
+double value_of(const Window& window, const Cost& cost);
 
 }  // namespace edged

@@ -16,8 +16,8 @@ constexpr double kRestStretch = 10.0;
 
 /// The youngest keyframe takes over the landmarks that it still sees; its observation and later ones are kept for that.
 StateId youngest_keyframe(const Window& window) {
-  StateId youngest = window.states.begin()->first;
-  for (const auto& [state, content] : window.states) {
+  StateId youngest = window.oldest_id();
+  for (const auto& [state, content] : window.states()) {
     if (content.keyframe) youngest = state;
   }
   return youngest;
@@ -33,9 +33,9 @@ bool goes(const Factor& factor, const std::set<BlockKey>& leaving, StateId oldes
 
 /// The terms that go into the prior when the oldest state leaves. inherited: the landmarks anchored there, and whether
 /// the heir goes on with them; of landmarks anchored in younger keyframes only an observation goes.
-Cost cost_leaving(Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
+Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
                   StateId heir) {
-  const StateId oldest = window.states.begin()->first;
+  const StateId oldest = window.oldest_id();
   Cost cost = cost_of(window, Observations::OfKeyframes);
   std::erase_if(cost.factors, [&](const Factor& factor) { return !goes(factor, leaving, oldest); });
   std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor != oldest; });
@@ -67,20 +67,21 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
 /// Keyframes that stay keep what they saw of a landmark whose observations there go.
 void keep_points(Window& window, FeatureId id, const Feature& feature, std::optional<StateId> heir) {
   for (const auto& [state, observation] : feature.seen) {
-    if (state == *feature.anchor || (heir && state >= *heir)) continue;
-    WindowState& keyframe = window.states.at(state);
-    if (keyframe.keyframe) keyframe.kept[feature.camera].push_back(point_of(window, id, feature, state));
+    if (state == *feature.anchor || (heir && state >= *heir) || !window.states().at(state).keyframe) continue;
+    window.keep_point(state, feature.camera, point_of(window, id, feature, state));
   }
 }
 
-KeyframeRecord record_of(Window& window, StateId id) {
-  WindowState& state = window.states.at(id);
+KeyframeRecord record_of(const Window& window, StateId id) {
+  const WindowState& state = window.states().at(id);
   KeyframeRecord record{state.t, state.T_W_B(), {}};
-  for (std::size_t camera = 0; camera < window.cameras.size(); ++camera) {
+  for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
     const SE3 T_B_C = record.T_W_B.inverse() * window.T_W_C(id, camera);
-    record.views.push_back({window.cameras[camera].name, T_B_C, std::move(state.kept[camera])});
+    const auto kept = state.kept.find(camera);
+    record.views.push_back({window.cameras()[camera].given.name, T_B_C, {}});
+    if (kept != state.kept.end()) record.views.back().points = kept->second;
   }
-  for (const auto& [feature_id, feature] : window.features) {
+  for (const auto& [feature_id, feature] : window.features()) {
     if (!feature.anchor || !feature.seen.contains(id)) continue;
     record.views[feature.camera].points.push_back(point_of(window, feature_id, feature, id));
   }
@@ -90,58 +91,46 @@ KeyframeRecord record_of(Window& window, StateId id) {
 }  // namespace
 
 void drop_or_promote(Window& window, StateId id, double max_interval_s) {
-  const auto state = window.states.find(id);
-  const auto next = std::next(state);
+  const auto state = window.states().find(id), next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
   const bool rested = state->second.rested && next->second.rested;
   // Where a rest begins and where it ends is worth keeping: an interval that is half of it would forget the rest.
   const bool between = state->second.rested != next->second.rested;
   if (between || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
-    state->second.keyframe = true;
-    return;
+    window.make_keyframe(id);
+  } else {
+    window.drop_state(id, std::move(joined));
   }
-  next->second.imu = std::move(joined);
-  next->second.rested = rested;
-  for (auto& [feature_id, feature] : window.features) feature.seen.erase(id);
-  window.states.erase(state);
-  window.drop_orphaned_priors();
 }
 
 KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
-  const auto& [id, oldest] = *window.states.begin();
-  const StateId heir = youngest_keyframe(window);
+  const StateId id = window.oldest_id(), heir = youngest_keyframe(window);
   KeyframeRecord record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
-  for (const auto& [piece, ln_s] : window.ln_scale) leaving.insert({BlockKind::LogScale, piece});
+  const std::optional<BlockKey> scale = window.scale_block();
+  if (scale) leaving.insert(*scale);
   std::map<FeatureId, bool> inherited;
-  for (auto& [feature_id, feature] : window.features) {
+  for (const auto& [feature_id, feature] : window.features()) {
     if (feature.anchor != id) continue;
     inherited[feature_id] = heir != id && feature.seen.contains(heir);
     keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(heir) : std::nullopt);
   }
   Cost cost = cost_leaving(window, leaving, inherited, heir);
   LinearPrior scale_walk;
-  if (!window.ln_scale.empty()) {
-    scale_walk = begin_scale(window, to_seconds(std::next(window.states.begin())->second.t - oldest.t));
+  if (scale) {
+    const auto next = std::next(window.states().begin());
+    scale_walk = begin_scale(window, to_seconds(next->second.t - record.t));
     cost.factors.push_back(
         {FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
   }
-  window.prior = marginalize(window, cost, leaving);
-  for (auto it = window.features.begin(); it != window.features.end();) {
-    const auto found = inherited.find(it->first);
-    bool keep = true;
-    if (found != inherited.end()) {
-      keep = found->second && move_anchor(window, it->second, heir, config);
-      std::erase_if(it->second.seen, [&](const auto& observation) { return observation.first < heir; });
-    }
-    it->second.seen.erase(id);
-    it = keep ? std::next(it) : window.features.erase(it);
+  std::map<FeatureId, double> inverse_depths;  // in the heir
+  for (const auto& [feature_id, seen_by_heir] : inherited) {
+    if (!seen_by_heir) continue;
+    const Feature& feature = window.features().at(feature_id);
+    const auto there = inverse_depth_in(window, heir, feature.camera, window.position(feature), config);
+    if (there) inverse_depths.emplace(feature_id, *there);
   }
-  window.states.erase(window.states.begin());
-  std::erase_if(window.ln_scale, [&](const auto& piece) {
-    return leaving.contains({BlockKind::LogScale, piece.first});
-  });
-  window.drop_orphaned_priors();
+  window.drop_oldest(marginalize(window, cost, leaving), heir, inverse_depths);
   return record;
 }
 

@@ -43,28 +43,19 @@ class Neighbourhood {
 
   /// Moves the window; restore() takes it back.
   void move(const VectorXd& d) {
-    before_.clear();
+    before_ = window_.estimates();
     for (const auto& [key, offset] : layout_.offset) {
-      double* block = window_.block(key);
-      before_.insert(before_.end(), block, block + block_size(key.kind));
-      plus(key.kind, block, d.data() + offset);
+      window_.move(key, {d.data() + offset, static_cast<std::size_t>(tangent_size(key.kind))});
     }
     for (const DepthEquation& depth : eliminated_) {
-      before_.push_back(*depth.inverse_depth);
       double coupled = depth.g + depth.by_calibration.dot(d.segment<4>(depth.calibration));
       for (const DepthByPose& pose : depth.poses) coupled += pose.coupling.dot(d.segment<6>(pose.global));
-      *depth.inverse_depth -= coupled / depth.h;
+      const double step = -coupled / depth.h;
+      window_.move({BlockKind::InverseDepth, depth.landmark}, {&step, 1});
     }
   }
 
-  void restore() {
-    const double* value = before_.data();
-    for (const auto& [key, offset] : layout_.offset) {
-      std::copy_n(value, block_size(key.kind), window_.block(key));
-      value += block_size(key.kind);
-    }
-    for (const DepthEquation& depth : eliminated_) *depth.inverse_depth = *value++;
-  }
+  void restore() { window_.restore(before_); }
 
  private:
   Window& window_;

@@ -178,8 +178,25 @@ class TestWorld {
   std::optional<ImuSample> last_imu_;
 };
 
+/// T_W_B of a state becomes T_W_B * (Exp(turn), shift).
+inline void displace(Window& window, StateId id, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
+  Vector6d step;
+  step << window.states().at(id).T_W_B().R() * shift, turn;
+  window.move({BlockKind::Pose, id}, {step.data(), 6});
+}
+
+/// All inverse depths times the factor.
+inline void stretch_depths(Window& window, double factor) {
+  for (const auto& [id, feature] : window.features()) {
+    const double step = (factor - 1.0) * feature.inverse_depth;
+    if (feature.anchor) window.move({BlockKind::InverseDepth, id}, {&step, 1});
+  }
+}
+
+enum class Gauge { Held, Free };
+
 /// Four states, their IMU factors, a gauge and hand-set priors: a problem that is nearly linear close to its solution.
-inline Window inertial_window(TestWorld& world) {
+inline Window inertial_window(TestWorld& world, Gauge gauge = Gauge::Held) {
   Window window(world.rig(), 1.0);
   for (int i = 0; i < 4; ++i) {
     const double t = 0.1 * i;
@@ -193,12 +210,14 @@ inline Window inertial_window(TestWorld& world) {
     state.keyframe = true;
     window.add_state(std::move(state));
   }
-  const auto first = window.states.begin();
-  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-3, 1e-3));
-  for (const auto& [id, state] : window.states) {
+  if (gauge == Gauge::Held) {
+    const auto& [first, at] = *window.states().begin();
+    window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, at.pose, 1e-3, 1e-3));
+  }
+  for (const auto& [id, state] : window.states()) {
     MotionBlock mean = state.motion;
     mean[0] += 0.01;
-    window.soft_priors.push_back(motion_prior({BlockKind::Motion, id}, mean, {0.1, 0.02, 0.1}));
+    window.add_soft_prior(motion_prior({BlockKind::Motion, id}, mean, {0.1, 0.02, 0.1}));
   }
   return window;
 }
@@ -218,10 +237,10 @@ inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, 
     Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
     state.keyframe = true;
     if (i > 0) state.imu = input.motion.reintegrated(options.bias_gyro, options.bias_accel);
-    window.add_observations(window.add_state(std::move(state)), input.observations);
+    window.add_state(std::move(state), input.observations);
   }
-  const auto first = window.states.begin();
-  window.soft_priors.push_back(gauge_prior({BlockKind::Pose, first->first}, first->second.pose, 1e-4, 1e-4));
+  const auto& [first, state] = *window.states().begin();
+  window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, 1e-4, 1e-4));
   return window;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,69 +49,124 @@ WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Pre
 
 /// A tracked corner and, once triangulated, the landmark behind it.
 struct Feature {
-  std::size_t camera = 0;                      ///< index into Window::cameras
+  std::size_t camera = 0;                      ///< index into Window::cameras()
   std::map<StateId, FeatureObservation> seen;  ///< in the window
   StateId last_seen = 0;                       ///< the newest observation, even if its state has been dropped since
-  std::optional<StateId> anchor;               ///< set when it is a landmark
+  std::optional<StateId> anchor;               ///< set when it is a landmark: a keyframe that sees it
   double inverse_depth = 0.0;                  ///< [1/m] along z of the anchor camera
 };
 
-/// W is here the frame of this start (S of pipeline/world_frame): what is measured in the world must be moved there
-/// first.
+/// A camera of the rig, and what the window knows of it.
+struct WindowCamera {
+  RigCamera given;
+  CalibrationBlock calibration{};  ///< what `given` is off by: Window::calibrated() has both
+  double noise_scale = 1.0;        ///< multiplies the sigma of its observations as they come in
+  StateId last_image = 0;          ///< the newest state with an image of it
+};
+
+/// All may look, and only its own functions change it: each leaves it whole. Times and ids of its states grow; features
+/// are seen by states and anchored in keyframes that it holds, and priors are of blocks that it holds. What would break
+/// that is a bug (EDGED_CHECK). W is here the frame of this start (S of pipeline/world_frame): what is measured in the
+/// world must be moved there first.
 class Window {
  public:
   /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already. Calibrations are
   /// held as given until free_calibration().
   Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
-  std::map<StateId, WindowState> states;  ///< ids grow with time
-  std::map<FeatureId, Feature> features;
-  LinearPrior prior;
-  std::vector<LinearPrior> soft_priors;       ///< hand-set: gauge, biases, zero velocity
-  std::vector<RigCamera> cameras;             ///< as given; calibrated() is what has been found
-  std::vector<CalibrationBlock> calibration;  ///< one a camera
-  ImuIntrinsicsBlock imu_intrinsics{};
-  std::vector<double> noise_scale;        ///< one a camera: multiplies the sigma of its observations as they come in
-  TrackNoise track_noise{0.0, 0.0, 1.0};  ///< independent observations until set
-  DepthFactorConfig depth_config;
-  /// The present piece of ln s (Eq. 5), and the next while one is left behind.
-  std::map<std::uint64_t, double> ln_scale;
+  const std::map<StateId, WindowState>& states() const { return states_; }
+  StateId oldest_id() const { return states_.begin()->first; }
+  StateId newest_id() const { return states_.rbegin()->first; }
+  const WindowState& newest() const { return states_.rbegin()->second; }
+  const std::map<FeatureId, Feature>& features() const { return features_; }
+  const std::vector<WindowCamera>& cameras() const { return cameras_; }
+  const LinearPrior& prior() const { return prior_; }
+  const std::vector<LinearPrior>& soft_priors() const { return soft_priors_; }  ///< hand-set
+  const TrackNoise& track_noise() const { return track_noise_; }
+  const DepthFactorConfig& depth_config() const { return depth_config_; }
+  ceres::LossFunction* visual_loss() const { return visual_loss_.get(); }
+  ceres::LossFunction* depth_loss() const { return depth_loss_.get(); }
 
-  /// Index into `cameras`; the rig must have one of that name.
+  /// Index into cameras(); the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
-
-  /// Appends a state; ids are given in order of time.
-  StateId add_state(WindowState state);
-  void add_observations(StateId id, const std::vector<CameraObservations>& observations);
-
-  /// True while the newest image of its camera still showed the feature. Not every state has an image of every camera.
-  bool alive(const Feature& feature) const { return feature.last_seen == last_image_[feature.camera]; }
-
-  const WindowState& newest() const { return states.rbegin()->second; }
-  SE3 T_W_C(StateId state, std::size_t camera) const;
-  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a
-  /// turned camera looks like another scale.
-  void free_calibration(const CalibrationConfig& config);
   /// The camera by what has been seen: its rotation against the body, and the time offset that is left over.
   RigCamera calibrated(std::size_t camera) const;
+  SE3 T_W_C(StateId state, std::size_t camera) const;
+  /// True while the newest image of its camera still showed the feature. Not every state has an image of every camera.
+  bool alive(const Feature& feature) const { return feature.last_seen == cameras_[feature.camera].last_image; }
   /// The landmark's position in the world; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
-  /// Storage of a block, null when it is no longer in the window.
-  double* block(BlockKey key);
+  /// Appends a state later than all, and what the cameras see there.
+  StateId add_state(WindowState state, const std::vector<CameraObservations>& observations = {});
+  /// What a depth source says at the newest state.
+  void set_depth(const RegionDepth& depth);
+  void make_keyframe(StateId id) { state(id).keyframe = true; }
+  /// A state between two others that is no keyframe leaves; `joined` is what the IMU felt from the one to the other.
+  void drop_state(StateId id, Preintegration joined);
+  /// A keyframe keeps what it saw of a landmark that leaves.
+  void keep_point(StateId id, std::size_t camera, const KeyframePoint& point);
+  /// The oldest state leaves, and with it the landmarks anchored there, but for those that the heir inherits: they are
+  /// anchored in it from now on, at these inverse depths, by what is seen from there on. `prior` stands for all that
+  /// has left.
+  void drop_oldest(LinearPrior prior, StateId heir, const std::map<FeatureId, double>& inherited);
+
+  /// A feature seen by that keyframe is a landmark from now on.
+  void make_landmark(FeatureId id, StateId anchor, double inverse_depth);
+  /// Takes out an observation, not the anchor's.
+  void forget_observation(FeatureId id, StateId state);
+  void forget_feature(FeatureId id) { features_.erase(id); }
+  /// Tracks that ended before they became landmarks.
+  void forget_ended_tracks();
+
+  /// Multiplies the sigmas of what the camera sees from now on.
+  void set_noise_scale(std::size_t camera, double scale) { cameras_.at(camera).noise_scale = scale; }
+  /// Multiplies the sigmas of all that the camera has seen, and of what it will see.
+  void rescale_noise(std::size_t camera, double factor);
+  /// Errors along a track are taken for independent until this.
+  void set_track_noise(const TrackNoise& noise) { track_noise_ = noise; }
+  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a
+  /// turned camera looks like another scale.
+  void free_calibration(const CalibrationConfig& config);
+  /// Gauge, biases, zero velocity: until a block of it leaves, when marginalisation has taken it into the prior.
+  void add_soft_prior(LinearPrior prior);
+
+  /// The present piece of ln s (Eq. 5); nothing without depth factors.
+  std::optional<BlockKey> scale_block() const;
+  /// Begins another piece where the present one is, which leaves with the oldest state.
+  BlockKey begin_scale();
+
+  /// The present values of a block, null when it is not in the window.
+  const double* block(BlockKey key) const;
   /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are
   /// linearised anew: they can be observed, and are far off at first.
-  const double* linearisation_point(BlockKey key);
-
-  /// Forgets the soft priors whose block has left: marginalisation has taken them into the prior.
-  void drop_orphaned_priors();
-
-  ceres::LossFunction* visual_loss() { return visual_loss_.get(); }
-  ceres::LossFunction* depth_loss() { return depth_loss_.get(); }
+  const double* linearisation_point(BlockKey key) const;
+  /// Moves a block by a step in its tangent space.
+  void move(BlockKey key, std::span<const double> step);
+  /// The values of all blocks, for restore() to bring them back while the window holds the same ones.
+  std::vector<double> estimates() const;
+  void restore(const std::vector<double>& estimates);
 
  private:
+  WindowState& state(StateId id);
+  Feature& feature(FeatureId id);
+  void observe(const CameraObservations& view);
+  void check(const LinearPrior& prior) const;
+  void drop_orphaned_priors();
+  /// Calls visit with the values of each block, all in one order.
+  template <typename Self, typename Visit>
+  static void for_each_block(Self& self, const Visit& visit);
+
+  std::map<StateId, WindowState> states_;
+  std::map<FeatureId, Feature> features_;
+  std::vector<WindowCamera> cameras_;
+  ImuIntrinsicsBlock imu_intrinsics_{};
+  std::map<std::uint64_t, double> ln_scale_;  ///< the present piece of ln s, and the one before until it is left behind
+  LinearPrior prior_;
+  std::vector<LinearPrior> soft_priors_;
+  TrackNoise track_noise_{0.0, 0.0, 1.0};
+  DepthFactorConfig depth_config_;
   StateId next_state_ = 0;
-  std::vector<StateId> last_image_;  ///< newest state with an image, one a camera
   std::unique_ptr<ceres::LossFunction> visual_loss_, depth_loss_;
 };
 

@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-std::size_t terms_of(Window& window) {
+std::size_t terms_of(const Window& window) {
   const Cost cost = cost_of(window);
   std::size_t terms = cost.factors.size();
   for (const LandmarkTerm& landmark : cost.landmarks) terms += landmark.residuals.size();
@@ -23,10 +23,24 @@ std::size_t terms_of(Window& window) {
 
 double worst_position_error(const Window& window, const TestWorld& world) {
   double worst = 0.0;
-  for (const auto& [id, state] : window.states) {
+  for (const auto& [id, state] : window.states()) {
     worst = std::max(worst, (state.T_W_B().translation() - world.T_W_B(to_seconds(state.t)).translation()).norm());
   }
   return worst;
+}
+
+WindowState state_at(double t) {
+  WindowState state;
+  state.t = timestamp_from_seconds(t);
+  state.keyframe = true;
+  return state;
+}
+
+/// As marginalisation would leave one of a pose.
+LinearPrior prior_of(const Window& window, BlockKey pose) {
+  LinearPrior prior = gauge_prior(pose, window.states().at(pose.id).pose, 1e-3, 1e-3);
+  prior.information = prior.J.transpose() * prior.J;
+  return prior;
 }
 
 TEST(Window, HoldsEachTermOfTheCostOnce) {
@@ -36,7 +50,7 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   EXPECT_EQ(terms_of(window), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
   std::size_t observations = 0;
-  for (const auto& [id, feature] : window.features) {
+  for (const auto& [id, feature] : window.features()) {
     if (feature.anchor) observations += feature.seen.size() - 1;
   }
   EXPECT_GT(observations, 100U);
@@ -44,44 +58,33 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
 }
 
 TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
-  const TestWorldOptions options{};
+  const TestWorldOptions options{.cameras = 2};
   TestWorld world(options);
   Window window = tracked_window(world, options);
   triangulate_features(window, {});
-  window.track_noise = {0.9, 0.6, 2.0};
-  const auto landmark =
-      std::ranges::find_if(window.features, [](const auto& f) { return f.second.anchor.has_value(); });
-  ASSERT_NE(landmark, window.features.end());
+  window.set_track_noise({0.9, 0.6, 2.0});
   const double decay = std::exp(-kTrackedPeriod_s / 2.0);
-  window.cameras[0].modality = Modality::Frames;
-  EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, 0.9 * decay, 1e-9);
-  window.cameras[0].modality = Modality::Events;
-  EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, 0.6 * decay, 1e-9);
+  for (const auto& [modality, correlation] : {std::pair(Modality::Frames, 0.9), std::pair(Modality::Events, 0.6)}) {
+    const auto landmark = std::ranges::find_if(window.features(), [&, m = modality](const auto& entry) {
+      return entry.second.anchor && window.cameras()[entry.second.camera].given.modality == m;
+    });
+    ASSERT_NE(landmark, window.features().end());
+    EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, correlation * decay, 1e-9);
+  }
 }
 
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
   TestWorld world({.cameras = 2});
   Window window(world.rig(), 1.0);
-  const auto add = [&](double t, std::size_t camera) {
-    WindowState state;
-    state.t = timestamp_from_seconds(t);
-    window.add_observations(window.add_state(std::move(state)), {world.observe(t, camera)});
-  };
+  const auto add = [&](double t, std::size_t camera) { window.add_state(state_at(t), {world.observe(t, camera)}); };
   add(1.0, 0);
-  const FeatureId id = window.features.begin()->first;
+  const FeatureId id = window.features().begin()->first;
   add(1.05, 1);
-  EXPECT_TRUE(window.alive(window.features.at(id)));
+  EXPECT_TRUE(window.alive(window.features().at(id)));
   add(3.0, 0);  // far along: some have left the view
   int ended = 0;
-  for (const auto& [feature_id, feature] : window.features) ended += window.alive(feature) ? 0 : 1;
+  for (const auto& [feature_id, feature] : window.features()) ended += window.alive(feature) ? 0 : 1;
   EXPECT_GT(ended, 0);
-}
-
-TEST(Window, RefusesObservationsOfACameraItDoesNotHave) {
-  TestWorld world({});
-  Window window(world.rig(), 1.0);
-  const StateId id = window.add_state({});
-  EXPECT_THROW(window.add_observations(id, {{"left", {}}}), CheckError);
 }
 
 TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
@@ -89,7 +92,7 @@ TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
   TestWorld world(options);
   Window window = tracked_window(world, options);
   EXPECT_LT(imu_strain(window), 0.5);
-  window.states.rbegin()->second.pose[0] += 0.05;
+  displace(window, window.newest_id(), {0.0, 0.0, 0.0}, {0.05, 0.0, 0.0});
   EXPECT_GT(imu_strain(window), 2.0);
 }
 
@@ -97,36 +100,220 @@ TEST(Window, HoldsStatesTogetherBetweenWhichTheBodyRested) {
   const TestWorldOptions options;
   TestWorld world(options);
   Window window = tracked_window(world, options);
-  const std::size_t before = terms_of(window);
-  window.states.rbegin()->second.rested = true;
-  EXPECT_EQ(terms_of(window), before + 1);
+  WindowState next = window.newest();
+  for (const bool rested : {false, true}) {
+    const std::size_t before = terms_of(window);
+    next.t += std::chrono::milliseconds(200);
+    next.rested = rested;
+    window.add_state(next);
+    EXPECT_EQ(terms_of(window), before + (rested ? 2 : 1));
+  }
 }
 
 TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   const TestWorldOptions options;
   TestWorld world(options);
   Window window = tracked_window(world, options);
-  window.drop_orphaned_priors();
-  EXPECT_EQ(window.soft_priors.size(), 3U);  // calibrations of camera and IMU, gauge
-  window.states.erase(window.states.begin());
-  window.drop_orphaned_priors();
-  ASSERT_EQ(window.soft_priors.size(), 2U);
-  EXPECT_EQ(window.soft_priors.front().blocks.front().kind, BlockKind::Calibration);
-  EXPECT_EQ(window.soft_priors.back().blocks.front().kind, BlockKind::ImuIntrinsics);
+  EXPECT_EQ(window.soft_priors().size(), 3U);  // calibrations of camera and IMU, gauge
+  window.drop_oldest({}, window.newest_id(), {});
+  ASSERT_EQ(window.soft_priors().size(), 2U);
+  EXPECT_EQ(window.soft_priors().front().blocks.front().kind, BlockKind::Calibration);
+  EXPECT_EQ(window.soft_priors().back().blocks.front().kind, BlockKind::ImuIntrinsics);
 }
 
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
   const TestWorldOptions options;
   TestWorld world(options);
   Window window = tracked_window(world, options);
-  const BlockKey first{BlockKind::Pose, window.states.begin()->first},
-      last{BlockKind::Pose, window.states.rbegin()->first};
-  window.prior = window.soft_priors.back();
-  const double made_at = window.block(first)[0];
-  window.block(first)[0] += 0.5;
-  EXPECT_EQ(window.linearisation_point(first)[0], made_at);
+  const BlockKey second{BlockKind::Pose, std::next(window.states().begin())->first};
+  const BlockKey last{BlockKind::Pose, window.newest_id()};
+  window.drop_oldest(prior_of(window, second), window.newest_id(), {});
+  const double made_at = window.block(second)[0];
+  window.move(second, std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_EQ(window.block(second)[0], made_at + 0.5);
+  EXPECT_EQ(window.linearisation_point(second)[0], made_at);
   EXPECT_EQ(window.linearisation_point(last), window.block(last));
-  EXPECT_EQ(window.block({BlockKind::InverseDepth, 123456}), nullptr);
+}
+
+TEST(Window, ComesBackFromAStepToTheBit) {
+  const TestWorldOptions options{.cameras = 2};
+  TestWorld world(options);
+  Window window = tracked_window(world, options);
+  triangulate_features(window, {});
+  const std::vector<double> before = window.estimates();
+  for (const auto& [id, state] : window.states()) displace(window, id, {0.1, -0.2, 0.3}, {0.01, 0.02, 0.03});
+  stretch_depths(window, 1.1);
+  window.move(kImuIntrinsicsKey, std::vector<double>(18, 1e-3));
+  EXPECT_NE(window.estimates(), before);
+  window.restore(before);
+  EXPECT_EQ(window.estimates(), before);
+}
+
+TEST(Window, ScalesTheNoiseOfOneCamera) {
+  const TestWorldOptions options{.cameras = 2};
+  TestWorld world(options);
+  Window window = tracked_window(world, options);
+  window.rescale_noise(1, 3.0);
+  for (const auto& [id, feature] : window.features()) {
+    EXPECT_DOUBLE_EQ(feature.seen.begin()->second.sigma, (feature.camera == 1 ? 3.0 : 1.0) / 200.0);
+  }
+  window.set_noise_scale(1, 2.0);  // of what comes
+  window.add_state(state_at(3.0), {world.observe(3.0, 1)});
+  int old = 0, anew = 0;
+  for (const auto& [id, feature] : window.features()) {
+    for (const auto& [state, observation] : feature.seen) {
+      if (feature.camera != 1) continue;
+      EXPECT_DOUBLE_EQ(observation.sigma, (state == window.newest_id() ? 2.0 : 3.0) / 200.0);
+      ++(state == window.newest_id() ? anew : old);
+    }
+  }
+  EXPECT_GT(old, 100);
+  EXPECT_GT(anew, 10);
+}
+
+/// What the window holds to, whatever it is told.
+void expect_whole(const Window& window) {
+  Timestamp before = Timestamp::min();
+  for (const auto& [id, state] : window.states()) {
+    EXPECT_LT(before, state.t);
+    before = state.t;
+    for (const auto& [camera, points] : state.kept) EXPECT_LT(camera, window.cameras().size());
+  }
+  for (const auto& [id, feature] : window.features()) {
+    ASSERT_LT(feature.camera, window.cameras().size());
+    for (const auto& [state, seen] : feature.seen) EXPECT_TRUE(window.states().contains(state)) << id;
+    if (!feature.anchor) continue;
+    ASSERT_TRUE(feature.seen.contains(*feature.anchor)) << id;
+    EXPECT_TRUE(window.states().at(*feature.anchor).keyframe) << id;
+  }
+  std::vector<BlockKey> held = window.prior().blocks;
+  for (const LinearPrior& soft : window.soft_priors()) held.insert(held.end(), soft.blocks.begin(), soft.blocks.end());
+  for (const BlockKey& key : held) EXPECT_NE(window.block(key), nullptr) << static_cast<int>(key.kind) << ' ' << key.id;
+}
+
+TEST(Window, IsWholeThroughoutAFlightWithRestAndDepths) {
+  TestWorld world({.rest_s = 1.0, .cameras = 2});
+  EstimatorConfig config;
+  config.depth_factor.enabled = true;
+  Estimator estimator(world.rig(), world.noise(), config);
+  for (int i = 1; i <= 100; ++i) {
+    EstimatorInput input = world.packet(0.05 * i, 0.05, i % 4 == 0);
+    input.depth = RegionDepth{"frames", {-1, -1}, {1, 1}, 2.5, 0.6, 0.2};
+    estimator.add(input);
+    expect_whole(estimator.window());
+  }
+  EXPECT_FALSE(estimator.window().prior().empty());
+}
+
+TEST(Window, HandsOnLandmarksOfItsOldestStateToTheHeir) {
+  const TestWorldOptions options;
+  TestWorld world(options);
+  Window window = tracked_window(world, options);
+  triangulate_features(window, {});
+  const StateId oldest = window.oldest_id(), heir = oldest + 3;
+  std::map<FeatureId, double> inherited;
+  std::set<FeatureId> others;
+  for (const auto& [id, feature] : window.features()) {
+    if (feature.anchor != oldest) continue;
+    if (feature.seen.contains(heir) && inherited.size() < 10) {
+      inherited.emplace(id, 0.9 * feature.inverse_depth);
+    } else {
+      others.insert(id);
+    }
+  }
+  ASSERT_EQ(inherited.size(), 10U);
+  ASSERT_FALSE(others.empty());
+  window.drop_oldest(prior_of(window, {BlockKind::Pose, heir}), heir, inherited);
+  expect_whole(window);
+  for (const auto& [id, inverse_depth] : inherited) {
+    const Feature& feature = window.features().at(id);
+    EXPECT_EQ(feature.anchor, heir);
+    EXPECT_EQ(feature.seen.begin()->first, heir);  // nothing is used twice
+    EXPECT_EQ(feature.inverse_depth, inverse_depth);
+  }
+  for (const FeatureId id : others) EXPECT_FALSE(window.features().contains(id));
+}
+
+class WindowRefuses : public testing::Test {
+ protected:
+  const TestWorldOptions options_;
+  TestWorld world_{options_};
+  Window window_ = tracked_window(world_, options_);
+  const StateId oldest_ = window_.oldest_id(), newest_ = window_.newest_id();
+  const FeatureId corner_ = window_.features().begin()->first;
+};
+
+TEST_F(WindowRefuses, AStateThatIsNoLaterThanTheNewest) {
+  EXPECT_THROW(window_.add_state(window_.newest()), CheckError);
+}
+
+TEST_F(WindowRefuses, ObservationsOfACameraItDoesNotHave) {
+  EXPECT_THROW(window_.add_state(state_at(9.0), {{"left", {}}}), CheckError);
+  EXPECT_THROW(window_.set_depth({.camera = "left"}), CheckError);
+}
+
+TEST_F(WindowRefuses, AFeatureOfTwoCameras) {
+  TestWorld world({.cameras = 2});
+  Window window(world.rig(), 1.0);
+  const FeatureObservation seen{7, {0.0, 0.0}, 0.01};
+  EXPECT_THROW(window.add_state(state_at(1.0), {{"frames", {seen}}, {"events", {seen}}}), CheckError);
+}
+
+TEST_F(WindowRefuses, ToDropAKeyframeOrAStateAtAnEnd) {
+  EXPECT_THROW(window_.drop_state(oldest_ + 1, {}), CheckError);
+  WindowState last = state_at(8.0);
+  last.keyframe = false;
+  const StateId at_the_end = window_.add_state(std::move(last));
+  EXPECT_THROW(window_.drop_state(at_the_end, {}), CheckError);
+  window_.add_state(state_at(9.0));
+  window_.drop_state(at_the_end, {});
+  EXPECT_THROW(window_.drop_state(at_the_end, {}), CheckError);
+}
+
+TEST_F(WindowRefuses, ToDropItsOnlyState) {
+  Window window(world_.rig(), 1.0);
+  const StateId only = window.add_state(state_at(1.0));
+  EXPECT_THROW(window.drop_oldest({}, only, {}), CheckError);
+}
+
+TEST_F(WindowRefuses, AnAnchorThatDoesNotSeeTheLandmarkOrIsNoKeyframe) {
+  const FeatureObservation seen{7, {0.0, 0.0}, 0.01};
+  const StateId keyframe = window_.add_state(state_at(8.0), {{"frames", {seen}}});
+  WindowState passing = state_at(9.0);
+  passing.keyframe = false;
+  const StateId other = window_.add_state(std::move(passing), {{"frames", {seen}}});
+  EXPECT_THROW(window_.make_landmark(7, oldest_, 0.5), CheckError);
+  EXPECT_THROW(window_.make_landmark(7, other, 0.5), CheckError);
+  EXPECT_THROW(window_.make_landmark(8, keyframe, 0.5), CheckError);
+  EXPECT_EQ(window_.block({BlockKind::InverseDepth, 7}), nullptr);
+  window_.make_landmark(7, keyframe, 0.5);
+  EXPECT_EQ(*window_.block({BlockKind::InverseDepth, 7}), 0.5);
+}
+
+TEST_F(WindowRefuses, ToForgetWhereALandmarkIsAnchored) {
+  triangulate_features(window_, {});
+  const auto landmark =
+      std::ranges::find_if(window_.features(), [](const auto& entry) { return entry.second.anchor.has_value(); });
+  ASSERT_NE(landmark, window_.features().end());
+  EXPECT_THROW(window_.forget_observation(landmark->first, *landmark->second.anchor), CheckError);
+}
+
+TEST_F(WindowRefuses, PriorsOfWhatItDoesNotHold) {
+  const MotionBlock mean{};
+  EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::Motion, newest_ + 1}, mean, {1, 1, 1})), CheckError);
+  EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::InverseDepth, corner_}, mean, {1, 1, 1})), CheckError);
+  EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::Pose, newest_}, mean, {1, 1, 1})), CheckError);
+  EXPECT_THROW(window_.drop_oldest(prior_of(window_, {BlockKind::Pose, oldest_}), newest_, {}), CheckError);
+}
+
+TEST_F(WindowRefuses, StepsAndEstimatesOfAnotherSize) {
+  EXPECT_THROW(window_.move({BlockKind::Pose, newest_ + 1}, std::vector<double>(6)), CheckError);
+  EXPECT_THROW(window_.move({BlockKind::Pose, newest_}, std::vector<double>(7)), CheckError);
+  std::vector<double> estimates = window_.estimates();
+  estimates.pop_back();
+  EXPECT_THROW(window_.restore(estimates), CheckError);
+  estimates.resize(estimates.size() + 2);
+  EXPECT_THROW(window_.restore(estimates), CheckError);
 }
 
 TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
@@ -137,19 +324,18 @@ TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
     Window window = tracked_window(world, options);
     triangulate_features(window, {});
     int i = 0;
-    for (auto& [id, state] : window.states) {
+    for (const auto& [id, state] : window.states()) {
       if (++i == 1) continue;
-      const SE3 off(so3::exp({0.02, -0.01 * i, 0.01}), Eigen::Vector3d(0.01 * i, -0.02, 0.015));
-      state.pose = to_block(state.T_W_B() * off);
-      state.motion[0] += 0.1;
+      displace(window, id, {0.02, -0.01 * i, 0.01}, {0.01 * i, -0.02, 0.015});
+      window.move({BlockKind::Motion, id}, std::array{0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
     }
-    for (auto& [id, feature] : window.features) feature.inverse_depth *= 1.1;
+    stretch_depths(window, 1.1);
     ASSERT_GT(worst_position_error(window, world), 0.03);
     const SolveSummary summary = solve(window, 30);
     EXPECT_TRUE(summary.usable);
     EXPECT_LT(summary.final_cost, 1e-3 * summary.initial_cost);
     EXPECT_LT(worst_position_error(window, world), 1e-4);  // 3e-6
-    for (const auto& [id, feature] : window.features) {
+    for (const auto& [id, feature] : window.features()) {
       if (!feature.anchor) continue;
       EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 5e-3) << id;
     }
@@ -165,8 +351,8 @@ TEST(Solve, GivesTheSameBitsWhereverTheWindowLies) {
     Window window = tracked_window(world, options);
     triangulate_features(window, {});
     solve(window, 10);
-    for (const auto& [id, state] : window.states) result.insert(result.end(), state.pose.begin(), state.pose.end());
-    for (const auto& [id, feature] : window.features) result.push_back(feature.inverse_depth);
+    for (const auto& [id, state] : window.states()) result.insert(result.end(), state.pose.begin(), state.pose.end());
+    for (const auto& [id, feature] : window.features()) result.push_back(feature.inverse_depth);
     for (std::size_t i = 1; i < 500; ++i) holes.emplace_back(i * 7 % 1900 + 1);
   }
   EXPECT_EQ(results[0], results[1]);

@@ -84,7 +84,7 @@ bool Odometry::elsewhere() const { return impl_->packet_odometry.elsewhere(); }
 std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.save_map(); }
 Hindsight Odometry::hindsight() const { return impl_->packet_odometry.hindsight(); }
 Rig Odometry::rig() const { return impl_->packet_odometry.rig(); }
-std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) {
+std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) const {
   return impl_->packet_odometry.calibration_covariance(camera);
 }
 OdometryCounters Odometry::counters() const { return {impl_->intake.counters(), impl_->packetizer.counters()}; }

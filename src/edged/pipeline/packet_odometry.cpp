@@ -360,7 +360,7 @@ Rig PacketOdometry::rig() const {
   return rig;
 }
 
-std::optional<Eigen::Matrix4d> PacketOdometry::calibration_covariance(const std::string& camera) {
+std::optional<Eigen::Matrix4d> PacketOdometry::calibration_covariance(const std::string& camera) const {
   const auto found = std::ranges::find(rig_.cameras, camera, &RigCamera::name);
   if (found == rig_.cameras.end()) return std::nullopt;
   return estimator_.calibration_covariance(static_cast<std::size_t>(found - rig_.cameras.begin()));

@@ -49,7 +49,7 @@ class PacketOdometry {
   bool elsewhere() const { return mapper_.elsewhere(); }
   Hindsight hindsight() const;
   Rig rig() const;
-  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera);
+  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
 
  private:
   Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
