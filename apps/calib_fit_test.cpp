@@ -40,6 +40,13 @@ TEST(CalibFit, RotationThatIsOffSaysWhatToDo) {
   EXPECT_THAT(fit_of(far).why, HasSubstr("calibrate camera and IMU anew"));
 }
 
+TEST(CalibFit, RotationWhoseInverseFitsIsToBeTurnedRound) {
+  CalibrationFound turned = found(2.0, 0.0);
+  turned.inverse = true;
+  EXPECT_THAT(fit_of(turned).why, HasSubstr("2.0 deg +- 0.1 deg off; its inverse fits"));
+  EXPECT_THAT(fit_of(turned).why, HasSubstr("T_C_B"));
+}
+
 TEST(CalibFit, WhatIsNotKnownIsNotJudged) {
   CalibrationFound vague = found(1.5, 4.0);
   vague.rotation_sigma_deg = 1.8, vague.time_sigma_ms = 9.0;

@@ -65,6 +65,8 @@ std::string camera_part(const CameraFacts& c) {
       "    # radtan: k1 k2 p1 p2 [k3]; equidistant (wide lenses): k1 k2 k3 k4; none\n"
       "    distortion: radtan\n"
       "    coefficients: [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
+      "    # Where parts of the vehicle are in view: a picture of {0} x {1} px, black where pixels are to be ignored.\n"
+      "    # mask: mask.png\n"
       "    # Camera to IMU, p_B = T_B_C * p_C: columns are the camera's x (right), y (down) and z (forward) axes in "
       "the IMU's,\n"
       "    # then its place in metres. T_C_B instead is the inverse: Kalibr's T_cam_imu.\n"

@@ -68,6 +68,7 @@ GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
   agreement.rotation_covariance *= kLess * kLess;
   agreement.rotation_covariance += common * common * Eigen::Matrix3d::Identity();
   agreement.time_sigma_s *= kLess;
+  agreement.scale_sigma *= kLess;
   if (events) {
     agreement.time_offset = given.time_offset;
     agreement.at_bound = false;
@@ -79,6 +80,7 @@ GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
 bool confirms(const GyroAgreement& found, const RigCamera& given) {
   constexpr double kMostOff = 5.0 * kDegree, kSureOf = 2.0 * kDegree;  // [rad]
   return !found.mirrored && found.unexplained < kUnexplained && found.rotation_sigma < kSureOf &&
+         found.accel.turns >= kFewestAccelTurns &&
          Eigen::AngleAxisd(given.T_B_C.R().transpose() * found.R_B_C).angle() < kMostOff;
 }
 

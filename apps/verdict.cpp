@@ -42,13 +42,22 @@ std::string doctor_command(const SourceOptions& source) {
   return command;
 }
 
+constexpr const char* kTurnRound =
+    "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B";
+
 /// What it found is a finding only where the calibration is wrong by more than the estimate may be.
 void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
   constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // below these it costs nothing
   const double shift_ms = c.time_offset_ms - c.given_offset_ms;
   const Severity severity = c.beyond ? Severity::Error : Severity::Warning;
   const std::string done = c.beyond ? "more than a run can correct" : "the run has corrected it";
-  if (c.rotation_sigma_deg && c.rotation_deg > std::max(kLeast_deg, kSigmas * *c.rotation_sigma_deg))
+  if (c.inverse)
+    out.push_back({severity,
+                   fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the "
+                               "calibration, the inverse fits",
+                               c.camera, c.rotation_deg, *c.rotation_sigma_deg),
+                   kTurnRound});
+  else if (c.rotation_sigma_deg && c.rotation_deg > std::max(kLeast_deg, kSigmas * *c.rotation_sigma_deg))
     out.push_back(
         {severity,
          fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the calibration",
@@ -59,6 +68,13 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
                    fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was found, {:+.2f} ms is given",
                                c.camera, c.time_offset_ms, *c.time_sigma_ms, c.given_offset_ms),
                    fmt::format("{}; set time_offset of this camera to {:.4f}", done, 1e-3 * c.time_offset_ms)});
+}
+
+/// Calibrations are good to a degree: a smaller turn tells no direction. The inverse must lie far nearer.
+bool fits_inverse(const SE3& given, const SE3& found, double found_deg, double sigma_deg) {
+  constexpr double kLeast_deg = 1.0, kSigmas = 4.0, kNearer = 0.4;
+  const double inverse_deg = kDegreesPerRadian * so3::log(given.rotation() * found.rotation()).norm();
+  return found_deg > std::max(kLeast_deg, kSigmas * sigma_deg) && inverse_deg < kNearer * found_deg;
 }
 
 /// What does not fit goes into the biases first.
@@ -115,6 +131,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
                                   : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation).eigenvalues()[2];
       found.rotation_sigma_deg = kDegreesPerRadian * std::sqrt(variance);
       found.time_sigma_ms = 1e3 * std::sqrt((*P)(3, 3));
+      found.inverse = fits_inverse(before.T_B_C, camera.T_B_C, found.rotation_deg, *found.rotation_sigma_deg);
     }
     out.push_back(found);
   }

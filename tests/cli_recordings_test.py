@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """info, doctor and convert on one generated recording. Usage: EDGED=path/to/edged cli_recordings_test.py"""
 import json
+import math
 import re
 import shutil
 import unittest
@@ -143,17 +144,38 @@ class Recordings(WithFlight):
             self.assert_refused(edged("convert", self.flight, target, "--quiet"), "is there already")
 
     def test_a_converted_recording_gives_the_same_run_to_the_last_bit(self):
-        states = {}
-        for name in ("flight.bag", "flight.mcap", "flight"):
+        calib = ("--calib", self.flight / "calibration.yaml")
+        states, trajectory = {}, {}
+        for name in ("flight", "flight.bag", "flight.mcap", "flight.h5", "flight.aedat4"):
             recording = self.flight if name == "flight" else self.folder / name
             if name != "flight":
-                self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+                self.assertEqual(edged("convert", self.flight, recording, *calib, "--quiet").returncode, 0)
             run = self.folder / ("run_" + name)
-            result = edged("run", recording, "--calib", self.flight / "calibration.yaml", "--out", run, "--quiet")
+            result = edged("run", recording, *calib, "--out", run, "--quiet")
             self.assertEqual(result.returncode, 0, result.stderr)
             states[name] = (run / "states.csv").read_text()
-        self.assertEqual(states["flight.bag"], states["flight"])
-        self.assertEqual(states["flight.mcap"], states["flight"])
+            trajectory[name] = (run / "trajectory.tum").read_text()
+        self.assertIn("camera 'events'", trajectory["flight"].splitlines()[0])
+        for name in ("flight.bag", "flight.mcap", "flight.h5"):
+            self.assertEqual(states[name], states["flight"], name)
+            self.assertEqual(trajectory[name], trajectory["flight"], name)
+        # AEDAT4 holds the IMU in single precision, which a flight amplifies; frame and stamps are the same.
+        rows = {name: [[float(v) for v in line.split()] for line in text.splitlines() if not line.startswith("#")]
+                for name, text in trajectory.items() if name in ("flight", "flight.aedat4")}
+        self.assertEqual(trajectory["flight.aedat4"].splitlines()[0], trajectory["flight"].splitlines()[0])
+        self.assertEqual([row[0] for row in rows["flight.aedat4"]], [row[0] for row in rows["flight"]])
+        self.assertLess(max(math.dist(a[1:4], b[1:4]) for a, b in zip(rows["flight.aedat4"], rows["flight"])), 0.01)
+
+    def test_without_ground_truth_the_trajectory_is_of_the_body_whatever_the_container(self):
+        calib = ("--calib", self.flight / "calibration.yaml")
+        alone, bag = self.folder / "alone", self.folder / "alone.bag"
+        shutil.copytree(self.flight, alone)
+        (alone / "groundtruth.txt").unlink()
+        self.assertEqual(edged("convert", alone, bag, *calib, "--quiet").returncode, 0)
+        for recording in (alone, bag):
+            run = self.folder / ("run_" + recording.name)
+            self.assertEqual(edged("run", recording, *calib, "--out", run, "--quiet").returncode, 0)
+            self.assertIn("T_W_B of the body", (run / "trajectory.tum").read_text().splitlines()[0])
 
     def test_an_imu_in_a_file_of_its_own_gives_the_same_run_to_the_last_bit(self):
         alone = self.folder / "alone"

@@ -81,6 +81,29 @@ class Verdict(WithFlight):
         other = with_imu(lambda t, a, g: (t, [-a[0], *a[1:]], g))
         self.assert_not_trusted("imu.txt", other, "gravity does not turn in its axes", r"\(-x, y, z\)")
 
+    def assert_said(self, name, change, severity, text, remedy):
+        recording = self.changed(name, change)
+        for mode in ("frames", "fused"):
+            with self.subTest(mode=mode):
+                _, metrics = self.run_it(recording, mode)
+                said = [f for f in metrics["findings"] if f["severity"] == severity and re.search(text, f["text"])]
+                self.assertTrue(said, metrics["findings"])
+                self.assertRegex(said[0]["remedy"], remedy)
+
+    def test_an_accelerometer_of_which_the_sign_alone_is_wrong(self):
+        self.assert_said("imu.txt", with_imu(lambda t, a, g: (t, scaled(-1, a), g)), "error", "accelerometer: camera .* moves against it",
+                         "multiply it by -1")
+
+    def test_a_gyro_that_reads_a_tenth_too_much(self):
+        self.assert_said("imu.txt", with_imu(lambda t, a, g: (t, a, scaled(1.1, g))), "warning",
+                         r"the gyro reads (9|10|11)\.\d % .* too much", r"divide the gyro by 1\.(09|1)")
+
+    def test_a_transform_near_identity_that_points_the_other_way(self):
+        def inverse(rows):
+            R, t = [row[:3] for row in rows[:3]], [row[3] for row in rows[:3]]
+            return [[R[j][i] for j in range(3)] + [-sum(R[j][i] * t[j] for j in range(3))] for i in range(3)] + [rows[3]]
+        self.assert_said("calibration.yaml", with_transform(inverse), "warning", "the inverse fits", "T_C_B")
+
     def test_frames_that_never_come_are_missed(self):
         result, metrics = self.run_it(self.changed("images.txt", lambda text: text.replace("frame_", "gone_")), "fused")
         self.assertEqual((result.returncode, metrics["status"]), (5, "not to be trusted"), result.stdout)

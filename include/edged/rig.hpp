@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +54,16 @@ class CameraModel {
   /// The same lens used up to that angle only, less than 86 degrees.
   CameraModel within(double limit_rad) const;
 
+  /// The same lens of which only those pixels are used that are not 0, row by row: without parts of the vehicle in
+  /// view, or beyond the circle that a lens draws. Throws InputError when it is of another size or leaves no pixel.
+  CameraModel masked(const std::vector<std::uint8_t>& used) const;
+  bool is_masked() const { return mask_.used != nullptr; }
+  /// Whether the pixel, which must lie in the image, is one of those that the mask leaves.
+  bool uses(int x, int y) const {
+    return !mask_.used || (*mask_.used)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                        static_cast<std::size_t>(x)] != 0;
+  }
+
   /// Pixel of a point in the camera frame; nothing when it is not in front (z <= 1e-6 m) or so far off the axis that
   /// the distortion turns back (it would fold into the image), 89 degrees at most, or view_limit. May lie outside the
   /// image.
@@ -72,16 +84,26 @@ class CameraModel {
   /// True when the pixel is at least border_px inside the image and what is used of it.
   bool contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_ - 1 - border_px &&
-           pixel.y() <= height_ - 1 - border_px && (limit_ == 0.0 || in_limit(pixel, border_px));
+           pixel.y() <= height_ - 1 - border_px && (limit_ == 0.0 || in_limit(pixel, border_px)) &&
+           (!mask_.used || in_mask(pixel, border_px));
   }
 
   bool operator==(const CameraModel&) const = default;
 
  private:
+  /// Shared by copies, compared by content.
+  struct Mask {
+    std::shared_ptr<const std::vector<std::uint8_t>> used;  // null: all pixels
+    bool operator==(const Mask& other) const {
+      return used == other.used || (used && other.used && *used == *other.used);
+    }
+  };
+
   /// Sets max_radius_, and limit_ of a lens that is too wide; throws InputError when it does not reach the corners of
   /// the image.
   void find_monotone_range();
   bool in_limit(const Eigen::Vector2d& pixel, double border_px) const;
+  bool in_mask(const Eigen::Vector2d& pixel, double border_px) const;
   /// Throws InputError when a pixel of the border has no bearing (the tangential part is not seen by the radial check).
   void check_border() const;
 
@@ -92,6 +114,7 @@ class CameraModel {
   double max_radius_ = 0;  // on the unit plane: up to here the distortion grows with the radius, or limit_
   double limit_ = 0;       // [rad] off the axis; 0: none
   double max_theta_ = 0;   // [rad] up to here an equidistant distortion grows with the angle
+  Mask mask_;
 };
 
 std::string to_string(DistortionModel model);

@@ -253,6 +253,27 @@ bool CameraModel::in_limit(const Vector2d& pixel, double border_px) const {
   return std::hypot((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_) + border_px / mean_focal() <= used;
 }
 
+CameraModel CameraModel::masked(const std::vector<std::uint8_t>& used) const {
+  if (used.size() != static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_))
+    throw InputError::format("a mask of {} pixels for an image of {} x {}", used.size(), width_, height_);
+  if (std::ranges::all_of(used, [](std::uint8_t pixel) { return pixel == 0; }))
+    throw InputError("the mask ignores every pixel: white is what is used, black what is ignored");
+  CameraModel narrower = *this;
+  narrower.mask_.used = std::make_shared<const std::vector<std::uint8_t>>(used);
+  return narrower;
+}
+
+/// At the pixel and around it: what of a mask is smaller than the border passes between.
+bool CameraModel::in_mask(const Vector2d& pixel, double border_px) const {
+  for (const double dy : {0.0, -border_px, border_px})
+    for (const double dx : {0.0, -border_px, border_px}) {
+      const long x = std::lround(pixel.x() + dx), y = std::lround(pixel.y() + dy);
+      if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;  // beyond the rim nothing is masked
+      if (!uses(static_cast<int>(x), static_cast<int>(y))) return false;
+    }
+  return true;
+}
+
 Eigen::Vector3d CameraModel::pixel_to_ray(const Vector2d& pixel) const {
   if (limit_ == 0.0) return pixel_to_point(pixel).homogeneous();
   if (distortion_ != DistortionModel::Equidistant) return pixel_to_point(pixel).homogeneous().normalized();

@@ -261,5 +261,27 @@ TEST(Rig, FindsCamerasByNameAndListsThemOtherwise) {
   EXPECT_EQ(rig.find(Modality::Frames), nullptr);
 }
 
+TEST(CameraModel, MaskedOneUsesOnlyWhatItsMaskLeaves) {
+  const CameraModel whole(40, 30, 30, 30, 20, 15);
+  std::vector<std::uint8_t> used(40 * 30, 255);
+  for (int y = 20; y < 30; ++y) std::fill_n(used.begin() + y * 40, 40, std::uint8_t{0});
+  const CameraModel masked = whole.masked(used);
+  EXPECT_FALSE(whole.is_masked());
+  EXPECT_TRUE(masked.is_masked());
+  EXPECT_TRUE(masked.uses(39, 19) && !masked.uses(0, 20));
+  EXPECT_TRUE(masked.contains({10, 19}));
+  EXPECT_FALSE(masked.contains({10, 21}));
+  EXPECT_TRUE(masked.contains({10, 15}, 4.0));
+  EXPECT_FALSE(masked.contains({10, 17}, 4.0)) << "the border goes along the mask, too";
+  EXPECT_TRUE(masked == whole.masked(used));
+  EXPECT_FALSE(masked == whole);
+}
+
+TEST(CameraModel, RefusesAMaskOfAnotherSizeOrThatLeavesNothing) {
+  const CameraModel whole(40, 30, 30, 30, 20, 15);
+  EXPECT_THROW(whole.masked(std::vector<std::uint8_t>(40 * 29, 255)), InputError);
+  EXPECT_THROW(whole.masked(std::vector<std::uint8_t>(40 * 30, 0)), InputError);
+}
+
 }  // namespace
 }  // namespace edged

@@ -16,6 +16,17 @@ namespace {
 // few pixels to its middle.
 constexpr double kWidestPinhole = std::numbers::sqrt3;
 
+/// The ideal camera without what the raw one's mask ignores.
+CameraModel masked_as(const CameraModel& ideal, const CameraModel& raw) {
+  if (!raw.is_masked()) return ideal;
+  std::vector<std::uint8_t> used;
+  used.reserve(static_cast<std::size_t>(ideal.width()) * static_cast<std::size_t>(ideal.height()));
+  for (int y = 0; y < ideal.height(); ++y)
+    for (int x = 0; x < ideal.width(); ++x)
+      used.push_back(raw.contains(raw.distort_to_pixel(ideal.pixel_to_point({x, y}))) ? 255 : 0);
+  return ideal.masked(used);
+}
+
 }  // namespace
 
 CameraModel ideal_pinhole(const CameraModel& raw) {
@@ -43,7 +54,7 @@ CameraModel ideal_pinhole(const CameraModel& raw) {
         "calibration and the image size {} x {}",
         raw.fx(), raw.fy(), raw.cx(), raw.cy(), to_string(raw.distortion()), fx, fy, raw.width(), raw.height());
   }
-  return {raw.width(), raw.height(), fx, fy, -fx * left, -fy * top};
+  return masked_as({raw.width(), raw.height(), fx, fy, -fx * left, -fy * top}, raw);
 }
 
 UndistortTable::UndistortTable(const CameraModel& raw, const CameraModel& ideal)

@@ -131,5 +131,22 @@ TEST(UndistortTable, AgreesWithOpenCv) {
   }
 }
 
+TEST(IdealPinhole, LeavesOutWhatTheMaskOfTheLensDoes) {
+  const CameraModel lens = davis240c();
+  std::vector<std::uint8_t> used(240 * 180, 255);
+  for (int y = 0; y < 180; ++y) std::fill_n(used.begin() + y * 240, 60, std::uint8_t{0});
+  const CameraModel raw = lens.masked(used), ideal = ideal_pinhole(raw);
+  ASSERT_TRUE(ideal.is_masked());
+  const UndistortTable table(raw, ideal);
+  for (int y = 5; y < 175; y += 5)
+    for (int x = 5; x < 235; x += 5) {
+      const Eigen::Vector2d seen = raw.distort_to_pixel(ideal.pixel_to_point({x, y}));
+      if (std::abs(seen.x() - 59.5) > 1.0) {
+        EXPECT_EQ(ideal.uses(x, y), seen.x() > 59.5) << x << ' ' << y;
+      }
+      EXPECT_EQ(std::isfinite(table.at(x, y).x()), x >= 60) << "an event there is not drawn";
+    }
+}
+
 }  // namespace
 }  // namespace edged

@@ -31,11 +31,12 @@ struct StreamInfo {
 
 /// What is known of a recording before it is read through.
 struct DatasetInfo {
-  std::string name;                 ///< folder name or simulator preset
-  std::string format;               ///< "ecd", "euroc", "simulator", ...
-  std::string pose_frame = "body";  ///< frame whose pose the format's users expect: "body" or a camera name
-  std::optional<Timestamp> begin;   ///< first stamp of any sensor, if known cheaply
-  std::optional<Timestamp> end;     ///< last stamp, if known cheaply (for the progress line)
+  std::string name;    ///< folder name or simulator preset
+  std::string format;  ///< "ecd", "euroc", "simulator", ...
+  /// Whose poses trajectories hold that are to be laid beside its ground truth: the frame of that, "body" without one.
+  std::string pose_frame = "body";
+  std::optional<Timestamp> begin;  ///< first stamp of any sensor, if known cheaply
+  std::optional<Timestamp> end;    ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
   std::vector<StreamInfo> streams;      ///< of formats that name them
   cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known

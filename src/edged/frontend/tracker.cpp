@@ -23,7 +23,7 @@ float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a
 
 /// 255 where no corner of this camera may be.
 cv::Mat unused_pixels(const CameraModel& camera, int border_px) {
-  if (!camera.view_limit()) return {};
+  if (!camera.view_limit() && !camera.is_masked()) return {};
   cv::Mat unused(camera.height(), camera.width(), CV_8UC1);
   for (int y = 0; y < unused.rows; ++y)
     for (int x = 0; x < unused.cols; ++x)

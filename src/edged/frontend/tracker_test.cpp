@@ -321,5 +321,23 @@ TEST(TrackerConfig, RefusesAnEvenWindow) {
   EXPECT_THROW(FeatureTracker("left", davis_like_pinhole(), config), InputError);
 }
 
+TEST(Tracker, FindsAndFollowsNothingUnderTheMask) {
+  const CameraModel whole = davis_like_pinhole();
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(whole.width() * whole.height()), 255);
+  std::fill(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2), std::uint8_t{0});
+  const CameraModel camera = whole.masked(used);
+  const PlaneScene scene(camera, 2.0);
+  FeatureTracker tracker("left", camera, {});
+  FeatureId next_id = 1;
+  for (int i = 0; i < 2; ++i) {
+    const TrackSummary summary =
+        tracker.track(scene.image(pose({0.0, 0.06 * i, 0.0}, Eigen::Vector3d::Zero())), at(i), std::nullopt);
+    EXPECT_EQ(summary.lost_border > 0, i == 1) << "some have gone under it";
+    tracker.detect(scene.image(pose({0.0, 0.06 * i, 0.0}, Eigen::Vector3d::Zero())), next_id);
+    EXPECT_GT(tracker.tracks().size(), 10U);
+    for (const Track& track : tracker.tracks()) EXPECT_GT(track.pixel.y(), whole.height() / 2.0) << track.pixel;
+  }
+}
+
 }  // namespace
 }  // namespace edged

@@ -49,8 +49,7 @@ Intake::Intake(const Rig& rig, Mode mode, const SensorDelays& delays)
   const RigCamera* frames = used_camera(rig, mode, Modality::Frames);
   if (events != nullptr) event_camera_ = events->name;
   for (const RigCamera& camera : rig.cameras) {
-    cameras_.push_back({camera.name, camera.modality, camera.model.width(), camera.model.height(),
-                        &camera == events || &camera == frames});
+    cameras_.push_back({camera.name, camera.modality, camera.model, &camera == events || &camera == frames});
   }
 }
 
@@ -150,10 +149,13 @@ const Intake::Camera* Intake::find(const std::string& name, Modality modality) {
 bool Intake::admit(EventBatch& batch) {
   const Camera* camera = find(batch.camera, Modality::Events);
   if (camera == nullptr) return false;
-  const int width = camera->width, height = camera->height;
+  const int width = camera->model.width(), height = camera->model.height();
   counters_.events_outside +=
       std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
   counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return !is_plausible(event.t); });
+  // What is masked must not cut packets either, nor pass for motion.
+  if (camera->model.is_masked())
+    std::erase_if(batch.events, [&](const Event& event) { return !camera->model.uses(event.x, event.y); });
   return !batch.events.empty();
 }
 
@@ -161,7 +163,8 @@ bool Intake::admit(Frame& frame) {
   const Camera* camera = find(frame.camera, Modality::Frames);
   if (camera == nullptr) return false;
   cv::Mat& image = frame.image;
-  const bool fits = image.type() == CV_8UC1 && image.cols == camera->width && image.rows == camera->height;
+  const bool fits =
+      image.type() == CV_8UC1 && image.cols == camera->model.width() && image.rows == camera->model.height();
   counters_.frames_unfit += fits ? 0 : 1;
   if (fits && image.u == nullptr) image = image.clone();  // a driver's memory, which may be gone by the time it is used
   counters_.absurd_stamps += is_plausible(frame.t) ? 0 : 1;

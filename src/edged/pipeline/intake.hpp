@@ -57,7 +57,7 @@ class Intake {
   struct Camera {
     std::string name;
     Modality modality;
-    int width, height;
+    CameraModel model;
     bool used;
   };
   const Camera* find(const std::string& name, Modality modality);

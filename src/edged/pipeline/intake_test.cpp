@@ -156,5 +156,20 @@ TEST(Intake, AHoleOfAllSensorsLeavesTheOrderAsItWas) {
   EXPECT_EQ(holed.counters().far_ahead, 0U);
 }
 
+TEST(Intake, EventsUnderTheMaskNeverComeIn) {
+  Rig rig = two_cameras();
+  std::vector<std::uint8_t> used(100, 255);
+  used[11] = 0;  // (1, 1)
+  rig.cameras[0].model = rig.cameras[0].model.masked(used);
+  Intake intake(rig, Mode::Events, kInOrder);
+  intake.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
+  intake.add(EventBatch{"dvs", {{at_ms(1), 1, 1, true}, {at_ms(1), 2, 1, true}, {at_ms(2), 1, 1, false}}});
+  intake.finish();
+  Received all;
+  all.take(intake);
+  EXPECT_EQ(all.events, 1U);
+  EXPECT_EQ(intake.counters().events_outside, 0U);
+}
+
 }  // namespace
 }  // namespace edged

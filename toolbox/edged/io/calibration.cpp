@@ -10,6 +10,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/mask.hpp"
 #include "edged/io/calib/plausibility.hpp"
 
 namespace edged {
@@ -82,6 +83,7 @@ std::string describe(const Calibration& calibration) {
                        view.diagonal * kDegreesPerRadian);
     if (const auto limit = m.view_limit())
       out += fmt::format("  used up to {:.0f} deg off its axis\n", *limit * kDegreesPerRadian);
+    if (m.is_masked()) out += fmt::format("  mask: {:.1f} % of its pixels are ignored\n", 100.0 * ignored_share(m));
     if (!calibration.has_extrinsics) {
       out += "  pose on the body and time offset: unknown\n";
       continue;

@@ -12,4 +12,11 @@ cv::Size WriterSetup::event_sensor() const {
   return event_sensor_size(info.name, said, rig);
 }
 
+std::string WriterSetup::name_when_read(const std::string& frame) const {
+  if (calibration)
+    for (const RigCamera& camera : calibration->rig.cameras)
+      if (camera.name == frame) return camera.modality == Modality::Events ? "events" : "frames";
+  return frame;
+}
+
 }  // namespace edged

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calib/sensor_head.hpp"
@@ -32,6 +33,9 @@ struct WriterSetup {
 
   /// Size of the event sensor [px]; throws InputError where nothing tells it.
   cv::Size event_sensor() const;
+
+  /// What the readers of formats that call their cameras "events" and "frames" will call this one, or "body".
+  std::string name_when_read(const std::string& frame) const;
 };
 
 }  // namespace edged

@@ -40,6 +40,26 @@ TEST_P(WritableFormats, GiveBackEveryEventAndWhatElseTheyHold) {
     EXPECT_EQ(cv::norm(a.frames[i].image, b.frames[i].image, cv::NORM_INF), 0.0);
 }
 
+/// Those that nothing but events fits into cannot be run by themselves.
+TEST_P(WritableFormats, KeepWhosePosesTrajectoriesHold) {
+  for (const char* frame : {"events", "frames", "body"}) {
+    if (GetParam().name == "ecd" && frame != std::string("events")) continue;  // its truth is the event camera's
+    TempFolder folder;
+    ListedDataset source = random_dataset(GetParam().tick);
+    source.describe().pose_frame = source.truth->frame = frame;
+    const auto file = folder.path() / ("out" + std::string(GetParam().extension));
+    write_recording(source, GetParam(), file, load_rig("davis240c_ecd"));
+    EXPECT_EQ(open_recording(file).dataset->info().pose_frame, GetParam().imu ? frame : "body");
+  }
+}
+
+TEST_P(WritableFormats, GiveTrajectoriesOfTheBodyWhereThereIsNoGroundTruth) {
+  ListedDataset source = random_dataset(GetParam().tick);
+  source.truth.reset();
+  write(source);
+  EXPECT_EQ(open_recording(target()).dataset->info().pose_frame, "body");
+}
+
 TEST_P(WritableFormats, KeepEventsApartByLongSilences) {
   ListedDataset source;
   for (const std::int64_t s : {1, 2, 20, 60, 300})

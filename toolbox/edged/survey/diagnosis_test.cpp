@@ -118,6 +118,20 @@ TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
               HasSubstr("focal length"));
 }
 
+TEST(Diagnosis, NamesAGyroWhoseScaleIsOffAndAnAccelerometerThatPointsTheOtherWay) {
+  CameraCheck check = agreeing();
+  check.agreement->gyro_scale = 1.1;
+  check.agreement->scale_sigma = 0.005;
+  check.agreement->scale_unexplained = 0.02;
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "reads 10.0 % +- 0.5 % too much"),
+              HasSubstr("divide the gyro by 1.100"));
+  check.agreement->gyro_scale = 1.02;
+  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Good, "scale agrees with it to 2.0 %"), "");
+  check.agreement->accel = {100, -0.7};
+  EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "moves against it"),
+              HasSubstr("multiply it by -1"));
+}
+
 TEST(Diagnosis, GuessesTheRotationOfACameraThatHasNone) {
   CameraCheck check = agreeing();
   check.has_extrinsics = false;

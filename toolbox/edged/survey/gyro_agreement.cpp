@@ -143,15 +143,17 @@ Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
 
 /// The same better, where the turns come with their corners.
 void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreement& agreement) {
-  // A gyro's scale errs by nothing that matters, unless its unit is another one: then there is no use for a better
-  // rotation.
+  // Where the gyro's unit is another one there is no use for a better rotation.
   const double scale = agreement.gyro_scale;
   if (agreement.unexplained < kUnlike && (scale < 0.67 || scale > 1.5)) return;
   const auto fit = fit_rays(turns, gyro, {agreement.R_B_C, to_seconds(agreement.time_offset)});
   if (!fit) return;
   agreement.R_B_C = fit->mount.R_B_C;
   agreement.time_offset = duration_from_seconds(fit->mount.shift_s);
-  agreement.gyro_scale = 1.0;
+  agreement.gyro_scale = fit->mount.gyro_scale;
+  agreement.scale_sigma = fit->scale_sigma;
+  agreement.scale_unexplained = fit->scale_unexplained;
+  agreement.accel = compare_with_accel(turns, gyro, fit->mount);
   agreement.unexplained = fit->unexplained;
   agreement.time_sigma_s = fit->shift_sigma_s;
   agreement.rotation_covariance = fit->rotation_covariance;

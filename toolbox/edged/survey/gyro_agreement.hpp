@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "edged/survey/accel_agreement.hpp"
 #include "edged/survey/gyro_integral.hpp"
 #include "edged/survey/visual_turns.hpp"
 
@@ -21,8 +22,11 @@ struct GyroAgreement {
   double rotation_sigma = 0.0;  ///< of the least known axis [rad]; large where it turned about one axis only
   /// Of R_B_C * Exp(error), from how the answers of parts of the recording scatter [rad^2].
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  bool mirrored = false;    ///< fits only after its turns are negated: axes of the gyro have the wrong sign
-  double gyro_scale = 1.0;  ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+  bool mirrored = false;           ///< fits only after its turns are negated: axes of the gyro have the wrong sign
+  double gyro_scale = 1.0;         ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+  double scale_sigma = 0.0;        ///< 0: only units can be told
+  double scale_unexplained = 1.0;  ///< as unexplained, with that scale
+  AccelAgreement accel;            ///< of the accelerometer on the same turns
 };
 
 /// Time offsets within kMostShift of `expected` are tried. Nothing where there are too few turns to compare.

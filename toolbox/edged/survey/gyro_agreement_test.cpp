@@ -119,6 +119,17 @@ TEST(GyroAgreement, IsFarBetterFromAllCornersTogetherAndKnowsHowGoodItIs) {
   EXPECT_GT(compare_with_gyro(turns, biased, Duration(0))->rotation_sigma, 2 * with->rotation_sigma);
 }
 
+TEST(GyroAgreement, TellsAGyroThatReadsATenthTooMuchAndARightOne) {
+  const std::vector<Turn> turns = turns_with_rays(8, 0.01);
+  for (const double factor : {1.0, 1.1, 0.9}) {
+    const auto found = compare_with_gyro(turns, gyro_of(8, factor), Duration(0));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->gyro_scale, factor, 0.02);
+    EXPECT_NEAR(found->gyro_scale, factor, 4 * found->scale_sigma);
+    EXPECT_LT(found->scale_sigma, 0.01);
+  }
+}
+
 TEST(GyroAgreement, TellsAGyroInDegrees) {
   const auto found = compare_with_gyro(turns_of(8, kTurned, 0.0), gyro_of(8, 180 / M_PI), Duration(0));
   ASSERT_TRUE(found);

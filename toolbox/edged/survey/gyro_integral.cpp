@@ -14,17 +14,22 @@ constexpr Duration kLongestStep = std::chrono::milliseconds(50);  // between sam
 
 void GyroIntegral::add(const ImuSample& sample) {
   if (stamps_.size() >= kMostSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
-  if (!sample.gyro_B.allFinite()) return;
+  if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
   if (stamps_.empty()) {
     sum_.push_back(Eigen::Vector3d::Zero());
     turned_.push_back(Eigen::Quaterniond::Identity());
+    push_.push_back(Eigen::Vector3d::Zero());
   } else {
     const Eigen::Vector3d step = (gyro_.back() + sample.gyro_B) / 2 * to_seconds(sample.t - stamps_.back());
     sum_.push_back(sum_.back() + step);
-    turned_.push_back((turned_.back() * so3::exp(step)).normalized());
+    const Eigen::Quaterniond before = turned_.back();
+    turned_.push_back((before * so3::exp(step)).normalized());
+    push_.push_back(push_.back() + (before * accel_.back() + turned_.back() * sample.accel_B) / 2 *
+                                       to_seconds(sample.t - stamps_.back()));
   }
   stamps_.push_back(sample.t);
   gyro_.push_back(sample.gyro_B);
+  accel_.push_back(sample.accel_B);
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> GyroIntegral::samples_after(Timestamp begin, Timestamp end) const {
@@ -56,6 +61,21 @@ std::optional<Eigen::Vector3d> GyroIntegral::turn_between(Timestamp begin, Times
   if (!after) return std::nullopt;
   const auto up_to = [this](std::size_t i, Timestamp t) { return turned_[i - 1] * so3::exp(step_to(i, t)); };
   return so3::log(up_to(after->first, begin).inverse() * up_to(after->second, end));
+}
+
+std::optional<Eigen::Quaterniond> GyroIntegral::attitude_at(Timestamp t) const {
+  const auto after = samples_after(t, t);
+  if (!after) return std::nullopt;
+  return turned_[after->first - 1] * so3::exp(step_to(after->first, t));
+}
+
+std::optional<Eigen::Vector3d> GyroIntegral::pushed_between(Timestamp begin, Timestamp end) const {
+  const auto after = samples_after(begin, end);
+  if (!after) return std::nullopt;
+  const auto up_to = [this](std::size_t i, Timestamp t) -> Eigen::Vector3d {
+    return push_[i - 1] + turned_[i - 1] * accel_[i - 1] * to_seconds(t - stamps_[i - 1]);
+  };
+  return up_to(after->second, end) - up_to(after->first, begin);
 }
 
 }  // namespace edged

@@ -12,7 +12,7 @@
 
 namespace edged {
 
-/// Integrated gyro.
+/// Integrated gyro, and the specific force along with it.
 class GyroIntegral {
  public:
   void add(const ImuSample& sample);
@@ -21,6 +21,13 @@ class GyroIntegral {
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
   /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
   std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
+  /// The body against how it lay at the first sample, and the integral of the specific force in those axes between two
+  /// stamps [m/s]: by how much its velocity changes, and what holds it against gravity.
+  std::optional<Eigen::Quaterniond> attitude_at(Timestamp t) const;
+  std::optional<Eigen::Vector3d> pushed_between(Timestamp begin, Timestamp end) const;
+  bool empty() const { return stamps_.empty(); }
+  Timestamp first() const { return stamps_.front(); }  ///< of one that is not empty
+  Timestamp last() const { return stamps_.back(); }
 
  private:
   /// The first sample after each of two stamps.
@@ -29,7 +36,7 @@ class GyroIntegral {
   Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
 
   std::vector<Timestamp> stamps_;
-  std::vector<Eigen::Vector3d> gyro_, sum_;
+  std::vector<Eigen::Vector3d> gyro_, sum_, accel_, push_;
   std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
 };
 

@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr int kParameters = 7;            // rotation, shift, bias
+constexpr int kParameters = 8;            // rotation, shift, bias, ln of the gyro's scale
 constexpr std::size_t kTimeBlocks = 10;   // of time, for the jackknife
 constexpr std::size_t kFewestToFit = 30;  // turns
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
@@ -82,11 +82,12 @@ std::optional<Predicted> predict(const Turn& turn, const GyroIntegral& gyro, con
   const double dt = to_seconds(turn.end - turn.begin);
   const Eigen::Matrix3d R_C_B = mount.R_B_C.transpose();
   Predicted predicted;
-  predicted.phi_C = R_C_B * (*now - mount.bias * dt);
+  predicted.phi_C = R_C_B * (*now / mount.gyro_scale - mount.bias * dt);
   predicted.R = so3::exp(predicted.phi_C).toRotationMatrix();
   predicted.J << Eigen::Matrix3d::Identity() - predicted.R.transpose(),
-      R_C_B * (*after - *before) / (2 * to_seconds(kStep)), -R_C_B * dt;
-  predicted.J.rightCols<4>() = so3::right_jacobian(predicted.phi_C) * predicted.J.rightCols<4>().eval();
+      R_C_B * (*after - *before) / (2 * to_seconds(kStep)) / mount.gyro_scale, -R_C_B * dt,
+      -R_C_B * *now / mount.gyro_scale;
+  predicted.J.rightCols<5>() = so3::right_jacobian(predicted.phi_C) * predicted.J.rightCols<5>().eval();
   return predicted;
 }
 
@@ -101,6 +102,7 @@ struct Sums {
   std::size_t turns = 0;
   std::vector<double> errors, unexplained, turning;
 
+  double unexplained_share() const { return std::sqrt(median(unexplained) / std::max(median(turning), 1e-12)); }
   Normal total() const {
     Normal all;
     for (const Normal& block : blocks) all.H += block.H, all.g += block.g;
@@ -126,11 +128,14 @@ Sums sums_at(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMo
   return sums;
 }
 
+constexpr double kHeld = 1e-6, kFreeScale = 0.3;  // sigmas of ln of the gyro's scale
+
 /// What is known beforehand, so that what data say nothing of stays where it is: biases are below 0.1 rad/s.
-Normal with_prior(const Normal& data, const GyroMount& mount, double variance) {
+Normal with_prior(const Normal& data, const GyroMount& mount, double variance, double scale_sigma) {
   Parameters sigmas, step = Parameters::Zero();
-  sigmas << Eigen::Vector3d::Ones(), 0.05, Eigen::Vector3d::Constant(0.1);
-  step.tail<3>() = -mount.bias;
+  sigmas << Eigen::Vector3d::Ones(), 0.05, Eigen::Vector3d::Constant(0.1), scale_sigma;
+  step.segment<3>(4) = -mount.bias;
+  step[7] = -std::log(mount.gyro_scale);
   const Parameters weights = variance * sigmas.array().square().inverse();
   return {data.H + Information(weights.asDiagonal()), data.g + weights.cwiseProduct(step)};
 }
@@ -141,28 +146,55 @@ void move(GyroMount& mount, const Parameters& step) {
   mount.R_B_C = mount.R_B_C * so3::exp(turn).toRotationMatrix();
   mount.shift_s += std::clamp(step[3], -0.02, 0.02);
   mount.bias += step.segment<3>(4);
+  mount.gyro_scale *= std::exp(std::clamp(step[7], -0.2, 0.2));
 }
 
 /// Corners err alike for seconds, so turns are not independent: how the answer changes when a tenth of the recording is
 /// left out tells more than the normal equations (Efron and Tibshirani 1993, the jackknife by blocks), but where these
 /// know nothing.
-Information covariance_of(const Sums& sums, const GyroMount& mount, double variance) {
+Information covariance_of(const Sums& sums, const GyroMount& mount, double variance, double scale_sigma) {
   const Normal all = sums.total();
-  Information covariance = variance * with_prior(all, mount, variance).H.inverse();
+  Information covariance = variance * with_prior(all, mount, variance, scale_sigma).H.inverse();
   for (const Normal& block : sums.blocks) {
-    const Normal kept = with_prior({all.H - block.H, all.g - block.g}, mount, variance);
+    const Normal kept = with_prior({all.H - block.H, all.g - block.g}, mount, variance, scale_sigma);
     const Parameters change = kept.H.ldlt().solve(kept.g);
     covariance += (kTimeBlocks - 1.0) / kTimeBlocks * change * change.transpose();
   }
   return covariance;
 }
 
+/// The scale is asked for last, from where all else fits: most gyros have the right one, and what else is found should
+/// not suffer from it.
+void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spread, RayFit& fit) {
+  constexpr int kRounds = 5;
+  GyroMount mount = fit.mount;
+  Sums sums = sums_at(turns, gyro, mount, spread);
+  for (int round = 0; round < kRounds; ++round) {
+    const Normal all = with_prior(sums.total(), mount, spread * spread / 4, kFreeScale);
+    move(mount, all.H.ldlt().solve(all.g));
+    sums = sums_at(turns, gyro, mount, spread);
+  }
+  fit.mount.gyro_scale = mount.gyro_scale;
+  fit.scale_unexplained = sums.unexplained_share();
+  fit.scale_sigma = mount.gyro_scale * std::sqrt(covariance_of(sums, mount, spread * spread / 4, kFreeScale)(7, 7));
+}
+
 }  // namespace
+
+Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
+  constexpr double kSpread = 1e-3;  // [rad]
+  constexpr double kAgree = 0.6;    // of the corners beyond those against: points lie in front of a camera
+  const Eigen::Vector3d t = direction_of(turn, R_begin_end, kSpread);
+  double votes = 0.0;
+  for (const auto& [from, to] : turn.rays) votes += (from - R_begin_end * to).dot(t) > 0.0 ? 1.0 : -1.0;
+  if (std::abs(votes) < kAgree * static_cast<double>(turn.rays.size())) return Eigen::Vector3d::Zero();
+  return votes > 0.0 ? t : Eigen::Vector3d(-t);
+}
 
 std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start) {
   constexpr int kRounds = 12;
   constexpr double kFirstSpread = 2e-3, kLeastSpread = 1e-4;  // [rad]
-  RayFit fit{start, {}, 0.0, 1.0};
+  RayFit fit{.mount = start};
   double spread = kFirstSpread;
   Sums sums;
   for (int round = 0;; ++round) {
@@ -170,13 +202,14 @@ std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& 
     if (sums.turns < kFewestToFit) return std::nullopt;
     spread = std::max(1.4826 * 2 * median(sums.errors), kLeastSpread);
     if (round == kRounds) break;
-    const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4);
+    const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4, kHeld);
     move(fit.mount, all.H.ldlt().solve(all.g));
   }
-  const Information covariance = covariance_of(sums, fit.mount, spread * spread / 4);
+  const Information covariance = covariance_of(sums, fit.mount, spread * spread / 4, kHeld);
   fit.rotation_covariance = covariance.topLeftCorner<3, 3>();
   fit.shift_sigma_s = std::sqrt(covariance(3, 3));
-  fit.unexplained = std::sqrt(median(sums.unexplained) / std::max(median(sums.turning), 1e-12));
+  fit.unexplained = sums.unexplained_share();
+  fit_scale(turns, gyro, spread, fit);
   return fit;
 }
 

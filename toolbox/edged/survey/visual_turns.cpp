@@ -55,7 +55,7 @@ void VisualTurns::add(const Measurement& measurement) {
 void VisualTurns::add_events(std::span<const Event> events) {
   constexpr int kGrey = 60;  // of one event; a few make white
   for (const Event& event : events) {
-    if (event.x < picture_.cols && event.y < picture_.rows) {
+    if (event.x < picture_.cols && event.y < picture_.rows && tracker_.camera().uses(event.x, event.y)) {
       auto& pixel = picture_.at<std::uint8_t>(event.y, event.x);
       pixel = cv::saturate_cast<std::uint8_t>(pixel + kGrey);
     }

@@ -40,6 +40,7 @@ class Aedat4File final : public Aedat4Dataset {
         last_at_(packets_at),
         end_(file_.size()) {
     set_sensor(geometry);
+    info_.pose_frame = header_.pose_frame;
     read_table();
     begin({choice.of(Role::Events).has_value(), choice.of(Role::Frames).has_value(), choice.of(Role::Imu).has_value()});
   }

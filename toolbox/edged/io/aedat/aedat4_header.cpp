@@ -42,10 +42,8 @@ std::string attribute_text(const tinyxml2::XMLElement* node, const char* key) {
   return e && e->GetText() ? e->GetText() : "";
 }
 
-std::vector<Aedat4Stream> parse_streams(std::string_view xml) {
-  tinyxml2::XMLDocument document;
-  if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) throw Damage("its xml cannot be read");
-  const auto* list = child_named(document.FirstChildElement("dv"), "node", "outInfo", "name");
+std::vector<Aedat4Stream> parse_streams(const tinyxml2::XMLElement* dv) {
+  const auto* list = child_named(dv, "node", "outInfo", "name");
   std::vector<Aedat4Stream> streams;
   for (const auto* s = list ? list->FirstChildElement("node") : nullptr; s; s = s->NextSiblingElement("node")) {
     const auto* info = child_named(s, "node", "info", "name");
@@ -60,8 +58,14 @@ std::vector<Aedat4Stream> parse_streams(std::string_view xml) {
 
 Aedat4Header parse_aedat4_header(ByteSpan buffer) {
   const FlatTable table(buffer);
-  return {aedat4_compression(table.number<std::int32_t>(0)), table.number<std::int64_t>(1, -1),
-          parse_streams(as_text(table.bytes(2)))};
+  const std::string_view xml = as_text(table.bytes(2));
+  tinyxml2::XMLDocument document;
+  if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) throw Damage("its xml cannot be read");
+  const tinyxml2::XMLElement* dv = document.FirstChildElement("dv");
+  Aedat4Header header{aedat4_compression(table.number<std::int32_t>(0)), table.number<std::int64_t>(1, -1),
+                      parse_streams(dv)};
+  if (const std::string frame = attribute_text(dv, kAedat4PoseFrame); !frame.empty()) header.pose_frame = frame;
+  return header;
 }
 
 TopicChoice choose_streams(const std::vector<Aedat4Stream>& streams, const WantedTopics& wanted,

@@ -17,6 +17,8 @@ inline constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n";
 inline constexpr std::size_t kMostPacketBytes = std::size_t{1} << 28U;
 inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]: what the files call g
 
+inline constexpr const char* kAedat4PoseFrame = "edgedPoseFrame";  ///< key in its xml that other programs pass over
+
 struct Aedat4Stream {
   std::int32_t number = -1;
   std::string type;                  ///< "EVTS", "FRME", "IMUS", "TRIG", ...
@@ -28,6 +30,7 @@ struct Aedat4Header {
   std::string_view compression;  ///< as decompress() names it
   std::int64_t table_at = -1;    ///< of the table at the end of the file; -1: it has none
   std::vector<Aedat4Stream> streams;
+  std::string pose_frame = "body";  ///< of what was converted: the format holds no ground truth to tell it
 };
 
 /// From the buffer behind its length. Throws Damage.

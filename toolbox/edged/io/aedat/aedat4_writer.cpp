@@ -41,12 +41,15 @@ std::string stream_xml(int number, const char* compression, const char* output, 
       number, path, compression, output, type, info);
 }
 
-std::string header_xml(Aedat4Encoder::Compression compression, cv::Size sensor) {
+std::string header_xml(Aedat4Encoder::Compression compression, cv::Size sensor, const std::string& pose_frame) {
   constexpr const char* kNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
   const char* const name = kNames[static_cast<std::size_t>(compression)];
   const std::string size = fmt::format(
       R"(<attr key="sizeX" type="int">{}</attr><attr key="sizeY" type="int">{}</attr>)", sensor.width, sensor.height);
-  return R"(<dv version="2.0"><node name="outInfo" path="/mainloop/Recorder/outInfo/">)" +
+  const std::string note = pose_frame != "events" && pose_frame != "frames"
+                               ? ""
+                               : fmt::format(R"(<attr key="{}" type="string">{}</attr>)", kAedat4PoseFrame, pose_frame);
+  return R"(<dv version="2.0">)" + note + R"(<node name="outInfo" path="/mainloop/Recorder/outInfo/">)" +
          stream_xml(0, name, "events", "EVTS", size) + stream_xml(1, name, "frames", "FRME", size) +
          stream_xml(2, name, "imu", "IMUS", "") + "</node></dv>";
 }
@@ -55,7 +58,7 @@ std::string header_xml(Aedat4Encoder::Compression compression, cv::Size sensor) 
 
 std::string Aedat4Encoder::header(std::int64_t table_at) const {
   FlatBufferBuilder b;
-  const auto xml = b.CreateString(header_xml(compression_, sensor_));
+  const auto xml = b.CreateString(header_xml(compression_, sensor_, pose_frame_));
   const auto start = b.StartTable();
   b.AddElement<std::int32_t>(slot(0), static_cast<std::int32_t>(compression_), 0);
   b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default, so that the length stays
@@ -177,7 +180,9 @@ namespace {
 class Aedat4Writer final : public RecordingWriter {
  public:
   explicit Aedat4Writer(const WriterSetup& setup)
-      : name_(setup.path.string()), encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor()), file_(setup.path) {
+      : name_(setup.path.string()),
+        encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor(), setup.name_when_read(setup.info.pose_frame)),
+        file_(setup.path) {
     file_.write(encoder_.header());
   }
 

@@ -20,7 +20,9 @@ class Aedat4Encoder {
   /// The number in the header: none, LZ4, LZ4 high, zstd, zstd high.
   enum class Compression : std::int32_t { None, Lz4, Lz4High, Zstd, ZstdHigh };
 
-  Aedat4Encoder(Compression compression, cv::Size sensor) : compression_(compression), sensor_(sensor) {}
+  /// pose_frame: of the DatasetInfo, kept in the header.
+  Aedat4Encoder(Compression compression, cv::Size sensor, std::string pose_frame = "body")
+      : compression_(compression), sensor_(sensor), pose_frame_(std::move(pose_frame)) {}
 
   /// Version line and header; as long for every place of the table (-1: there is none).
   std::string header(std::int64_t table_at = -1) const;
@@ -46,6 +48,7 @@ class Aedat4Encoder {
 
   Compression compression_;
   cv::Size sensor_;
+  std::string pose_frame_;
   std::vector<PacketEntry> packets_;
   std::int64_t packets_bytes_ = 0;
 };

@@ -7,6 +7,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/mask.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -38,7 +39,7 @@ Sees read_modality(const YamlReader& value) {
 /// The camera above that `same_as` names.
 Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
   for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "max_angle", "T_B_C", "T_C_B",
-                          "q_B_C", "time_offset"})
+                          "q_B_C", "time_offset", "mask", "mask_runs"})
     if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
   const std::string name = same_as.text();
   const auto base = std::find_if(above.begin(), above.end(), [&name](const Lens& lens) { return lens.name == name; });
@@ -67,9 +68,17 @@ CameraModel narrowed(const CameraModel& model, const YamlReader& angle) {
   }
 }
 
+CameraModel masked(const CameraModel& model, const std::vector<std::uint8_t>& used, const YamlReader& place) {
+  try {
+    return model.masked(used);
+  } catch (const InputError& e) {
+    place.fail(e.what());
+  }
+}
+
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
-                   "coefficients", "max_angle", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
+                   "coefficients", "max_angle", "mask", "mask_runs", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
   Lens lens;
   const auto same_as = node.find("same_as");
   if (same_as) lens = read_base(node, *same_as, above);
@@ -79,6 +88,12 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
 
   lens.model = read_model(node, "distortion", "coefficients");
   if (const auto angle = node.find("max_angle")) lens.model = narrowed(lens.model, *angle);
+  if (const auto picture = node.find("mask"))
+    lens.model = masked(lens.model, read_mask(*picture, lens.model), *picture);
+  if (const auto runs = node.find("mask_runs")) {
+    if (node.find("mask")) runs->fail("cannot stand beside mask");
+    lens.model = masked(lens.model, read_mask_runs(*runs, lens.model), *runs);
+  }
   const auto T_B_C = node.find("T_B_C"), T_C_B = node.find("T_C_B");
   if (T_B_C.has_value() == T_C_B.has_value())
     node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
@@ -143,6 +158,8 @@ std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
   if (m.view_limit() != whole.view_limit())
     out += fmt::format("    max_angle: {}  # deg off the axis: further out nothing is used\n",
                        plain_degrees(*m.view_limit()));
+  if (m.is_masked())
+    out += "    mask_runs: \"" + mask_runs(m) + "\"  # pixels used, then ignored, and so on, row by row\n";
   return out + (has_extrinsics ? pose_yaml(camera) : kPoseToFillIn);
 }
 

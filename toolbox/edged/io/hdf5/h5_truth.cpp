@@ -94,9 +94,11 @@ std::vector<H5Poses> candidates(const H5File& file, const Hdf5Layout& layout) {
 
 }  // namespace
 
-std::function<std::optional<GroundTruth>(Repairs&)> find_h5_truth(const H5File& events_file, const Hdf5Layout& layout) {
+TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout) {
   const auto reader = [](H5Poses where) {
-    return [where = std::move(where)](Repairs& repairs) { return read_truth(where, repairs); };
+    TruthSource source{where.frame};
+    source.read = [where = std::move(where)](Repairs& repairs) { return read_truth(where, repairs); };
+    return source;
   };
   const std::string poses(layout.poses);
   if (!poses.empty() && events_file.has(poses))

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/hdf5/layouts.hpp"
@@ -12,7 +13,12 @@
 
 namespace edged {
 
-/// Reads it when called; empty where there is none.
-std::function<std::optional<GroundTruth>(Repairs&)> find_h5_truth(const H5File& events_file, const Hdf5Layout& layout);
+/// Ground truth that is read when it is asked for.
+struct TruthSource {
+  std::string frame = "body";                                     ///< X of its T_W_X
+  std::function<std::optional<GroundTruth>(Repairs&)> read = {};  ///< empty where there is none
+};
+
+TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout);
 
 }  // namespace edged

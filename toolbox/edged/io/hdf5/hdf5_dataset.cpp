@@ -93,7 +93,8 @@ class Hdf5Dataset final : public StreamedDataset {
   Hdf5Dataset(const H5File& file, const Hdf5Layout& layout, H5Events events, SideFiles side, cv::Size sensor)
       : StreamedDataset(file.path(), side.set.empty() ? std::string(layout.name) : side.set), side_(std::move(side)) {
     info_.end = events.last();
-    if (!side_.ground_truth) side_.ground_truth = find_h5_truth(file, layout);
+    if (!side_.truth.read) side_.truth = find_h5_truth(file, layout);
+    info_.pose_frame = side_.truth.frame;
     set_sensor(sensor);
     if (events.ragged())
       repairs_.add("events: arrays of different lengths",
@@ -120,7 +121,7 @@ class Hdf5Dataset final : public StreamedDataset {
 
   std::optional<GroundTruth> ground_truth() const override {
     Repairs logged;
-    return side_.ground_truth ? side_.ground_truth(logged) : std::nullopt;
+    return side_.truth.read ? side_.truth.read(logged) : std::nullopt;
   }
 
  private:

@@ -146,7 +146,8 @@ struct FrameArrays {
 class Hdf5Writer final : public RecordingWriter {
  public:
   explicit Hdf5Writer(const WriterSetup& setup)
-      : name_(setup.path.string()),
+      : setup_(setup),
+        name_(setup.path.string()),
         file_(create_file(setup.path)),
         events_(std::make_unique<EventArrays>(file_.get(), name_)) {
     const cv::Size sensor = setup.event_sensor();
@@ -186,7 +187,7 @@ class Hdf5Writer final : public RecordingWriter {
   void write(const GroundTruth& truth) override {
     GrowingArray<double> poses(file_.get(), name_, "/truth/poses", {7}, kSampleRows);
     GrowingArray<std::int64_t> stamps(file_.get(), name_, "/truth/t_ns", {}, kSampleRows);
-    put_attribute(poses.id(), "frame", truth.frame);
+    put_attribute(poses.id(), "frame", setup_.name_when_read(truth.frame));
     for (const StampedPose& pose : truth.trajectory) {
       poses.add_all(std::span(pose.T.translation().data(), 3));
       poses.add_all(std::span(pose.T.rotation().coeffs().data(), 4));  // x y z w
@@ -223,6 +224,7 @@ class Hdf5Writer final : public RecordingWriter {
     for (; next_ms_ * 1000 <= us && next_ms_ < kMostIndexed; ++next_ms_) events_->ms_to_idx.add(event_count_);
   }
 
+  WriterSetup setup_;
   std::string name_;
   H5Handle file_;
   std::unique_ptr<EventArrays> events_;

@@ -82,15 +82,15 @@ StampedLines<ImuSample>::Spec imu_lines(const fs::path& file, ParseStamp parse) 
 
 using ReadTrajectory = Trajectory (*)(const SourcePath&, const DamageHandler&);
 
-std::function<std::optional<GroundTruth>(Repairs&)> truth_lines(const fs::path& file, ReadTrajectory read,
-                                                                std::string frame) {
-  return [file, read, frame = std::move(frame)](Repairs& repairs) -> std::optional<GroundTruth> {
+TruthSource truth_lines(const fs::path& file, ReadTrajectory read, const std::string& frame) {
+  const auto read_lines = [file, read, frame](Repairs& repairs) -> std::optional<GroundTruth> {
     LineDamage damage(file.string(), "groundtruth", repairs);
     GroundTruth truth{
         read(file, [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); }), frame};
     if (truth.trajectory.empty()) return std::nullopt;
     return truth;
   };
+  return {frame, read_lines};
 }
 
 /// SEQUENCE/events/left/events.h5, SEQUENCE/images/timestamps.txt: the middle of the exposure of each left image.
@@ -123,7 +123,7 @@ SideFiles vector_files(const fs::path& events, const std::string& prefix) {
   if (const auto imu = first_file({folder / (prefix + "imu.txt"), folder / (prefix + "imu.csv")}))
     files.imu = imu_lines(*imu, parse_seconds);
   if (const fs::path truth = folder / (prefix + "gt.txt"); is_file(truth))
-    files.ground_truth = truth_lines(truth, read_tum, "body");
+    files.truth = truth_lines(truth, read_tum, "body");
   return files;
 }
 
@@ -135,7 +135,7 @@ SideFiles tum_vie_files(const fs::path& events, const std::string& prefix) {
   for (const fs::path& root : {folder, folder / (prefix + "-vi_gt_data"), folder / "data"}) {
     const fs::path imu = root / "imu_data.txt", truth = root / "mocap_data.txt";
     if (!files.imu && is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
-    if (!files.ground_truth && is_file(truth)) files.ground_truth = truth_lines(truth, read_tum_microseconds, "body");
+    if (!files.truth.read && is_file(truth)) files.truth = truth_lines(truth, read_tum_microseconds, "body");
     for (const fs::path& list : {root / "left_images", root}) {
       const fs::path stamps = list / "image_timestamps_left.txt", lengths = list / "image_exposures_left.txt";
       if (files.frames || !is_file(stamps)) continue;
@@ -161,8 +161,8 @@ SideFiles eds_files(const fs::path& events) {
     files.frames = images_by_line(stamps, "t [us]", images_in({folder / "images"}), single_microseconds);
   if (const fs::path imu = folder / "imu.csv"; is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
   if (const fs::path truth = folder / "stamped_groundtruth.txt"; is_file(truth))
-    files.ground_truth = truth_lines(truth, read_tum, "frames");
-  if (files.frames || files.imu || files.ground_truth) {
+    files.truth = truth_lines(truth, read_tum, "frames");
+  if (files.frames || files.imu || files.truth.read) {
     files.set = "eds";
     files.sensor = cv::Size(640, 480);
   }

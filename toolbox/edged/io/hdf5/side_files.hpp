@@ -4,12 +4,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/text/stamped_lines.hpp"
 #include "edged/io/text/text_dataset.hpp"
 
@@ -20,7 +19,7 @@ struct SideFiles {
   std::optional<cv::Size> sensor = {};  ///< of the event camera [px], as all recordings of the set have it
   std::optional<StampedLines<FrameEntry>::Spec> frames = {};
   std::optional<StampedLines<ImuSample>::Spec> imu = {};
-  std::function<std::optional<GroundTruth>(Repairs&)> ground_truth = {};  ///< may be empty
+  TruthSource truth = {};
 };
 
 /// Of a file whose events are laid out as those of DSEC ("dsec") or EDS ("eds"), by the names of what lies around it.

@@ -11,6 +11,11 @@
 #include "edged/io/ros/open_messages.hpp"
 
 namespace edged {
+namespace {
+
+constexpr std::string_view kPlainPoses = "geometry_msgs/PoseStamped";  // which name no frame of theirs
+
+}  // namespace
 
 RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
                        std::optional<cv::Size> geometry)
@@ -26,6 +31,24 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
   begin(
       {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
+  info_.pose_frame = truth_frame();
+}
+
+/// As its first message says it.
+std::string RosDataset::truth_frame() const {
+  const auto topic = choice_.of(Role::Truth);
+  if (!topic || source_->topics()[*topic].type == kPlainPoses) return "body";
+  const auto source = open_messages(name_, nullptr);
+  while (const auto message = source->next()) {
+    if (message->topic != *topic) continue;
+    try {
+      const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
+      return std::string(named.frame == "events" || named.frame == "frames" ? named.frame : "body");
+    } catch (const Damage&) {
+      // The next one tells as well.
+    }
+  }
+  return "body";
 }
 
 bool RosDataset::read_on() {
@@ -99,8 +122,8 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
   const auto topic = choice_.of(Role::Truth);
   if (!topic) return std::nullopt;
   const auto source = open_messages(name_, nullptr);
-  const bool plain = source_->topics()[*topic].type == "geometry_msgs/PoseStamped";
-  GroundTruth truth;
+  const bool plain = source_->topics()[*topic].type == kPlainPoses;
+  GroundTruth truth{{}, info_.pose_frame};
   Trajectory& poses = truth.trajectory;
   while (const auto message = source->next()) {
     if (message->topic != *topic) continue;
@@ -110,9 +133,7 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
         poses.push_back(read_pose_stamped(reader));
         continue;
       }
-      const NamedPose named = read_named_pose(reader);
-      poses.push_back(named.pose);
-      if (named.frame == "events" || named.frame == "frames") truth.frame = named.frame;
+      poses.push_back(read_named_pose(reader).pose);
     } catch (const Damage&) {
       // A pose that is missing is no loss: there are hundreds a second.
     }

@@ -31,6 +31,7 @@ class RosDataset final : public StreamedDataset {
   void feed(const Message& message);
   void feed_events(const std::string& type, WireReader message);
   void feed_frame(const std::string& type, WireReader message);
+  std::string truth_frame() const;
   void judge(std::size_t role, const std::string& reason);
 
   std::unique_ptr<MessageSource> source_;

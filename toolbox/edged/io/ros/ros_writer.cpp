@@ -15,19 +15,11 @@
 namespace edged {
 namespace {
 
-/// The name under which a bag's reader knows the frame of the ground truth.
-std::string name_when_read(const std::string& frame, const std::optional<Calibration>& calibration) {
-  if (calibration)
-    for (const RigCamera& camera : calibration->rig.cameras)
-      if (camera.name == frame) return camera.modality == Modality::Events ? "events" : "frames";
-  return frame;
-}
-
 class RosWriter final : public RecordingWriter {
  public:
   RosWriter(const WriterSetup& setup, std::unique_ptr<MessageSink> sink)
-      : name_(setup.path.string()),
-        calibration_(setup.calibration),
+      : setup_(setup),
+        name_(setup.path.string()),
         sensor_(setup.info.has_events ? setup.event_sensor() : cv::Size()),
         sink_(std::move(sink)) {}
 
@@ -53,7 +45,7 @@ class RosWriter final : public RecordingWriter {
 
   void write(const GroundTruth& truth) override {
     truth_ = truth;
-    truth_.frame = name_when_read(truth.frame, calibration_);
+    truth_.frame = setup_.name_when_read(truth.frame);
   }
 
   void finish() override {
@@ -93,13 +85,13 @@ class RosWriter final : public RecordingWriter {
 
   /// Once a camera, before its first measurement.
   void describe_camera(Modality modality, std::string_view topic, const std::string& name, Timestamp t) {
-    if (!calibration_ || topics_.contains(topic)) return;
-    if (const RigCamera* camera = calibration_->rig.find(modality))
+    if (!setup_.calibration || topics_.contains(topic)) return;
+    if (const RigCamera* camera = setup_.calibration->rig.find(modality))
       send(topic, "sensor_msgs/CameraInfo", t, camera_info_message(sink_->wire(), t, name, camera->model));
   }
 
+  WriterSetup setup_;
   std::string name_;
-  std::optional<Calibration> calibration_;
   cv::Size sensor_;
   std::unique_ptr<MessageSink> sink_;
   std::map<std::string, std::size_t, std::less<>> topics_;

@@ -80,8 +80,6 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   TextLayout layout;
   layout.info.name = folder.name();
   layout.info.format = "ecd";
-  const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
-  layout.info.pose_frame = no_event_camera ? "frames" : "events";
   layout.parse_stamp = parse_seconds;
   if (const SourcePath events = folder / "events.txt"; events.is_file()) {
     const cv::Size size = sensor_size(folder, rig, recording.calibration);
@@ -91,10 +89,13 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   if ((folder / "images.txt").is_file()) layout.frames = FrameFile{"frames", ecd_images(folder)};
   if (const SourcePath imu = folder / "imu.txt"; imu.is_file())
     layout.imu = {imu, "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
-  if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file())
+  if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file()) {
+    const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
+    layout.info.pose_frame = no_event_camera ? "frames" : "events";
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
       return read_ground_truth(truth, camera, repairs);
     };
+  }
   recording.dataset = std::make_unique<TextDataset>(std::move(layout));
   return recording;
 }

@@ -56,7 +56,6 @@ Recording open_event_csv(const SourcePath& file, const EventTextForm& form, cons
   TextLayout layout;
   layout.info.name = std::filesystem::path(file.name()).stem().string();
   layout.info.format = "csv";
-  layout.info.pose_frame = "events";
   layout.info.event_sensor = size;
   layout.events = EventFile{file, "events", size.width, size.height, form.columns};
   layout.events->columns.unit = stamp_unit(file, form, options.time_unit);
