@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -81,6 +83,15 @@ std::string text_of(const std::filesystem::filesystem_error& error) {
   return fmt::format("{}: {}; check the path and your rights there", error.path1().string(), error.code().message());
 }
 
+/// The packets of a wide sensor are megabytes, made and freed thirty times a second: given back to the system they
+/// would be cleared by it, page by page, each time anew.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+}
+
 /// stdout is written when its buffer is full, at the latest now.
 void end_output() {
   if (std::fflush(stdout) != 0)
@@ -93,6 +104,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   const std::span<char*> words(argv, static_cast<std::size_t>(argc));
   const bool json = std::ranges::count(words, std::string_view("--json")) > 0;
   try {
+    keep_freed_memory();
     cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
     start_logging();
     app.parse(argc, argv);

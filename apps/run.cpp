@@ -22,6 +22,10 @@
 namespace edged {
 namespace {
 
+/// Events and frames read before they are wanted: a packet of a wide sensor in haste, and little beside what a run
+/// holds.
+constexpr int kReadAheadMegabytes = 16;
+
 std::filesystem::path run_folder_path(const RunOptions& options, const DatasetInfo& info, Mode mode) {
   if (!options.out.empty()) return options.out;
   return std::filesystem::path("runs") / (info.name + "-" + mode_name(mode));
@@ -210,11 +214,10 @@ void Run::show_status(const Step& step) {
 }
 
 std::optional<Measurement> Run::read() {
-  const auto timer = program_timings_.measure_often(live_ ? "wait" : source_.seed ? "simulate" : "read");
+  const auto timer = program_timings_.measure_often(source_.seed ? "simulate" : "wait");
   if (live_) return live_->next();
-  // The price of making up a recording is no part of what it costs to estimate one.
-  if (source_.seed) return meter_.without([this] { return source_.dataset->next(); });
-  return source_.dataset->next();
+  if (reader_) return reader_->next();
+  return meter_.without([this] { return source_.dataset->next(); });
 }
 
 std::optional<Measurement> Run::next_measurement() {
@@ -226,11 +229,29 @@ std::optional<Measurement> Run::next_measurement() {
   return measurement;
 }
 
+void Run::start_reading() {
+  const auto interrupted = [] { return interrupt_signal() != 0; };
+  // The price of making up a recording is no part of what it costs to estimate one: that is not done beside.
+  if (source_.seed) return;
+  if (options_.live) {
+    live_.emplace(*source_.dataset, queue_config_, interrupted);
+  } else {
+    reader_.emplace(*source_.dataset, QueueConfig{.max_megabytes = kReadAheadMegabytes}, WhenFull::Wait, interrupted);
+  }
+}
+
+/// The dataset is no longer read.
+void Run::stop_reading() {
+  if (live_) live_->stop();
+  if (reader_) reader_->stop();
+  if (live_ || reader_) program_timings_.put("read", live_ ? live_->reading() : reader_->reading());
+}
+
 RunSummary Run::go() {
   catch_interrupts();
   if (page_) fmt::print(stderr, "edged: watch at {}\n", page_->url());
   meter_ = ResourceMeter();
-  if (options_.live) live_.emplace(*source_.dataset, queue_config_, [] { return interrupt_signal() != 0; });
+  start_reading();
   try {
     drive(
         odometry_, [this] { return next_measurement(); },
@@ -254,7 +275,7 @@ Hindsight Run::hindsight() {
 }
 
 RunSummary Run::summarize() {
-  if (live_) live_->stop();
+  stop_reading();
   status_line_.clear();
   const DatasetInfo& info = source_.dataset->info();
   RunSummary summary;

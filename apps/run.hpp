@@ -56,6 +56,8 @@ class Run {
  private:
   std::optional<Measurement> next_measurement();
   std::optional<Measurement> read();
+  void start_reading();
+  void stop_reading();
   void check(const Measurement& measurement);
   void observe(const Step& step);
   void log_changes(const Step& step) const;
@@ -86,7 +88,8 @@ class Run {
   RunAlbum album_;
   StatusLine status_line_;
   ResourceMeter meter_;
-  std::optional<LiveSource> live_;  ///< plays the dataset in its own thread; in go() only
+  std::optional<LiveSource> live_;   ///< plays the dataset in its own thread; in go() only
+  std::optional<ReadAhead> reader_;  ///< reads the dataset in its own thread; in go() only
   std::optional<LivePage> page_;
   std::optional<RunMcap> mcap_;
   bool broken_off_ = false;  ///< an error ended the run

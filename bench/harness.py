@@ -132,13 +132,18 @@ def data_recordings(data, cache):
     return found
 
 
+def calibration_option(rig):
+    """rig: the name of one that ships, the path of a file, or None where the recording brings its own."""
+    return [] if rig is None else ["--calib" if isinstance(rig, pathlib.Path) else "--rig", rig]
+
+
 def extent(edged, cache, path, rig, modes):
     """Begin of the recording [s], and from when to when all streams are there that a mode needs, by mode, of those that it has
     sensors for; kept in the cache."""
     known = cache / "info" / f"{file_name(str(path.resolve()))}_{path.stat().st_mtime_ns}.json"
     if not known.exists():
         known.parent.mkdir(parents=True, exist_ok=True)
-        known.write_text(call([edged, "info", path, "--json", "--quiet"] + (["--rig", rig] if rig else [])))
+        known.write_text(call([edged, "info", path, "--json", "--quiet", *calibration_option(rig)]))
     info = json.loads(known.read_text())
     there = {kind: info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0}
     return 1e-9 * min(stream["begin_ns"] for stream in there.values()), {
@@ -157,8 +162,7 @@ def estimate(edged, recording, mode, out, settings=(), rig=None, extra=()):
     if (out / "config_resolved.yaml").exists():  # not by --force: `sweep --against` runs builds that do not know it
         shutil.rmtree(out)
     command = [edged, "run", recording, "--mode", mode, "--out", out, "--json", "--quiet", *extra]
-    if rig:
-        command += ["--rig", rig]
+    command += calibration_option(rig)
     for setting in settings:
         command += ["--set", setting]
     return json.loads(call(command, accepted=(0, NEVER_GOOD, NOT_TRUSTED)))

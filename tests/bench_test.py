@@ -210,7 +210,7 @@ class Bench(unittest.TestCase):
         self.assertIn("--out", bench("figures", "--quick").stderr)
 
     def test_speed_prints_a_row_a_sensor_and_mode(self):
-        result = bench("speed", "--no-data", "--sensors", "240x180", "--duration", 2.5, "--modes", "frames", "--repeats", 1,
+        result = bench("speed", "--no-data", "--sensors", "240x180@1", "--duration", 2.5, "--modes", "frames", "--repeats", 1,
                        "--cache", self.folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout, r"\n\| room 240x180 +\| frames +\| [\d.]+ +\| [\d.]+ +(\| *[\d.]+ +){10}\|\n")

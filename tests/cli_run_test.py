@@ -4,6 +4,7 @@
 """simulate, run and enhance on one short flight: run folders, live runs, interrupted ones.
 Usage: EDGED=path/to/edged cli_run_test.py"""
 import json
+import pathlib
 import random
 import resource
 import shutil
@@ -227,13 +228,14 @@ class Run(WithFlight):
         self.assertTrue((out / "metrics.json").is_file())
 
     def test_ctrl_c_and_a_terminal_that_is_closed_leave_complete_files(self):
-        for ending, code in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
-            out = self.folder / f"run_{code}"
-            process = subprocess.Popen([EDGED, "run", "sim:room:4", "--out", out, "--quiet", "--mcap", "--archive"],
+        for recording, ending, code in (("sim:room:4", signal.SIGINT, 130), ("sim:room:4", signal.SIGHUP, 129),
+                                        (self.flight, signal.SIGINT, 130)):
+            out = self.folder / f"run_{pathlib.Path(recording).name}_{code}"
+            process = subprocess.Popen([EDGED, "run", recording, "--out", out, "--quiet", "--mcap", "--archive"],
                                        stdout=subprocess.DEVNULL)
-            while not (out / "run.log").exists() and process.poll() is None:
-                time.sleep(0.02)
-            time.sleep(0.5)
+            states = out / "states.csv"
+            while process.poll() is None and (not states.exists() or states.read_bytes().count(b"\n") < 20):
+                time.sleep(0.002)
             process.send_signal(ending)
             self.assertEqual(process.wait(timeout=60), code)
             self.assertEqual(json.loads((out / "metrics.json").read_text())["status"], "interrupted")

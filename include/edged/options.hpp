@@ -76,6 +76,7 @@ struct OdometryConfig {
   MapConfig map;
   double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which nothing moves in view
   double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
+  double thin_width_px = 400.0;       ///< beside good frames events of sensors twice as wide and more are thinned
   double min_events_per_pixel = 0.1;  ///< a packet with fewer events draws no event frame
   StatusConfig status;
 

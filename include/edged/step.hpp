@@ -65,7 +65,7 @@ struct Step {
   cv::Mat event_frame;         ///< motion-compensated, CV_8UC1, undistorted; empty when there were too few events
   std::optional<Frame> frame;  ///< that came at t
   std::vector<Event> events;   ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
-  std::size_t drawn = 0;       ///< how many of them, the newest, event_frame shows
+  std::size_t drawn = 0;       ///< how many of them, the newest, event_frame is of
   double event_rate_hz = 0;    ///< of this packet
   double scene_depth = 0;      ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only

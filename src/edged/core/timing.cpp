@@ -10,13 +10,13 @@ namespace edged {
 namespace {
 constexpr double kFirstBin_s = 1e-6;
 const double kLogWidth = std::log(1.05);
+}  // namespace
 
 double thread_cpu_s() {
   timespec time;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
-}  // namespace
 
 void StageTiming::add(double seconds, std::optional<double> cpu_seconds) {
   const double bin = std::log(std::max(seconds, kFirstBin_s) / kFirstBin_s) / kLogWidth;
@@ -25,7 +25,7 @@ void StageTiming::add(double seconds, std::optional<double> cpu_seconds) {
   total_s_ += seconds;
   max_s_ = std::max(max_s_, seconds);
   last_s_ = seconds;
-  if (cpu_seconds) cpu_s_ = cpu_s_.value_or(0.0) + *cpu_seconds;
+  if (cpu_seconds) add_cpu(*cpu_seconds);
 }
 
 double StageTiming::quantile_s(double q) const {

@@ -12,10 +12,15 @@
 
 namespace edged {
 
+/// Processor time that the calling thread has used so far [s].
+double thread_cpu_s();
+
 /// Durations of one stage in logarithmic bins 5 % wide from 1 us to about 1000 s.
 class StageTiming {
  public:
   void add(double seconds, std::optional<double> cpu_seconds = std::nullopt);
+  /// Of calls that were added without.
+  void add_cpu(double seconds) { cpu_s_ = cpu_s_.value_or(0.0) + seconds; }
   std::uint64_t count() const { return count_; }
   double mean_s() const { return count_ == 0 ? 0.0 : total_s_ / static_cast<double>(count_); }
   double total_s() const { return total_s_; }
@@ -56,6 +61,8 @@ class StageTimings {
   [[nodiscard]] Scope measure(const std::string& stage) { return {timing_of(stage), true}; }
   /// Without processor time, which costs a system call: for what is entered thousands of times a second.
   [[nodiscard]] Scope measure_often(const std::string& stage) { return {timing_of(stage), false}; }
+  /// A stage that was measured elsewhere.
+  void put(const std::string& stage, const StageTiming& timing) { timing_of(stage) = timing; }
   struct Entry {
     std::string name;
     StageTiming timing;

@@ -57,6 +57,18 @@ TEST(StageTimings, HaveProcessorTimeWhereItWasAskedFor) {
   EXPECT_FALSE(timings.all()[1].timing.cpu_s().has_value());
 }
 
+TEST(StageTimings, TakeAStageThatWasMeasuredElsewhere) {
+  StageTiming reading;
+  reading.add(0.5);
+  reading.add(0.25);
+  reading.add_cpu(0.6);
+  StageTimings timings;
+  timings.put("read", reading);
+  EXPECT_EQ(timings.find("read")->count(), 2u);
+  EXPECT_EQ(timings.find("read")->total_s(), 0.75);
+  EXPECT_EQ(timings.find("read")->cpu_s(), 0.6);
+}
+
 TEST(StageTimings, NestedScopesOfNewStagesStayValid) {
   StageTimings timings;
   {

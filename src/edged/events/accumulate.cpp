@@ -81,7 +81,7 @@ cv::Mat EventFrameRenderer::accumulate(std::span<const Event> events, const Came
 }
 
 cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMotion& motion, double depth,
-                                   const DepthGrid* depths) {
+                                   const DepthGrid* depths, double weight) {
   cv::Mat sum = accumulate(events, motion, depth, depths);
   if (config_.blur_sigma_px > 0.0) {
     cv::GaussianBlur(sum, blurred_, cv::Size(), config_.blur_sigma_px, config_.blur_sigma_px,
@@ -89,7 +89,7 @@ cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMo
     sum = blurred_;
   }
   cv::Mat frame;
-  sum.convertTo(frame, CV_8U, 255.0 / config_.saturation_events);
+  sum.convertTo(frame, CV_8U, weight * 255.0 / config_.saturation_events);
   return frame;
 }
 

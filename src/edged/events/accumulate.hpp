@@ -22,9 +22,9 @@ class EventFrameRenderer {
   cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
                      const DepthGrid* depths = nullptr);
 
-  /// accumulate, then blur and scale to CV_8UC1; a new image each time.
+  /// accumulate, then blur and scale to CV_8UC1; a new image each time. weight: so many events each stands for.
   cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth,
-                 const DepthGrid* depths = nullptr);
+                 const DepthGrid* depths = nullptr, double weight = 1.0);
 
   /// The undistorted camera of the images.
   const CameraModel& camera() const { return table_.ideal(); }

@@ -29,28 +29,38 @@ EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
       quiet_rate_per_pixel_(config.quiet_rate_per_pixel),
       max_travel_px_(config.max_travel_px),
       max_age_s_(config.packets.max_age_s),
-      least_events_(static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * pixels()))) {}
+      least_events_(static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * pixels()))),
+      thinned_every_(std::max(1, static_cast<int>(camera.width() / config.thin_width_px))) {}
 
 bool EventView::quiet(const Packet& packet) const { return packet.event_rate_hz < quiet_rate_per_pixel_ * pixels(); }
 
-std::span<const Event> EventView::drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const {
+EventsToDraw EventView::drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth,
+                                     bool thin) const {
   const std::span<const Event> window = packet.window();
   if (window.size() < least_events_ || body.poses().size() < 2) return {};
-  if (!body.started()) return window;
+  const int every = thin ? thinned_every_ : 1;
+  if (!body.started()) return {window, every};
   const double travel_px_per_s = ideal().mean_focal() * body.now().v_W.norm() / scene_depth;
   const double age_s = std::min(max_travel_px_ / std::max(travel_px_per_s, 1e-3), max_age_s_);
   const auto oldest = std::lower_bound(window.begin(), window.end(), packet.t - duration_from_seconds(age_s),
                                        [](const Event& event, Timestamp t) { return event.t < t; });
-  return window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_));
+  return {window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_)), every};
 }
 
-EventImage EventView::draw(std::span<const Event> events, const RigCamera& camera, const BodyMotion& body,
+EventImage EventView::draw(const EventsToDraw& drawn, const RigCamera& camera, const BodyMotion& body,
                            double scene_depth, const DepthGrid* depths) {
+  std::span<const Event> events = drawn.events;
+  if (drawn.every > 1) {
+    const auto every = static_cast<std::size_t>(drawn.every);
+    thinned_.clear();
+    for (std::size_t i = (events.size() - 1) % every; i < events.size(); i += every) thinned_.push_back(events[i]);
+    events = thinned_;
+  }
   const std::span<const StampedPose> poses = covering(body.poses(), events.front().t + camera.time_offset);
   const CameraMotion motion = camera_motion(poses, body.moved_on(camera.time_offset), camera.T_B_C, camera.time_offset);
   EventImage image;
-  image.drawn = events.size();
-  image.frame = renderer_.render(events, motion, scene_depth, depths);
+  image.drawn = drawn.events.size();
+  image.frame = renderer_.render(events, motion, scene_depth, depths, drawn.every);
   const cv::Mat enhanced = enhance(image.frame, enhance_);
   image.track = enhance_track_ ? enhanced : image.frame;
   image.detect = enhance_detect_ ? enhanced : image.frame;

@@ -5,6 +5,7 @@
 
 #include <opencv2/core/mat.hpp>
 #include <span>
+#include <vector>
 
 #include "edged/events/accumulate.hpp"
 #include "edged/options.hpp"
@@ -17,7 +18,13 @@ namespace edged {
 struct EventImage {
   cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
   cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): corners are followed on one, found on the other
-  std::size_t drawn = 0;  ///< events in it, the newest of the packet
+  std::size_t drawn = 0;  ///< events it is of, the newest of the packet
+};
+
+/// Which events an event frame is drawn of: each `every`-th from the newest on, standing for as many.
+struct EventsToDraw {
+  std::span<const Event> events;
+  int every = 1;
 };
 
 class EventView {
@@ -28,11 +35,12 @@ class EventView {
   bool quiet(const Packet& packet) const;
   /// Those of the packet's window that make a frame: shortened when the body moves fast, as over a long way the warp
   /// smears what does not lie at the scene's one depth (z, [m]). Rotation does not count, its warp knows no depth.
-  /// body: predicted to the packet. Empty when there are too few.
-  std::span<const Event> drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth) const;
-  /// events: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
+  /// body: predicted to the packet. Empty when there are too few. thin: a wide sensor's picture may be noisier than its
+  /// events allow.
+  EventsToDraw drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth, bool thin) const;
+  /// drawn: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
   /// all.
-  EventImage draw(std::span<const Event> events, const RigCamera& camera, const BodyMotion& body, double scene_depth,
+  EventImage draw(const EventsToDraw& drawn, const RigCamera& camera, const BodyMotion& body, double scene_depth,
                   const DepthGrid* depths);
 
   /// The undistorted camera of the images.
@@ -46,6 +54,8 @@ class EventView {
   bool enhance_track_, enhance_detect_;
   double quiet_rate_per_pixel_, max_travel_px_, max_age_s_;
   std::size_t least_events_;
+  int thinned_every_;
+  std::vector<Event> thinned_;  ///< kept for its memory
 };
 
 }  // namespace edged

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
+
 #include "edged/frontend/test_scene.hpp"
 
 namespace edged {
@@ -18,8 +20,9 @@ Packet packet_of(std::size_t events) {
   packet.t = timestamp_from_seconds(kSpan_s);
   for (std::size_t i = 0; i < events; ++i) {
     const double t_s = kSpan_s * static_cast<double>(i + 1) / static_cast<double>(events);
-    packet.events.push_back({timestamp_from_seconds(t_s), static_cast<std::uint16_t>(i * 7 % 240),
-                             static_cast<std::uint16_t>(i * 11 % 180), true});
+    const std::size_t place = i * 0x9e3779b97f4a7c15U >> 24U;  // as good as random
+    packet.events.push_back({timestamp_from_seconds(t_s), static_cast<std::uint16_t>(place % 240),
+                             static_cast<std::uint16_t>(place / 240 % 180), true});
   }
   packet.window_events = packet.new_events = events;
   packet.event_rate_hz = static_cast<double>(events) / kSpan_s;
@@ -46,12 +49,12 @@ class EventViewTest : public testing::Test {
     return body;
   }
 
-  EventImage draw(std::size_t events, double speed) {
+  EventImage draw(std::size_t events, double speed, bool thin = false) {
     EventView view(camera_.model, config_);
     const Packet packet = packet_of(events);
     const BodyMotion body = moving(speed);
-    const std::span<const Event> drawn = view.drawn_events(packet, body, kDepth_m);
-    return drawn.empty() ? EventImage{} : view.draw(drawn, camera_, body, kDepth_m, nullptr);
+    const EventsToDraw drawn = view.drawn_events(packet, body, kDepth_m, thin);
+    return drawn.events.empty() ? EventImage{} : view.draw(drawn, camera_, body, kDepth_m, nullptr);
   }
 
   RigCamera camera_;
@@ -72,6 +75,20 @@ TEST_F(EventViewTest, ReachesBackUntilTheSceneHasMovedFarEnough) {
   EXPECT_NEAR(static_cast<double>(draw(all, 2.0).drawn), 0.25 * all, 2.0);
   const double least = config_.min_events_per_pixel * kPixels;
   EXPECT_EQ(static_cast<double>(draw(all, 200.0).drawn), least) << "never fewer than an image needs";
+}
+
+TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereToldToThinAndEachForN) {
+  const EventImage all = draw(20'000, 0.0), thinned_narrow = draw(20'000, 0.0, true);
+  EXPECT_EQ(cv::norm(all.frame, thinned_narrow.frame), 0.0) << "240 px are not wide";
+  config_.thin_width_px = 70;
+  EXPECT_EQ(cv::norm(all.frame, draw(20'000, 0.0).frame), 0.0) << "not told to";
+  const EventImage thinned = draw(20'000, 0.0, true);
+  EXPECT_EQ(thinned.drawn, all.drawn) << "it reaches back as far";
+  cv::Scalar mean, sigma, thinned_mean, thinned_sigma;
+  cv::meanStdDev(all.frame, mean, sigma);
+  cv::meanStdDev(thinned.frame, thinned_mean, thinned_sigma);
+  EXPECT_NEAR(thinned_mean[0], mean[0], 0.05 * mean[0]) << "as bright";
+  EXPECT_GT(thinned_sigma[0], 1.2 * sigma[0]) << "and noisier";
 }
 
 TEST_F(EventViewTest, EnhancesOnlyWhereAskedTo) {

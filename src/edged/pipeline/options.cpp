@@ -94,6 +94,10 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.add(
       "max_travel_px", max_travel_px,
       {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
+  fields.add("thin_width_px", thin_width_px,
+             {"px", 1, 1e6,
+              "while frames carry enough corners each n-th event is drawn, n the sensor's width over this, rounded "
+              "down"});
   fields.add("min_events_per_pixel", min_events_per_pixel,
              {"", 0, 10, "a packet with fewer events draws no event frame"});
 }

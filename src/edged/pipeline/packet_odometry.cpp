@@ -154,8 +154,8 @@ double PacketOdometry::measure_depth(const Packet& packet) {
 EventImage PacketOdometry::draw(const Packet& packet, double scene_depth) {
   if (!event_view_) return {};
   const auto timer = timings_.measure("event_frame");
-  const std::span<const Event> events = event_view_->drawn_events(packet, body_, scene_depth);
-  if (events.empty()) return {};
+  const EventsToDraw events = event_view_->drawn_events(packet, body_, scene_depth, frames_carry());
+  if (events.events.empty()) return {};
   const std::optional<DepthGrid> depths = event_depths(scene_depth);
   return event_view_->draw(events, find_channel(Modality::Events)->camera, body_, scene_depth,
                            depths ? &*depths : nullptr);
@@ -247,13 +247,21 @@ bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const ChannelVi
   return keyframe_reason(since, config_.keyframes) != KeyframeReason::None;
 }
 
+bool PacketOdometry::frames_at_work() const {
+  return mode_ == Mode::Fused && last_frame_ && body_.now().t - *last_frame_ < kFramesMissing;
+}
+
+/// As many corners as event frames keep beside them.
+bool PacketOdometry::frames_carry() const {
+  return frames_at_work() && find_channel(Modality::Frames)->carried() >= config_.health.min_event_corners;
+}
+
 /// Frames tell more about a corner than events do, where they see it at all: in good light a few corners on the event
 /// frame are enough, in the dark, in glare and without frames it takes all it can get.
 int PacketOdometry::corners_wanted(const Channel& channel) const {
   const int all = config_.event_tracker.detector.max_features;
-  const bool frames_at_work = mode_ == Mode::Fused && last_frame_ && body_.now().t - *last_frame_ < kFramesMissing;
   if (channel.camera.modality == Modality::Frames) return config_.frame_tracker.detector.max_features;
-  if (!frames_at_work) return all;
+  if (!frames_at_work()) return all;
   return std::max(config_.health.min_event_corners, all - static_cast<int>(find_channel(Modality::Frames)->carried()));
 }
 

@@ -63,6 +63,8 @@ class PacketOdometry {
   void track(const ChannelView& view, Timestamp t, double scene_depth);
   void reject(const ChannelView& view);
   bool is_keyframe(const Packet& packet, std::span<const ChannelView> views) const;
+  bool frames_at_work() const;
+  bool frames_carry() const;
   int corners_wanted(const Channel& channel) const;
   void mark_keyframe(Timestamp t, std::span<const ChannelView> views);
   EstimatorResult estimate(const Packet& packet, Preintegration motion, std::span<const ChannelView> views,

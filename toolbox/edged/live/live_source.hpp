@@ -3,17 +3,13 @@
 // A recording played at its own speed by a thread of its own, as sensors would: who is too slow for it misses events.
 #pragma once
 
-#include <cstddef>
-#include <exception>
 #include <functional>
 #include <optional>
-#include <stop_token>
-#include <thread>
 
 #include "edged/core/dataset.hpp"
 #include "edged/core/timing.hpp"
 #include "edged/live/live_clock.hpp"
-#include "edged/live/measurement_queue.hpp"
+#include "edged/live/read_ahead.hpp"
 #include "edged/live/shed_report.hpp"
 
 namespace edged {
@@ -23,7 +19,6 @@ class LiveSource {
   /// Plays `dataset` from now on, which is the thread's until stop, but for info(). The end comes at once when
   /// `interrupted` says so.
   LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted);
-  ~LiveSource() { stop(); }
 
   /// As Dataset::next, but for what has been shed; waits until the next measurement is due. Throws what the dataset
   /// threw, after all that came before. Warns in the log when shedding begins and ends.
@@ -36,24 +31,19 @@ class LiveSource {
   }
 
   /// Ends the thread. Statistics stay.
-  void stop();
+  void stop() { reader_.stop(); }
 
   /// From when a measurement was due to its result.
   const StageTiming& latency() const { return latency_; }
-  ShedCounters shed() const { return queue_.shed(); }
-  QueuePeaks peaks() const { return queue_.peaks(); }
+  ShedCounters shed() const { return reader_.queue().shed(); }
+  const StageTiming& reading() const { return reader_.reading(); }
+  QueuePeaks peaks() const { return reader_.queue().peaks(); }
 
  private:
-  void play(const std::stop_token& stop);
-
-  Dataset& dataset_;
-  std::function<bool()> interrupted_;
-  MeasurementQueue queue_;
   LiveClock clock_;
   StageTiming latency_;
   ShedReport report_;
-  std::exception_ptr failure_;  // set before the queue is closed
-  std::jthread thread_;         // last: it uses the others
+  ReadAhead reader_;  // last: its thread uses the clock
 };
 
 }  // namespace edged

@@ -38,22 +38,34 @@ void QueueConfig::visit(ConfigFields& fields) {
 }
 
 bool MeasurementQueue::push(Measurement measurement) {
-  const bool is_imu = std::holds_alternative<ImuSample>(measurement);
   const std::optional<Timestamp> stamp = last_stamp(measurement);
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(
-        lock, [&] { return closed_ || !is_imu || imu_.size() < static_cast<std::size_t>(config_.max_imu_samples); });
+    const bool must_stay = when_full_ == WhenFull::Wait || std::holds_alternative<ImuSample>(measurement);
+    if (must_stay && full()) less_.wait(lock, [this] { return closed_ || half_empty(); });
     if (closed_) return false;
     if (!stamp) return true;  // an empty batch
     newest_ = std::max(newest_, *stamp);
     add(std::move(measurement));
-    shed_events();
-    shed_frames();
+    if (when_full_ == WhenFull::Shed) {
+      shed_events();
+      shed_frames();
+    }
     note_peaks();
   }
-  changed_.notify_all();
+  more_.notify_one();
   return true;
+}
+
+/// Of what is not shed.
+bool MeasurementQueue::full() const {
+  return imu_.size() >= static_cast<std::size_t>(config_.max_imu_samples) ||
+         (when_full_ == WhenFull::Wait && bytes() >= room());
+}
+
+bool MeasurementQueue::half_empty() const {
+  return imu_.size() <= static_cast<std::size_t>(config_.max_imu_samples) / 2 &&
+         (when_full_ == WhenFull::Shed || bytes() <= room() / 2);
 }
 
 void MeasurementQueue::add(Measurement measurement) {
@@ -71,8 +83,7 @@ void MeasurementQueue::add(Measurement measurement) {
 
 /// The oldest events that are too old, or too many beside the frames.
 void MeasurementQueue::shed_events() {
-  const std::size_t room = static_cast<std::size_t>(config_.max_megabytes) << 20U;
-  const std::size_t allowed = (room - std::min(room, frame_bytes_)) / sizeof(Event);
+  const std::size_t allowed = (room() - std::min(room(), frame_bytes_)) / sizeof(Event);
   const Timestamp oldest_allowed = newest_ - duration_from_seconds(config_.max_age_s);
   while (!batches_.empty()) {
     std::vector<Event>& events = batches_.front().second.events;
@@ -90,9 +101,8 @@ void MeasurementQueue::shed_events() {
 }
 
 void MeasurementQueue::shed_frames() {
-  const std::size_t room = static_cast<std::size_t>(config_.max_megabytes) << 20U;
   const Timestamp oldest_allowed = newest_ - 2 * duration_from_seconds(config_.max_age_s);
-  while (!frames_.empty() && (frames_.front().second.t < oldest_allowed || frame_bytes_ > room)) {
+  while (!frames_.empty() && (frames_.front().second.t < oldest_allowed || frame_bytes_ > room())) {
     frame_bytes_ -= bytes_of(frames_.front().second);
     ++shed_.frames;
     frames_.pop_front();
@@ -103,7 +113,7 @@ void MeasurementQueue::note_peaks() {
   peaks_.events = std::max(peaks_.events, events_);
   peaks_.frames = std::max(peaks_.frames, frames_.size());
   peaks_.imu = std::max(peaks_.imu, imu_.size());
-  peaks_.bytes = std::max(peaks_.bytes, events_ * sizeof(Event) + frame_bytes_);
+  peaks_.bytes = std::max(peaks_.bytes, bytes());
   if (const auto t = oldest()) peaks_.age_s = std::max(peaks_.age_s, to_seconds(newest_ - *t));
 }
 
@@ -115,12 +125,14 @@ std::optional<Timestamp> MeasurementQueue::oldest() const {
 
 std::optional<Measurement> MeasurementQueue::pop() {
   std::optional<Measurement> first;
+  bool goes_on = false;
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return closed_ || !batches_.empty() || !frames_.empty() || !imu_.empty(); });
+    more_.wait(lock, [this] { return closed_ || !batches_.empty() || !frames_.empty() || !imu_.empty(); });
     first = take();
+    goes_on = half_empty();
   }
-  changed_.notify_all();
+  if (goes_on) less_.notify_one();
   return first;
 }
 
@@ -143,7 +155,8 @@ void MeasurementQueue::close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
   }
-  changed_.notify_all();
+  more_.notify_all();
+  less_.notify_all();
 }
 
 void MeasurementQueue::interrupt() {
@@ -155,7 +168,8 @@ void MeasurementQueue::interrupt() {
     imu_.clear();
     events_ = frame_bytes_ = 0;
   }
-  changed_.notify_all();
+  more_.notify_all();
+  less_.notify_all();
 }
 
 ShedCounters MeasurementQueue::shed() const {

@@ -25,6 +25,12 @@ struct QueueConfig {
   void visit(ConfigFields& fields);
 };
 
+/// What happens when more than QueueConfig allows would wait.
+enum class WhenFull {
+  Shed,  ///< the oldest is left out: what comes late is worth little
+  Wait   ///< the thread that reads waits: each measurement counts, whenever it comes. Ages count for nothing
+};
+
 /// Measurements left out because the queue was full.
 struct ShedCounters {
   std::size_t events = 0, frames = 0;
@@ -37,15 +43,17 @@ struct QueuePeaks {
   double age_s = 0.0;  ///< of the oldest event or frame
 };
 
-/// First in, first out; when too much waits it sheds, never the IMU. The oldest events go first: they come in excess,
-/// and a late result is worth less than one from fewer events. A frame stands for more than the events of its time and
-/// costs less, so frames go after all events or at twice their age, the oldest first. IMU samples are small and cannot
-/// be replaced: with too many of them push waits.
+/// First in, first out; when too much waits push waits, or the queue sheds, never the IMU. The oldest events go first:
+/// they come in excess, and a late result is worth less than one from fewer events. A frame stands for more than the
+/// events of its time and costs less, so frames go after all events or at twice their age, the oldest first. IMU
+/// samples are small and cannot be replaced: with too many of them push waits.
 ///
-/// One thread may push while another pops.
+/// One thread may push while another pops. Where push waits, it waits until half of what is allowed is left: threads
+/// that wake each other for every measurement cost more than they read.
 class MeasurementQueue {
  public:
-  explicit MeasurementQueue(const QueueConfig& config) : config_(config) {}
+  explicit MeasurementQueue(const QueueConfig& config, WhenFull when_full = WhenFull::Shed)
+      : config_(config), when_full_(when_full) {}
 
   /// False, and nothing taken, after close or interrupt.
   bool push(Measurement measurement);
@@ -65,6 +73,10 @@ class MeasurementQueue {
   template <typename T>
   using Line = std::deque<std::pair<std::uint64_t, T>>;
 
+  std::size_t room() const { return static_cast<std::size_t>(config_.max_megabytes) << 20U; }
+  std::size_t bytes() const { return events_ * sizeof(Event) + frame_bytes_; }
+  bool full() const;
+  bool half_empty() const;
   void add(Measurement measurement);
   void shed_events();
   void shed_frames();
@@ -73,9 +85,10 @@ class MeasurementQueue {
   std::optional<Timestamp> oldest() const;
 
   const QueueConfig config_;
+  const WhenFull when_full_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  Line<EventBatch> batches_;  // none empty
+  std::condition_variable more_, less_;  ///< to pop; waits, for push to go on
+  Line<EventBatch> batches_;             // none empty
   Line<Frame> frames_;
   Line<ImuSample> imu_;
   std::uint64_t next_place_ = 0;

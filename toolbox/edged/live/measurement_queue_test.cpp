@@ -118,6 +118,21 @@ TEST(MeasurementQueue, WaitsWithTooManyImuSamplesInsteadOfLosingOne) {
   EXPECT_TRUE(pushed.get());
 }
 
+TEST(MeasurementQueue, ThatWaitsLeavesNothingOutHoweverOldAndGoesOnWhenHalfIsGone) {
+  MeasurementQueue queue({.max_age_s = 0.001, .max_megabytes = 1}, WhenFull::Wait);
+  const int half = static_cast<int>((1U << 19U) / sizeof(Event));
+  queue.push(events_until(100, half));
+  queue.push(frame_at(200));
+  queue.push(events_until(10'000, half));
+  auto pushed = std::async(std::launch::async, [&queue] { return queue.push(imu_at(10'001)); });
+  EXPECT_EQ(pushed.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "all that is allowed waits";
+  EXPECT_EQ(last_stamp(*queue.pop()), queue_ms(100));
+  EXPECT_EQ(last_stamp(*queue.pop()), queue_ms(200));
+  EXPECT_TRUE(pushed.get());
+  EXPECT_EQ(queue.shed(), ShedCounters{});
+  EXPECT_THAT(drain(queue), ElementsAre(std::to_string(half) + " events 10000", "imu 10001"));
+}
+
 TEST(MeasurementQueue, AnInterruptWakesBothSides) {
   MeasurementQueue full({.max_imu_samples = 1000}), empty({});
   for (int i = 0; i < 1000; ++i) full.push(imu_at(i));
