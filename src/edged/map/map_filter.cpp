@@ -149,10 +149,17 @@ bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, c
   P_tt.topRows<6>() = P_t.topRows<6>();
   for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(block_of(keyframe));
   const MatrixXd inverse = (MatrixXd::Identity(m, m) + H * P_tt).partialPivLu().inverse();
-  const VectorXd error = -P_t * (inverse * g);
+  // Of a map that this place has not been found in nothing hangs together with those: it changes no bit of the rest.
+  std::vector<Eigen::Index> moved;
+  for (Eigen::Index row = 0; row < P_t.rows(); ++row) {
+    if (!P_t.row(row).isZero(0.0)) moved.push_back(row);
+  }
+  const MatrixXd P_m = P_t(moved, Eigen::all);
+  VectorXd error = VectorXd::Zero(P_.rows());
+  error(moved) = -P_m * (inverse * g);
   if (!(misfit(sights, rows, error) < config_.max_misfit)) return false;
   correct(error);
-  P_ -= P_t * (inverse * H) * P_t.transpose();
+  P_(moved, moved) -= P_m * (inverse * H) * P_m.transpose();
   P_ = 0.5 * (P_ + P_.transpose().eval());
   return true;
 }
