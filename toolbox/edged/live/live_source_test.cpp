@@ -18,19 +18,6 @@ const QueueConfig kRoomy{.max_age_s = 3600, .max_megabytes = 4096, .max_imu_samp
 
 EventStorm breeze(int duration_ms) { return {"dvs", "camera", {64, 48}, 1e5, duration_ms}; }
 
-/// A storm whose recording ends in rubbish.
-class Broken : public Dataset {
- public:
-  const DatasetInfo& info() const override { return storm_.info(); }
-  std::optional<Measurement> next() override {
-    if (auto measurement = storm_.next()) return measurement;
-    throw InputError("imu.txt:7: rubbish");
-  }
-
- private:
-  EventStorm storm_ = breeze(20);
-};
-
 struct Counts {
   std::size_t events = 0, frames = 0, imu = 0;
 };
@@ -74,7 +61,7 @@ TEST(LiveSource, WhoIsTooSlowMissesTheOldestEventsAndNoImuSample) {
 }
 
 TEST(LiveSource, AnErrorOfTheRecordingComesAfterAllThatCameBeforeIt) {
-  Broken broken;
+  BrokenStorm broken(breeze(20), "imu.txt:7: rubbish");
   LiveSource source(broken, kRoomy, kNotInterrupted);
   std::size_t imu = 0;
   EXPECT_THROW(

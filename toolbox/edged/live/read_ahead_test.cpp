@@ -70,21 +70,8 @@ TEST(ReadAhead, WaitsForWhoIsSlowWithNoMoreThanIsAllowed) {
   EXPECT_GT(reader.reading().cpu_s().value_or(0.0), 0.0);
 }
 
-/// A storm whose recording ends in rubbish.
-class Torn : public Dataset {
- public:
-  const DatasetInfo& info() const override { return storm_.info(); }
-  std::optional<Measurement> next() override {
-    if (auto measurement = storm_.next()) return measurement;
-    throw InputError("events.raw: cut in the middle");
-  }
-
- private:
-  EventStorm storm_ = gust(20);
-};
-
 TEST(ReadAhead, AnErrorOfTheRecordingComesOnceAfterAllThatCameBefore) {
-  Torn torn;
+  BrokenStorm torn(gust(20), "events.raw: cut in the middle");
   ReadAhead reader(torn, kNarrow, WhenFull::Wait, kNobodyInterrupts);
   std::size_t count = 0;
   try {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 
+#include "edged/core/check.hpp"
 #include "edged/core/dataset.hpp"
 
 namespace edged {
@@ -66,6 +68,21 @@ class EventStorm : public Dataset {
   int duration_ms_;
   int ms_ = 0, turn_ = 0;
   std::uint64_t random_ = 1;
+};
+
+/// A storm whose recording ends in an error.
+class BrokenStorm : public Dataset {
+ public:
+  BrokenStorm(EventStorm storm, std::string error) : storm_(std::move(storm)), error_(std::move(error)) {}
+  const DatasetInfo& info() const override { return storm_.info(); }
+  std::optional<Measurement> next() override {
+    if (auto measurement = storm_.next()) return measurement;
+    throw InputError(error_);
+  }
+
+ private:
+  EventStorm storm_;
+  std::string error_;
 };
 
 }  // namespace edged
