@@ -19,6 +19,7 @@ class InterruptibleDataset final : public Dataset {
   explicit InterruptibleDataset(Dataset& inner) : inner_(inner) {}
   const DatasetInfo& info() const override { return inner_.info(); }
   std::optional<Measurement> next() override { return interrupt_signal() == 0 ? inner_.next() : std::nullopt; }
+  void leave_out(Modality unwanted) override { inner_.leave_out(unwanted); }
   std::optional<GroundTruth> ground_truth() const override { return inner_.ground_truth(); }
   std::map<std::string, std::size_t> repairs() const override { return inner_.repairs(); }
 

@@ -27,6 +27,8 @@ int run(RunOptions options) {
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);
+  for (const Modality modality : {Modality::Events, Modality::Frames})
+    if (!uses(mode, modality)) source.dataset->leave_out(modality);
   const RunSummary summary = Run(options, std::move(source), mode, config).go();
   fmt::print("{}", options.json ? json_text(to_json(summary)) + "\n" : to_table(summary));
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();

@@ -162,6 +162,11 @@ class Run(WithFlight):
         self.assertGreater(metrics["poses"], 0)
         self.assertTrue((out / "states.csv").read_text().endswith("\n"))
         self.assertIn("events.txt", (out / "run.log").read_text())
+        # Frames alone: nobody reads them.
+        frames = self.folder / "frames"
+        result = edged("run", damaged, "--mode", "frames", "--out", frames, "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads((frames / "metrics.json").read_text())["repairs"], {})
 
     def test_enhance_draws_every_step_and_a_sheet(self):
         result = edged("enhance", self.flight, "--at", "3", "--out", self.folder, "--quiet", "--set", "expert.enhance.erosion_px=3")

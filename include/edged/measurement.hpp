@@ -45,4 +45,7 @@ struct ImuSample {
 
 using Measurement = std::variant<EventBatch, Frame, ImuSample>;
 
+/// What a camera gives.
+enum class Modality { Events, Frames };
+
 }  // namespace edged

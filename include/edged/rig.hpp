@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/measurement.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 
@@ -118,8 +119,6 @@ class CameraModel {
 };
 
 std::string to_string(DistortionModel model);
-
-enum class Modality { Events, Frames };
 
 struct RigCamera {
   std::string name;

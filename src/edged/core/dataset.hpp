@@ -57,6 +57,10 @@ class Dataset {
   /// most a few milliseconds. Throws InputError for what cannot be repaired.
   virtual std::optional<Measurement> next() = 0;
 
+  /// Nobody wants these: from now on next() may leave them out, and so what it takes to decode them. Nothing else
+  /// changes but repairs(), which are those of what is read.
+  virtual void leave_out(Modality /*unwanted*/) {}
+
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
 
   /// Repairs made so far, by kind ("events out of order", "frame missing", ...) with their counts.

@@ -52,6 +52,12 @@ std::optional<Measurement> RecordingPiece::cut(Measurement measurement) {
   return events.empty() ? std::nullopt : std::optional(std::move(measurement));
 }
 
+/// Those are not waited for at the piece's end.
+void RecordingPiece::leave_out(Modality unwanted) {
+  whole_->leave_out(unwanted);
+  (unwanted == Modality::Events ? left_.events : left_.frames) = false;
+}
+
 std::optional<Measurement> RecordingPiece::next() {
   // The sensors' clocks may differ, so that one which is past the end says nothing of the others.
   while (!all_past()) {

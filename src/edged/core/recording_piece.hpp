@@ -25,6 +25,7 @@ class RecordingPiece final : public Dataset {
 
   const DatasetInfo& info() const override { return info_; }
   std::optional<Measurement> next() override;
+  void leave_out(Modality unwanted) override;
   std::optional<GroundTruth> ground_truth() const override;
   std::map<std::string, std::size_t> repairs() const override { return whole_->repairs(); }
 

@@ -24,6 +24,8 @@ class ASecond : public Dataset {
   }
   const DatasetInfo& info() const override { return info_; }
 
+  void leave_out(Modality unwanted) override { events_ &= unwanted != Modality::Events; }
+
   std::optional<Measurement> next() override {
     const int ms = 10 * (step_ / 3);
     if (ms > 1000) return std::nullopt;
@@ -32,6 +34,7 @@ class ASecond : public Dataset {
       case 0:
         return ImuSample{at_ms(ms), {0, 0, 0}, {0, 0, 9.81}};
       case 1: {
+        if (!events_) return next();
         EventBatch batch{"events", {}};
         for (int i = 0; i < 10; ++i) batch.events.push_back({at_ms(ms + i), 1, 2, true});
         return batch;
@@ -53,6 +56,7 @@ class ASecond : public Dataset {
  private:
   DatasetInfo info_;
   int step_ = 0;
+  bool events_ = true;
 };
 
 RecordingPiece piece(double from_s, std::optional<double> to_s, bool known_bounds = true) {
@@ -113,6 +117,15 @@ TEST(RecordingPiece, WithoutAnEndGoesToThatOfTheRecordingAndNoFarther) {
 TEST(RecordingPiece, ReadsNoFartherThanEverySensorsEnd) {
   RecordingPiece begin = piece(0.0, 0.1);
   count(begin);
+  EXPECT_LT(ASecond::read, 40);
+}
+
+TEST(RecordingPiece, DoesNotReadOnForTheEndOfWhatIsLeftOut) {
+  RecordingPiece begin = piece(0.0, 0.1);
+  begin.leave_out(Modality::Events);
+  const Counts counts = count(begin);
+  EXPECT_EQ(counts.events, 0);
+  EXPECT_EQ(counts.imu, 10);
   EXPECT_LT(ASecond::read, 40);
 }
 

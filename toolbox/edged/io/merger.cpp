@@ -110,6 +110,18 @@ void Merger::expect(const Streams& streams) {
   imu_pace_.expected = streams.imu;
 }
 
+void Merger::leave_out(Modality unwanted) {
+  if (unwanted == Modality::Events) {
+    events_.clear();
+    event_pace_ = {};
+  } else {
+    frames_.clear();
+    frame_pace_ = {};
+  }
+  // Its clock may have been ahead of the others'.
+  begin_ = newest_ = std::max({event_pace_.last, frame_pace_.last, imu_pace_.last});
+}
+
 void Merger::push(std::span<const Event> events) {
   events_.push(events);
   note(event_pace_, events_.last());

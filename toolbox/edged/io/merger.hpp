@@ -33,6 +33,8 @@ class ArrivalQueue {
   void push(std::span<const T> items);
   /// Nothing more will come.
   void finish();
+  /// What is held is not wanted.
+  void clear() { sorted_.clear(); }
 
   const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
   Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : sorted_.front().t; }
@@ -78,6 +80,9 @@ class Merger {
 
   /// Streams to wait for; before any push.
   void expect(const Streams& streams);
+
+  /// What has come of that stream is forgotten, and it is not waited for; none of it may be pushed any more.
+  void leave_out(Modality unwanted);
 
   void push(std::span<const Event> events);
   void push(Frame frame);

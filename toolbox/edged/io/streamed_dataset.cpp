@@ -46,6 +46,14 @@ void StreamedDataset::begin(const Merger::Streams& expected) {
 
 std::optional<Measurement> StreamedDataset::next() { return first_ ? std::exchange(first_, std::nullopt) : merged(); }
 
+void StreamedDataset::leave_out(Modality unwanted) {
+  left_out_.insert(unwanted);
+  merger_.leave_out(unwanted);
+  const bool events = unwanted == Modality::Events;
+  if (first_ && (events ? std::holds_alternative<EventBatch>(*first_) : std::holds_alternative<Frame>(*first_)))
+    first_.reset();
+}
+
 std::optional<Measurement> StreamedDataset::merged() {
   while (true) {
     if (auto measurement = merger_.pop()) return measurement;
@@ -56,6 +64,7 @@ std::optional<Measurement> StreamedDataset::merged() {
 }
 
 void StreamedDataset::push_events(std::span<const Event> events) {
+  if (!wants(Modality::Events)) return;
   const cv::Size size = info_.event_sensor;
   const auto outside = [size](const Event& e) { return e.x >= size.width || e.y >= size.height; };
   if (size.empty() || std::ranges::none_of(events, outside)) {
@@ -70,6 +79,7 @@ void StreamedDataset::push_events(std::span<const Event> events) {
 }
 
 void StreamedDataset::push_frame(Timestamp t, cv::Mat image) {
+  if (!wants(Modality::Frames)) return;
   if (image_size_.empty()) image_size_ = image.size();
   if (image.size() != image_size_) throw Damage("an image of another size");
   merger_.push(Frame{t, "frames", std::move(image)});

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <set>
 #include <span>
 
 #include "edged/core/dataset.hpp"
@@ -19,6 +20,7 @@ class StreamedDataset : public Dataset {
  public:
   const DatasetInfo& info() const final { return info_; }
   std::optional<Measurement> next() final;
+  void leave_out(Modality unwanted) final;
   std::map<std::string, std::size_t> repairs() const final { return repairs_.counts(); }
 
  protected:
@@ -31,6 +33,9 @@ class StreamedDataset : public Dataset {
 
   /// Pushes what comes next, any amount of it. False at the end.
   virtual bool read_on() = 0;
+
+  /// False: what is pushed of these is passed over, and a reader saves itself the decoding. The IMU is wanted always.
+  bool wants(std::optional<Modality> modality) const { return !modality || !left_out_.contains(*modality); }
 
   /// The size of the event sensor [px] once it is known; without one no pixel is outside.
   void set_sensor(cv::Size size) { info_.event_sensor = size; }
@@ -55,6 +60,7 @@ class StreamedDataset : public Dataset {
   cv::Size image_size_;  ///< of the first image
   std::size_t inside_ = 0, outside_ = 0;
   bool finished_ = false;
+  std::set<Modality> left_out_;
   std::optional<Measurement> first_;  ///< read for the begin
 };
 

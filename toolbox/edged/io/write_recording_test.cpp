@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
@@ -38,6 +39,29 @@ TEST_P(WritableFormats, GiveBackEveryEventAndWhatElseTheyHold) {
   EXPECT_EQ(counts.imu + counts.imu_left_out, a.imu.size());
   for (std::size_t i = 0; i < b.frames.size(); ++i)
     EXPECT_EQ(cv::norm(a.frames[i].image, b.frames[i].image, cv::NORM_INF), 0.0);
+}
+
+TEST_P(WritableFormats, LeaveOutWhatIsNotWantedAndGiveTheRestAsEver) {
+  ListedDataset source = random_dataset(GetParam().tick);
+  write(source);
+  const Contents all = read_back();
+  const auto stamps = [](const std::vector<ImuSample>& samples) {
+    std::vector<Timestamp> out;
+    for (const ImuSample& sample : samples) out.push_back(sample.t);
+    return out;
+  };
+  for (const Modality unwanted : {Modality::Events, Modality::Frames}) {
+    const Recording recording = open_recording(target());
+    const DatasetInfo info = recording.dataset->info();
+    recording.dataset->leave_out(unwanted);
+    EXPECT_EQ(recording.dataset->info().begin, info.begin);
+    EXPECT_EQ(recording.dataset->info().has_events, info.has_events);
+    const Contents rest = read_all(*recording.dataset);
+    EXPECT_EQ(rest.events.size(), unwanted == Modality::Events ? 0U : all.events.size());
+    EXPECT_EQ(rest.frames.size(), unwanted == Modality::Frames ? 0U : all.frames.size());
+    EXPECT_EQ(stamps(rest.imu), stamps(all.imu));
+    EXPECT_TRUE(std::ranges::is_sorted(rest.all, {}, [](const Measurement& m) { return *first_stamp(m); }));
+  }
 }
 
 /// Those that nothing but events fits into cannot be run by themselves.

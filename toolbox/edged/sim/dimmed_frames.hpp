@@ -19,6 +19,7 @@ class DimmedFrames final : public Dataset {
 
   const DatasetInfo& info() const override { return bright_->info(); }
   std::optional<Measurement> next() override;
+  void leave_out(Modality unwanted) override { bright_->leave_out(unwanted); }
   std::optional<GroundTruth> ground_truth() const override { return bright_->ground_truth(); }
   std::map<std::string, std::size_t> repairs() const override { return bright_->repairs(); }
 

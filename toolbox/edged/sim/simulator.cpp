@@ -217,8 +217,9 @@ void Simulator::advance() {
   const float light = static_cast<float>(config_.disturbance.light(to_seconds(t)));
   if (light != 1.0F)
     for (float& radiance : radiance_) radiance *= light;
-  for (const Event& event : event_camera_.update(t, radiance_, storm_hz()))
-    if (!disturbed(DisturbanceKind::EventsMissing, event.t)) events_.push_back(event);
+  if (wants_events_)
+    for (const Event& event : event_camera_.update(t, radiance_, storm_hz()))
+      if (!disturbed(DisturbanceKind::EventsMissing, event.t)) events_.push_back(event);
   if (t_) collect_light(*t_, t);
   t_ = t;
 }

@@ -70,6 +70,8 @@ class Simulator : public Dataset {
 
   const DatasetInfo& info() const override { return info_; }
   std::optional<Measurement> next() override;
+  /// Of events alone: frames cost little beside the pictures.
+  void leave_out(Modality unwanted) override { wants_events_ &= unwanted != Modality::Events; }
   /// T_W_B at 200 Hz, stamps on the IMU's clock.
   std::optional<GroundTruth> ground_truth() const override;
 
@@ -116,6 +118,7 @@ class Simulator : public Dataset {
   std::deque<Frame> frames_;
   std::optional<ImuSample> imu_;  // the next one
   std::size_t renderings_ = 0;
+  bool wants_events_ = true;
 };
 
 }  // namespace edged

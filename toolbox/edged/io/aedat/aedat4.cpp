@@ -94,7 +94,8 @@ class Aedat4File final : public Aedat4Dataset {
     last_at_ = at_;
     at_ = body_at + head->bytes;
     for (const Role role : {Role::Events, Role::Frames, Role::Imu})
-      if (const auto chosen = choice_.of(role); chosen && header_.streams[*chosen].number == head->stream)
+      if (const auto chosen = choice_.of(role);
+          chosen && header_.streams[*chosen].number == head->stream && wants(modality_of(role)))
         take_packet(role, header_.compression, file_.read(body_at, head->bytes), fmt::format("at byte {}", body_at));
     return true;
   }

@@ -122,7 +122,7 @@ class Aedat4Live final : public Aedat4Dataset {
       const std::size_t body = at + kLiveHeadBytes, size = static_cast<std::size_t>(bytes);
       if (received.size() - body < size) break;
       for (const auto& [wanted, role] : stream.roles)
-        if (wanted == number)
+        if (wanted == number && wants(modality_of(role)))
           take_packet(role, stream.header.compression, received.subspan(body, size),
                       fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection.name()));
       at = body + size;

@@ -187,7 +187,7 @@ class Hdf5Dataset final : public StreamedDataset {
     constexpr std::uint64_t kSmallestPart = 1024;
     const auto refill = [this, shared = std::make_shared<H5Events>(std::move(events)),
                          at = std::uint64_t{0}](std::vector<Event>& items) mutable {
-      if (at == shared->rows()) return false;
+      if (at == shared->rows() || !wants(Modality::Events)) return false;
       const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
       read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
         std::vector<Event> read = shared->read(first, n);
@@ -204,7 +204,7 @@ class Hdf5Dataset final : public StreamedDataset {
     const auto shared = std::make_shared<H5Images>(std::move(images));
     const std::uint64_t rows = std::min(shared->pixels.rows(), shared->stamps.rows());
     sources_.push_back({[this, shared, rows, cut, at = std::uint64_t{0}](Timestamp& reached) mutable {
-      if (at == rows) return false;
+      if (at == rows || !wants(Modality::Frames)) return false;
       read_parts(at++, 1, 1, "frames", [&](std::uint64_t row, std::uint64_t) {
         const Timestamp t = shared->stamps.read(row, 1).front();
         if (!is_stamp(t, "frames")) return;
@@ -218,7 +218,7 @@ class Hdf5Dataset final : public StreamedDataset {
   void add_image_files(const StampedLines<FrameEntry>::Spec& spec) {
     const auto lines = std::make_shared<StampedLines<FrameEntry>>(spec, repairs_);
     sources_.push_back({[this, lines](Timestamp& reached) {
-      if (!lines->peek()) return false;
+      if (!lines->peek() || !wants(Modality::Frames)) return false;
       const FrameEntry entry = lines->pop();
       reached = entry.t;
       try {

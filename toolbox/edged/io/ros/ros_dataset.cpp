@@ -61,6 +61,7 @@ void RosDataset::feed(const Message& message) {
   const auto role = std::ranges::find(choice_.topics, std::optional(message.topic));
   if (role == choice_.topics.end()) return;
   const auto index = static_cast<std::size_t>(role - choice_.topics.begin());
+  if (!wants(modality_of(static_cast<Role>(index)))) return;
   const std::string& type = source_->topics()[message.topic].type;
   try {
     const WireReader reader(source_->wire(), message.data);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "edged/io/ros/message_source.hpp"
+#include "edged/measurement.hpp"
 
 namespace edged {
 
@@ -17,6 +18,12 @@ inline constexpr std::array<const char*, 4> kRoleNames = {"events", "frames", "i
 
 /// Of messages of that type ("dvs_msgs/EventArray"); nothing for what is of no use here.
 std::optional<Role> role_of(const std::string& type);
+
+/// Of the roles that are cameras.
+constexpr std::optional<Modality> modality_of(Role role) {
+  if (role == Role::Events) return Modality::Events;
+  return role == Role::Frames ? std::optional(Modality::Frames) : std::nullopt;
+}
 
 /// Roles by name with the topic the user wants, or "none".
 using WantedTopics = std::map<std::string, std::string>;

@@ -49,6 +49,7 @@ class RecordingWithImu final : public Dataset {
   }
 
   const DatasetInfo& info() const override { return info_; }
+  void leave_out(Modality unwanted) override { recording_->leave_out(unwanted); }
   std::optional<GroundTruth> ground_truth() const override { return recording_->ground_truth(); }
 
   std::optional<Measurement> next() override {

@@ -92,6 +92,14 @@ std::optional<Measurement> TextDataset::next() {
   }
 }
 
+void TextDataset::leave_out(Modality unwanted) {
+  if (unwanted == Modality::Events) {
+    events_.reset();
+  } else {
+    frames_.reset();
+  }
+}
+
 std::optional<Frame> TextDataset::load(const FrameEntry& entry) {
   const auto skip = [&](const std::string& kind) {
     repairs_.add("frames: " + kind, entry.image.string() + ": " + kind);

@@ -53,6 +53,7 @@ class TextDataset final : public Dataset {
 
   const DatasetInfo& info() const override { return layout_.info; }
   std::optional<Measurement> next() override;
+  void leave_out(Modality unwanted) override;
   std::optional<GroundTruth> ground_truth() const override;
   std::map<std::string, std::size_t> repairs() const override;
 
