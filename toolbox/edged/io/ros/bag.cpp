@@ -98,6 +98,7 @@ bool Bag::load_record() {
   const auto op = fields.number<std::uint8_t>("op");
   go_to(record.end());
   if (op != kBagChunk && op != kBagMessage && op != kBagConnection) return false;
+  if (op == kBagChunk && !is_of_use(begin)) return false;
   if (record.size > kLargestChunk) throw Damage("record too long");
   const bool cut = record.end() > file().size();
   if (cut) repair("cut", "the file ends within a record");
@@ -136,15 +137,17 @@ void Bag::add_connection(const BagFields& header, ByteSpan data) {
 
 /// Where a chunk is, from when to when, and how many messages it has of each connection.
 void Bag::add_chunk_info(const BagFields& header, ByteSpan data) {
-  add_chunk_place(header.number<std::uint64_t>("chunk_pos"));
   extend(header.time("start_time"));
   extend(header.time("end_time"));
+  std::vector<std::size_t> topics;
   ByteReader counts(data);
   for (auto left = header.number<std::uint32_t>("count"); left > 0; --left) {
     const auto connection = topic_of_connection_.find(counts.number<std::uint32_t>());
     if (connection == topic_of_connection_.end()) throw Damage("unknown connection");
     count_messages(connection->second, counts.number<std::uint32_t>());
+    topics.push_back(connection->second);
   }
+  add_chunk(header.number<std::uint64_t>("chunk_pos"), std::move(topics));
 }
 
 }  // namespace edged

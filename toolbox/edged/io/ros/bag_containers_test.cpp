@@ -8,6 +8,7 @@
 
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
+#include "edged/io/ros/open_messages.hpp"
 
 namespace edged {
 namespace {
@@ -95,8 +96,49 @@ TEST_P(BagContainers, FlippedBitsAreRefusedOrMended) {
   EXPECT_GT(read_events, bag.events.size() * kRounds / 2);
 }
 
+/// The messages of a topic, whole, and what had to be repaired for them.
+std::vector<std::string> messages_of(const fs::path& file, std::size_t topic, bool alone, Repairs& repairs) {
+  std::vector<std::string> found;
+  const auto source = open_messages(file, &repairs);
+  while (const auto message = alone ? source->next_of(topic) : source->next())
+    if (message->topic == topic) found.emplace_back(as_text(message->data));
+  return found;
+}
+
+TEST_P(BagContainers, GiveTheMessagesOfOneTopicAlone) {
+  SmallBag bag = small_bag();
+  auto& poses = bag.topics[3].messages;
+  poses.erase(poses.begin(), poses.end() - 3);  // which begin late
+  const fs::path file = write(bag);
+  Repairs repairs;
+  for (std::size_t topic = 0; topic < bag.topics.size(); ++topic) {
+    const std::vector<std::string> alone = messages_of(file, topic, true, repairs);
+    EXPECT_EQ(alone.size(), bag.topics[topic].messages.size());
+    EXPECT_EQ(alone, messages_of(file, topic, false, repairs));
+  }
+  EXPECT_TRUE(repairs.counts().empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(All, BagContainers, ::testing::ValuesIn(kBagContainers),
                          [](const auto& test) { return std::string(test.param.name); });
+
+/// Their damage would be counted.
+TEST(BagContainer, OfOneTopicAloneChunksWithoutItAreNotRead) {
+  for (const BagContainer& container : {kBagContainers[1], kBagContainers[3]}) {
+    TempFolder folder;
+    SmallBag bag(container.make(folder.path() / "unused")->wire());
+    auto& poses = bag.topics[3].messages;
+    poses.erase(poses.begin(), poses.end() - 3);
+    std::string text = read_text(write_bag(folder, container, bag.topics));
+    text[text.size() / 4] = static_cast<char>(text[text.size() / 4] ^ 0x55);
+    const fs::path damaged = folder.write("damaged", text);
+    Repairs of_all, of_poses;
+    messages_of(damaged, 3, false, of_all);
+    EXPECT_EQ(messages_of(damaged, 3, true, of_poses).size(), 3U);
+    EXPECT_FALSE(of_all.counts().empty()) << container.name;
+    EXPECT_TRUE(of_poses.counts().empty()) << container.name;
+  }
+}
 
 TEST(BagContainer, ARos1BagThatWasNeverFinishedIsReadThrough) {
   TempFolder folder;

@@ -50,4 +50,15 @@ std::optional<Message> BagFolder::next() {
   return std::nullopt;
 }
 
+std::optional<Message> BagFolder::next_of(std::size_t topic) {
+  for (; current_ < parts_.size(); ++current_) {
+    const Part& part = parts_[current_];
+    const auto own = std::ranges::find(part.topics, topic);
+    if (own == part.topics.end()) continue;
+    if (const auto message = part.source->next_of(static_cast<std::size_t>(own - part.topics.begin())))
+      return Message{topic, message->data};
+  }
+  return std::nullopt;
+}
+
 }  // namespace edged

@@ -23,6 +23,7 @@ class BagFolder final : public MessageSource {
   const std::vector<Topic>& topics() const override { return topics_; }
   Duration length() const override;
   std::optional<Message> next() override;
+  std::optional<Message> next_of(std::size_t topic) override;
 
  private:
   struct Part {

@@ -53,8 +53,7 @@ void Mcap::read_index() {
       take_statistics(record);
       counted = true;
     } else if (op == kMcapChunkIndex) {
-      record.take(8 + 8);  // from when to when
-      add_chunk_place(record.number<std::uint64_t>());
+      take_chunk_index(record);
     }
   }
   if (!counted) throw Damage("no counts");
@@ -69,6 +68,20 @@ void Mcap::take_statistics(ByteReader& record) {
     const auto count = record.number<std::uint64_t>();
     if (channel != topic_of_channel_.end()) count_messages(channel->second, count);
   }
+}
+
+void Mcap::take_chunk_index(ByteReader& record) {
+  record.take(8 + 8);  // from when to when
+  const auto place = record.number<std::uint64_t>();
+  record.take(8);  // its length
+  std::vector<std::size_t> topics;
+  for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
+    const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+    record.take(8);                                                       // where its messages are listed
+    if (channel == topic_of_channel_.end()) return add_chunk(place, {});  // it may be described later
+    topics.push_back(channel->second);
+  }
+  add_chunk(place, std::move(topics));
 }
 
 void Mcap::forget() {
@@ -89,7 +102,7 @@ bool Mcap::load_record() {
   }
   if (size > kLargestRecord) throw Damage("record too long");
   go_to(begin + kRecordHead + size);
-  if (op > kMcapChunk) return false;
+  if (op > kMcapChunk || (op == kMcapChunk && !is_of_use(begin))) return false;
   if (at() > file().size()) repair("cut", "the file ends within a record");
   Bytes record = file().read(begin, static_cast<std::size_t>(kRecordHead + size));
   if (op == kMcapChunk) {

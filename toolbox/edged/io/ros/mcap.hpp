@@ -25,6 +25,7 @@ class Mcap final : public RecordSource {
   void load_chunk(ByteReader chunk);
   bool take_description(std::uint8_t op, ByteReader& record);
   void take_statistics(ByteReader& record);
+  void take_chunk_index(ByteReader& record);
 
   Wire wire_ = Wire::Cdr;
   struct Schema {

@@ -6,6 +6,12 @@
 
 namespace edged {
 
+std::optional<Message> MessageSource::next_of(std::size_t topic) {
+  std::optional<Message> message = next();
+  while (message && message->topic != topic) message = next();
+  return message;
+}
+
 std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
                         std::string_view definition) {
   std::string short_type(type);

@@ -37,6 +37,8 @@ class MessageSource {
   /// From the first to the last message, by the recorder's clock.
   virtual Duration length() const = 0;
   virtual std::optional<Message> next() = 0;
+  /// The next of that topic alone. What lies before it is not read, as far as an index tells that.
+  virtual std::optional<Message> next_of(std::size_t topic);
 };
 
 /// Index of the topic of that name and type, which is added where it is new. "pkg/msg/Name" becomes "pkg/Name".

@@ -16,7 +16,6 @@ void RecordSource::find_topics() {
   bool indexed = true;
   try {
     read_index();
-    std::ranges::sort(chunk_places_);
   } catch (const Damage&) {
     indexed = false;
   }
@@ -27,7 +26,7 @@ void RecordSource::find_topics() {
 
 void RecordSource::read_through() {
   topics_.clear();
-  chunk_places_.clear();
+  chunks_.clear();
   first_ = Timestamp::max(), last_ = Timestamp::min();
   forget();
   repair("no index",
@@ -54,6 +53,19 @@ std::optional<Message> RecordSource::next() {
   return std::nullopt;
 }
 
+std::optional<Message> RecordSource::next_of(std::size_t topic) {
+  sought_ = topic;
+  std::optional<Message> message = MessageSource::next_of(topic);
+  sought_.reset();
+  return message;
+}
+
+bool RecordSource::is_of_use(std::uint64_t chunk) const {
+  const auto found = chunks_.find(chunk);
+  if (!sought_ || found == chunks_.end() || found->second.empty()) return true;
+  return std::ranges::find(found->second, *sought_) != found->second.end();
+}
+
 bool RecordSource::load_next_record() {
   while (at_ < file_.size()) {
     const std::uint64_t begin = at_;
@@ -61,8 +73,8 @@ bool RecordSource::load_next_record() {
       if (load_record()) return true;
     } catch (const Damage& damage) {
       repair("record damaged", fmt::format("byte {}: {}", begin, damage.what()));
-      const auto next_chunk = std::ranges::upper_bound(chunk_places_, begin);
-      at_ = next_chunk == chunk_places_.end() ? file_.size() : *next_chunk;
+      const auto next_chunk = chunks_.upper_bound(begin);
+      at_ = next_chunk == chunks_.end() ? file_.size() : next_chunk->first;
       load({});
     }
   }

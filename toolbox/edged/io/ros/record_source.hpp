@@ -3,6 +3,9 @@
 // What ROS 1 bags and MCAP files have in common.
 #pragma once
 
+#include <map>
+#include <utility>
+
 #include "edged/io/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
@@ -15,6 +18,7 @@ class RecordSource : public MessageSource {
   const std::vector<Topic>& topics() const final { return topics_; }
   Duration length() const final { return last_ > first_ ? last_ - first_ : Duration(0); }
   std::optional<Message> next() final;
+  std::optional<Message> next_of(std::size_t topic) final;
 
  protected:
   /// first_record: its offset, behind the magic bytes.
@@ -43,7 +47,10 @@ class RecordSource : public MessageSource {
   /// Index of the topic with that name and type.
   std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition);
   void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
-  void add_chunk_place(std::uint64_t place) { chunk_places_.push_back(place); }
+  /// topics: of its messages; empty where the index does not tell.
+  void add_chunk(std::uint64_t place, std::vector<std::size_t> topics) { chunks_[place] = std::move(topics); }
+  /// False: a chunk without a message of the topic that is looked for.
+  bool is_of_use(std::uint64_t chunk) const;
   void extend(Timestamp t);
   void repair(const std::string& kind, const std::string& detail);
 
@@ -57,7 +64,9 @@ class RecordSource : public MessageSource {
   std::uint64_t first_record_;
   Repairs* repairs_;
   std::vector<Topic> topics_;
-  std::vector<std::uint64_t> chunk_places_;  ///< of the index, rising: where reading goes on after damage
+  /// Of the index, by their place: where reading goes on after damage, and which topics are in each.
+  std::map<std::uint64_t, std::vector<std::size_t>> chunks_;
+  std::optional<std::size_t> sought_;  ///< the only topic that is of use, at present
   Timestamp first_ = Timestamp::max(), last_ = Timestamp::min();
   std::uint64_t at_ = 0;  ///< next record of the file
   Bytes records_;         ///< those being read

@@ -39,8 +39,7 @@ std::string RosDataset::truth_frame() const {
   const auto topic = choice_.of(Role::Truth);
   if (!topic || source_->topics()[*topic].type == kPlainPoses) return "body";
   const auto source = open_messages(name_, nullptr);
-  while (const auto message = source->next()) {
-    if (message->topic != *topic) continue;
+  while (const auto message = source->next_of(*topic)) {
     try {
       const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
       return std::string(named.frame == "events" || named.frame == "frames" ? named.frame : "body");
@@ -126,8 +125,7 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
   const bool plain = source_->topics()[*topic].type == kPlainPoses;
   GroundTruth truth{{}, info_.pose_frame};
   Trajectory& poses = truth.trajectory;
-  while (const auto message = source->next()) {
-    if (message->topic != *topic) continue;
+  while (const auto message = source->next_of(*topic)) {
     try {
       const WireReader reader(source->wire(), message->data);
       if (plain) {

@@ -37,8 +37,8 @@ class ScratchFolder {
 
 }  // namespace
 
-std::optional<Message> UnpackedSource::next() {
-  while (const auto message = packed_->next()) {
+std::optional<Message> UnpackedSource::unpack(const std::function<std::optional<Message>()>& next) {
+  while (const auto message = next()) {
     if (!as_text(message->data).starts_with(kZstdMagic)) return message;
     Decompressed unpacked = decompress("zstd", message->data, kLargestMessage);
     message_ = std::move(unpacked.bytes);

@@ -24,9 +24,17 @@ class UnpackedSource final : public MessageSource {
   Wire wire() const override { return packed_->wire(); }
   const std::vector<Topic>& topics() const override { return packed_->topics(); }
   Duration length() const override { return packed_->length(); }
-  std::optional<Message> next() override;
+  std::optional<Message> next() override {
+    return unpack([this] { return packed_->next(); });
+  }
+  std::optional<Message> next_of(std::size_t topic) override {
+    return unpack([this, topic] { return packed_->next_of(topic); });
+  }
 
  private:
+  /// The next of those that can be unpacked.
+  std::optional<Message> unpack(const std::function<std::optional<Message>()>& next);
+
   std::unique_ptr<MessageSource> packed_;
   std::string name_;
   Repairs* repairs_;
