@@ -44,7 +44,7 @@ std::string contradiction(const CalibrationFound& c, const Offset& rotation, con
   if (rotation.off())
     text += fmt::format("{}its rotation to the IMU is {:.1f} deg +- {:.1f} deg off; {}", text.empty() ? "" : ", and ",
                         rotation.value, rotation.sigma,
-                        c.inverse  ? "its inverse fits: the transform points the other way, write it as T_C_B"
+                        c.inverse  ? fmt::format("its inverse fits: {}", kTurnRound)
                         : c.beyond ? "calibrate camera and IMU anew"
                                    : "--out FILE writes the one that was found");
   return text;

@@ -42,9 +42,6 @@ std::string doctor_command(const SourceOptions& source) {
   return command;
 }
 
-constexpr const char* kTurnRound =
-    "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B";
-
 /// What it found is a finding only where the calibration is wrong by more than the estimate may be.
 void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
   constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // below these it costs nothing

@@ -260,7 +260,7 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
                   error.degrees, about.x(), about.y(), about.z());
   const std::string text = fmt::format("{}: its rotation to the IMU contradicts the gyro by {}", name, number);
   if (inverse_fits(given, error, found))
-    out.error(text + ", the inverse fits", "the transform points the other way: `edged calib` shows both directions");
+    out.error(text + ", the inverse fits", kTurnRound);
   else if (error.degrees < kWrong_deg)
     out.warn(text, remedy + "; or calibrate again");
   else

@@ -25,6 +25,11 @@ struct Finding {
   std::string remedy;  ///< what to do; empty where nothing is
 };
 
+/// What to do about a camera whose inverse transform fits, whoever found that.
+inline constexpr const char* kTurnRound =
+    "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B "
+    "(`edged calib` shows both directions)";
+
 /// What a camera and the gyro say of each other.
 struct CameraCheck {
   RigCamera camera;  ///< as calibrated
