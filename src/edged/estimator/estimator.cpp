@@ -22,8 +22,7 @@ constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so
 // itself.
 constexpr double kContradicted = 0.65;
 constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
-// Of its sigmas: a start takes the errors of a track for independent, which they are not.
-constexpr double kStartSigmaInflation = 2.5;
+constexpr double kStartSigmaInflation = 1.5;  // of what a start has been told since
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
 constexpr double kMaxStandstillSpeed = 0.15;
 // [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
@@ -103,16 +102,10 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
                            : fmt::format("in motion: scale known to {:.1f} %, speed {:.2f} m/s", 100.0 * scale_sigma_,
                                          newest().v_W.norm());
   initialized_ = result.new_frame = true;
-  if (!provisional()) leave_start();
+  if (!provisional()) window_.free_calibration(config_.calibration);
   result.provisional = provisional();
   slide();
   return true;
-}
-
-/// The start holds calibrations, and takes the errors of a track for independent, as its thresholds do.
-void Estimator::leave_start() {
-  window_.free_calibration(config_.calibration);
-  window_.set_track_noise(config_.track_noise);
 }
 
 /// What a provisional start has seen since may have told it the scale.
@@ -120,7 +113,7 @@ void Estimator::settle_scale(const EstimatorInput& input) {
   if (!provisional() || !input.keyframe) return;
   scale_sigma_ = std::min(scale_sigma_, kStartSigmaInflation * scale_sigma(window_));
   agreed_ = agreed_ || input.t >= agreed_by_itself_;
-  if (!provisional()) leave_start();
+  if (!provisional()) window_.free_calibration(config_.calibration);
 }
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {

@@ -62,7 +62,6 @@ class Estimator {
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
-  void leave_start();
   void settle_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);

@@ -25,8 +25,8 @@ constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: calm is n
 constexpr double kMaxFreeGravityError = 0.3;  // of a start in motion, when gravity's length is left free
 constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
 constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's observations: more is a wrong start
-// The start-up window takes the errors of a track for independent: their noise over the spread of the residuals, and
-// the least of it over the configured one.
+// The noise of the start-up window's observations over the spread of their residuals, and the least of it over the
+// configured one.
 constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
 constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias by itself makes it 0.9
 constexpr double kMaxBiasSigmas = 4.0;     // of the accelerometer bias
@@ -150,13 +150,19 @@ void Initializer::make_room() {
   buffer_.erase(buffer_.begin() + static_cast<std::ptrdiff_t>(leaves));
 }
 
+Window Initializer::empty_window() const {
+  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
+  window.set_track_noise(config_.track_noise);
+  return window;
+}
+
 Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const {
   NavState state;
   state.t = input.t;
   state.T_W_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
+  Window window = empty_window();
   const StateId id =
       window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true), input.observations);
   const WindowState& first = window.newest();
@@ -245,7 +251,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
 
 /// The buffer's views as keyframes where the alignment puts them.
 Window Initializer::aligned_window(const Alignment& alignment) const {
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
+  Window window = empty_window();
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const NavState& nav = alignment.states[i];
     Preintegration imu =

@@ -50,6 +50,7 @@ class Initializer {
  private:
   bool buffer_view(const EstimatorInput& input);
   bool view_due(const EstimatorInput& input) const;
+  Window empty_window() const;
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
   void make_room();
   StartResult start_in_motion(double most_scale_sigma, const NavState* running);

@@ -123,7 +123,7 @@ class Window {
   void set_noise_scale(std::size_t camera, double scale) { cameras_.at(camera).noise_scale = scale; }
   /// Multiplies the sigmas of all that the camera has seen, and of what it will see.
   void rescale_noise(std::size_t camera, double factor);
-  /// Errors along a track are taken for independent until this.
+  /// Without it errors along a track are independent.
   void set_track_noise(const TrackNoise& noise) { track_noise_ = noise; }
   /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a
   /// turned camera looks like another scale.

@@ -218,7 +218,8 @@ void PacketOdometry::track(const ChannelView& view, Timestamp t, double scene_de
   TrackPrediction prediction;
   prediction.scene_depth = scene_depth;
   prediction.depth = [this](FeatureId id) { return estimator_.initialized() ? estimator_.depth(id) : std::nullopt; };
-  // The start takes the errors of a track for independent, as its thresholds do: against one look they are not.
+  // Against one look all errors of a track hang together, and the thresholds of a start do not know that: with events
+  // alone 3 of 72 starts are wrong by their scale, 1 without.
   prediction.first_looks = !estimator_.provisional();
   channel.track(view.track, t, T_W_B_of(channel), std::move(prediction));
 }
