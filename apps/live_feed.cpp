@@ -62,7 +62,7 @@ nlohmann::ordered_json progress_json(const RunProgress& progress) {
           {"keyframes", s.keyframes()},
           {"packets", s.packets()},
           {"coverage", s.coverage()},
-          {"first_good_s", s.first_good_s() ? nlohmann::ordered_json(*s.first_good_s()) : nullptr},
+          {"first_good_s", s.first_good_s() ? nlohmann::ordered_json(*s.first_good_s()) : nlohmann::ordered_json()},
           {"times_lost", s.times_lost()},
           {"duration_s", span},
           {"real_time_factor", progress.wall_s > 0.0 ? span / progress.wall_s : 0.0}};

@@ -47,7 +47,7 @@ nlohmann::ordered_json about_run(const Source& source, Mode mode, const OutputFr
           {"format", info.format},
           {"mode", mode_name(mode)},
           {"frame", frame.name()},
-          {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nullptr}};
+          {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
 }
 
 std::string options_text(RunConfig config) { return ConfigFields::of(config).to_yaml(); }

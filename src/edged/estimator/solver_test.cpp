@@ -3,9 +3,7 @@
 // The window's solver against Ceres, on the same terms.
 #include "edged/estimator/solver.hpp"
 
-#include <ceres/manifold.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
+#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
 #include "edged/estimator/cost.hpp"
@@ -17,7 +15,10 @@
 namespace edged {
 namespace {
 
-/// p' = p + d_p, q' = q * Exp(d_phi); derivatives by the tangent stand in the first six columns.
+// p' = p + d_p, q' = q * Exp(d_phi); derivatives by the tangent stand in the first six columns.
+#if CERES_VERSION_MAJOR * 100 + CERES_VERSION_MINOR >= 201
+constexpr auto kManifoldOwnership = &ceres::Problem::Options::manifold_ownership;
+
 class PoseManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }
@@ -40,6 +41,24 @@ class PoseManifold final : public ceres::Manifold {
     return true;
   }
 };
+#else  // Ceres 2.0, that of Ubuntu 22.04
+constexpr auto kManifoldOwnership = &ceres::Problem::Options::local_parameterization_ownership;
+
+class PoseManifold final : public ceres::LocalParameterization {
+ public:
+  int GlobalSize() const override { return 7; }
+  int LocalSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    std::copy_n(x, 7, x_plus_delta);
+    plus(BlockKind::Pose, x_plus_delta, delta);
+    return true;
+  }
+  bool ComputeJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>>{jacobian}.setIdentity();
+    return true;
+  }
+};
+#endif
 
 /// The window's blocks, for Ceres to change.
 class CeresBlocks {
@@ -86,7 +105,7 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
   PoseManifold manifold;
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.*kManifoldOwnership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
   for (const auto& [id, state] : window.states()) {
     problem.AddParameterBlock(all.at({BlockKind::Pose, id}), 7, &manifold);

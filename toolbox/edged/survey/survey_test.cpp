@@ -118,7 +118,7 @@ TEST(ImuSurveyor, SaysNothingOfNoiseFromTooFewSamples) {
 }
 
 TEST(EventSurveyor, SurvivesAnySensorAndOneEvent) {
-  for (const cv::Size sensor : {cv::Size(), cv::Size(1, 1), cv::Size(65536, 65536), cv::Size(346, 8388868)}) {
+  for (const cv::Size& sensor : {cv::Size(), cv::Size(1, 1), cv::Size(65536, 65536), cv::Size(346, 8388868)}) {
     EventSurveyor surveyor(sensor);
     EXPECT_EQ(surveyor.result().extent, cv::Size());
     const std::vector<Event> one{{at(1), 65535, 65535, true}, {at(1), 0, 0, true}};
@@ -144,7 +144,7 @@ TEST(EventSurveyor, FindsHotPixelsSlowerThanTheSceneAndNoOthers) {
   for (const auto& [x, y, hz] : {std::tuple(10, 10, 25.0), std::tuple(11, 10, 40.0), std::tuple(50, 20, 200.0)})
     fire(x, y, 0.0, 10.0, hz);
   std::ranges::sort(events, {}, &Event::t);
-  for (const cv::Size sensor : {cv::Size(64, 48), cv::Size()}) {
+  for (const cv::Size& sensor : {cv::Size(64, 48), cv::Size()}) {
     EventSurveyor surveyor(sensor);
     surveyor.add(events);
     const EventSurvey survey = surveyor.result();

@@ -104,9 +104,12 @@ class Aedat4File final : public Aedat4Dataset {
   bool go_on_behind_damage() {
     auto listed = std::ranges::upper_bound(packets_at_, last_at_);
     if (listed != packets_at_.end() && *listed == at_) ++listed;
-    const auto next = listed != packets_at_.end() ? std::optional(*listed)
-                      : packets_at_.empty()       ? search_packet(std::max(last_at_ + 1, searched_to_))
-                                                  : std::nullopt;
+    std::optional<std::uint64_t> next;
+    if (packets_at_.empty()) {
+      next = search_packet(std::max(last_at_ + 1, searched_to_));
+    } else if (listed != packets_at_.end()) {
+      next = *listed;
+    }
     repairs_.add("file: cut",
                  fmt::format("{}: no whole packet at byte {}; {}", name_, at_,
                              next ? fmt::format("goes on at byte {}", *next) : "nothing behind it is read"));
