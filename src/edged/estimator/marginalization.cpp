@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/marginalization.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "edged/estimator/normal_equations.hpp"
@@ -31,6 +30,34 @@ void eliminate(Eigen::Index leaving, NormalEquations& eq) {
   eq.g.tail(n).noalias() -= H_nm * (H_mm_inv * eq.g.head(m));
 }
 
+struct Root {
+  MatrixXd R;
+  VectorXd r;
+};
+
+/// R^T R = H and R^T r = g, by Cholesky with the largest pivot of what is left first, so that the rank shows: a pivot
+/// that only rounding has left is some 1e-15. (Eigen's LDLT picks pivots from a diagonal that it does not keep up to
+/// date; behind small ones they are noise of any size.)
+Root root_of(MatrixXd H, VectorXd g) {
+  const Eigen::Index n = g.size();
+  Root root{MatrixXd(n, n), VectorXd(n)};
+  Eigen::Index rank = 0, pivot = 0;
+  for (; rank < n; ++rank) {
+    const double largest = H.diagonal().maxCoeff(&pivot);
+    if (!(largest > kRankTolerance)) break;
+    const VectorXd row = H.col(pivot) / std::sqrt(largest);
+    const double r = g[pivot] / std::sqrt(largest);
+    H.noalias() -= row * row.transpose();
+    g -= r * row;
+    H.row(pivot).setZero(), H.col(pivot).setZero();
+    root.R.row(rank) = row;
+    root.r[rank] = r;
+  }
+  root.R.conservativeResize(rank, n);
+  root.r.conservativeResize(rank);
+  return root;
+}
+
 }  // namespace
 
 LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<BlockKey>& leaving) {
@@ -45,22 +72,10 @@ LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<B
   if (n == 0) return prior;
   const MatrixXd H = eq.H.bottomRightCorner(n, n).selfadjointView<Eigen::Lower>();
   const VectorXd scale = unit_diagonal_scale(H);
-  // S H S = P^T L D L^T P: the rows of D^(1/2) L^T P S^-1, those with no information left out.
-  const Eigen::LDLT<MatrixXd> ldlt(scale.asDiagonal() * H * scale.asDiagonal());
-  const VectorXd D = ldlt.vectorD();
   const VectorXd inverse_scale = (scale.array() > 0.0).select(scale.array().inverse(), 0.0);
-  const MatrixXd P = ldlt.transpositionsP() * MatrixXd::Identity(n, n);
-  const MatrixXd L_T_P = ldlt.matrixU() * P;
-  const VectorXd g = scale.asDiagonal() * eq.g.tail(n);
-  const VectorXd y = ldlt.matrixL().solve(P * g);  // L^-1 P S g
-  const Eigen::Index rows = (D.array() > kRankTolerance).count();
-  prior.J.resize(rows, n);
-  prior.r.resize(rows);
-  for (Eigen::Index i = 0, row = 0; i < n; ++i) {
-    if (!(D[i] > kRankTolerance)) continue;
-    prior.J.row(row) = std::sqrt(D[i]) * L_T_P.row(i) * inverse_scale.asDiagonal();
-    prior.r[row++] = y[i] / std::sqrt(D[i]);
-  }
+  const Root root = root_of(scale.asDiagonal() * H * scale.asDiagonal(), scale.asDiagonal() * eq.g.tail(n));
+  prior.J = root.R * inverse_scale.asDiagonal();
+  prior.r = root.r;
   prior.information = prior.J.transpose() * prior.J;
   prior.blocks = layout.staying;
   for (const BlockKey& key : prior.blocks) {
