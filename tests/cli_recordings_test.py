@@ -5,11 +5,13 @@
 import json
 import math
 import re
+import resource
 import shutil
+import subprocess
 import unittest
 import zipfile
 
-from program import WithFlight, edged
+from program import EDGED, WithFlight, edged
 
 
 class Recordings(WithFlight):
@@ -131,6 +133,16 @@ class Recordings(WithFlight):
         self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
         self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5])\.\d deg \+- \d\.\d deg")
         self.assertRegex(result.stdout, r"warning +camera frames: t_imu = t_cam .*\n.*set time_offset")
+
+    def test_a_full_disk_ends_a_conversion_with_one_line(self):
+        # Files of at most 20 kB stand for it.
+        limit = (resource.RLIMIT_FSIZE, (20_000, 20_000))
+        for name in ("full.h5", "full.bag", "full.aedat4", "full.mcap", "full"):
+            target = self.folder / name
+            result = subprocess.run([EDGED, "convert", self.flight, target, "--quiet"], capture_output=True, text=True, check=False,
+                                    restore_signals=False, preexec_fn=lambda: resource.setrlimit(*limit))
+            self.assert_refused(result, str(target), "cannot be written")
+            self.assertFalse(target.exists(), name)
 
     def test_convert_there_and_back_keeps_every_event(self):
         for name in ("out.raw", "out.dat"):

@@ -52,6 +52,7 @@ H5Handle open_for_reading(const std::filesystem::path& file, bool& cut) {
 
 void prepare_h5() {
   static const bool prepared = [] {
+    H5dont_atexit();  // after a file that could not be closed, the disk being full, it follows freed memory
     H5open();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     register_h5_filters();
