@@ -21,7 +21,7 @@ constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so
 // A start that explains less of the views than this share of what another motion does follows something that moves by
 // itself.
 constexpr double kContradicted = 0.65;
-constexpr double kBetterStart = 0.8;  // a start that takes the place of another knows the scale so much better
+constexpr double kBetterStart = 0.8;          // a start that takes the place of another knows the scale so much better
 constexpr double kStartSigmaInflation = 1.5;  // of what a start has been told since
 // [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
 constexpr double kMaxStandstillSpeed = 0.15;
