@@ -27,6 +27,9 @@ constexpr double kStartSigmaInflation = 1.5;  // of what a start has been told s
 constexpr double kMaxStandstillSpeed = 0.15;
 // [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
 constexpr double kRestGyroBiasSigma = 5e-4;
+// Times an observation's sigma, where the gyro is beyond its range: images blur, corners are followed without its word,
+// and what those of an image have in common, which the gyro outweighs else, turns the body.
+constexpr double kUnseenTurnNoise = 6.0;
 // Of sigmas, events alone, times that of the options: what moves by itself leads them astray more easily.
 constexpr double kEventsAloneInflation = 1.4;
 
@@ -45,6 +48,16 @@ bool agrees(const NavState& a, const NavState& b) {
 bool sees_frames(const Window& window) {
   return std::ranges::any_of(window.cameras(),
                              [](const WindowCamera& camera) { return camera.given.modality == Modality::Frames; });
+}
+
+/// The input's, as good as they are.
+std::vector<CameraObservations> weighed_observations(const EstimatorInput& input) {
+  std::vector<CameraObservations> all = input.observations;
+  if (!input.motion.gyro_clipped()) return all;
+  for (CameraObservations& view : all) {
+    for (FeatureObservation& feature : view.features) feature.sigma *= kUnseenTurnNoise;
+  }
+  return all;
 }
 
 /// Of covariances.
@@ -157,7 +170,7 @@ void Estimator::append(const EstimatorInput& input) {
   WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
   const bool rested = standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed);
   state.rested = rested;
-  const StateId id = window_.add_state(std::move(state), input.observations);
+  const StateId id = window_.add_state(std::move(state), weighed_observations(input));
   if (!rested) return;
   NavState rest;
   rest.bias_gyro = standstill_.mean_gyro_B();

@@ -60,6 +60,35 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
   return result;
 }
 
+/// Of what the newest state has seen [on the unit plane].
+double mean_sigma(const Window& window) {
+  double sum = 0.0;
+  int n = 0;
+  for (const auto& [id, feature] : window.features()) {
+    const auto seen = feature.seen.find(window.newest_id());
+    if (seen == feature.seen.end()) continue;
+    sum += seen->second.sigma;
+    ++n;
+  }
+  return n == 0 ? 0.0 : sum / n;
+}
+
+TEST(Estimator, BelievesCornersLessWhileTheGyroIsBeyondItsRange) {
+  TestWorld world({.rest_s = 1.0});
+  Estimator estimator(world.rig(), world.noise(), {});
+  constexpr double kStep = 0.05;
+  int i = 1;
+  for (; i * kStep < 2.0; ++i) estimator.add(world.packet(i * kStep, kStep, i % 4 == 0));
+  const double usual = mean_sigma(estimator.window());
+  ASSERT_GT(usual, 0.0);
+  EstimatorInput clipped = world.packet(i * kStep, kStep, false);
+  std::vector<ImuSample> samples = clipped.motion.samples();
+  samples[samples.size() / 2].gyro_B.x() = world.noise().gyro_saturation;
+  clipped.motion = Preintegration(samples, clipped.motion.bias_gyro(), clipped.motion.bias_accel(), world.noise());
+  estimator.add(clipped);
+  EXPECT_NEAR(mean_sigma(estimator.window()) / usual, 6.0, 1.0);
+}
+
 TEST(Estimator, StartsAtRestAndFollowsTheMotion) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TestWorldOptions options{.rest_s = 1.0, .seed = seed};

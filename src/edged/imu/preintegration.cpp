@@ -134,11 +134,12 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
   const bool gap = in_gap(a, b);
-  const bool gyro_out = gap || out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
+  const bool gyro_clipped = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation), gyro_out = gap || gyro_clipped;
   const bool accel_out = gap || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
   const double gyro_sigma = noise_.gyro_noise * (gyro_out ? noise_.saturation_inflation : 1.0);
   const double accel_sigma = noise_.accel_noise * (accel_out ? noise_.saturation_inflation : 1.0);
   saturated_ = saturated_ || gyro_out || accel_out;
+  gyro_clipped_ = gyro_clipped_ || gyro_clipped;
   const double gyro_jump = gyro_out ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kUsualGyroJump);
   const double accel_jump = accel_out ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kUsualAccelJump);
   covariance_ = next_covariance(covariance_, step, gyro_sigma * gyro_sigma / dt + gyro_jump * gyro_jump,

@@ -70,6 +70,8 @@ class Preintegration {
   const ImuNoise& noise() const { return noise_; }
   /// Some sample reached the range of the sensor, or samples were missing (kMaxSampleInterval).
   bool saturated() const { return saturated_; }
+  /// Some sample reached the gyro's range: how far the body has turned is the cameras' word alone.
+  bool gyro_clipped() const { return gyro_clipped_; }
 
  private:
   void integrate_step(const ImuSample& a, const ImuSample& b);
@@ -85,7 +87,7 @@ class Preintegration {
                   d_dv_d_ba_ = Eigen::Matrix3d::Zero(), d_dp_d_bg_ = Eigen::Matrix3d::Zero(),
                   d_dp_d_ba_ = Eigen::Matrix3d::Zero();
   Matrix9d covariance_ = Matrix9d::Zero();
-  bool saturated_ = false;
+  bool saturated_ = false, gyro_clipped_ = false;
 };
 
 /// The state at the last sample, from the state at the first. Biases are carried over.

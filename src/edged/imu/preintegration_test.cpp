@@ -233,14 +233,14 @@ TEST(Preintegration, TrustsSaturatedSamplesLess) {
 
   samples[50].gyro_B.x() = -20.0;
   const Preintegration gyro(samples, kNoBias, kNoBias, noise);
-  EXPECT_TRUE(gyro.saturated());
+  EXPECT_TRUE(gyro.saturated() && gyro.gyro_clipped());
   // 98 steps as before, the two that touch the sample with 50^2 times the variance.
   EXPECT_NEAR(gyro.covariance()(0, 0) / normal.covariance()(0, 0), (98.0 + 2.0 * 2500.0) / 100.0, 0.5);
 
   samples[50].gyro_B.x() = 0.0;
   samples[50].accel_B.z() = 157.0;
   const Preintegration accel(samples, kNoBias, kNoBias, noise);
-  EXPECT_TRUE(accel.saturated());
+  EXPECT_TRUE(accel.saturated() && !accel.gyro_clipped());
   EXPECT_DOUBLE_EQ(accel.covariance()(0, 0), normal.covariance()(0, 0));
   EXPECT_NEAR(accel.covariance()(5, 5) / normal.covariance()(5, 5), (98.0 + 2.0 * 2500.0) / 100.0, 0.5);
 }

@@ -142,7 +142,10 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
 Preintegration PacketOdometry::predict(const Packet& packet) {
   const auto timer = timings_.measure("predict");
   gyro_saturated_ |= !gyro_trusted(packet.imu, noise_);
-  return body_.predict(packet.imu, estimator_.initialized());
+  Preintegration motion = body_.predict(packet.imu, estimator_.initialized());
+  turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
+  gyro_clipped_ = motion.gyro_clipped();
+  return motion;
 }
 
 double PacketOdometry::measure_depth(const Packet& packet) {
@@ -304,7 +307,8 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration mo
 bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result,
                                 bool keyframe) {
   if (!estimator_.initialized()) return false;
-  if (result.new_frame) mapper_.restart(world_.T_W_S(), body_.now());
+  // The filter's drift is that of an odometry with a gyro: without, it is a guess as after a loss.
+  if (result.new_frame || turned_unseen_) mapper_.restart(world_.T_W_S(), body_.now());
   if (!config_.map.enabled) return false;
   const auto timer = timings_.measure("map");
   bool found_again = false;

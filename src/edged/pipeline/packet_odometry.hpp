@@ -97,6 +97,8 @@ class PacketOdometry {
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised
   DimImageStretch dim_frames_;
+  bool gyro_clipped_ = false;    ///< in this packet
+  bool turned_unseen_ = false;   ///< it was until this packet
   bool gyro_saturated_ = false;  ///< since the last keyframe
   SceneDepth depth_;
   std::optional<Timestamp> last_keyframe_, last_frame_;
