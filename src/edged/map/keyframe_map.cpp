@@ -143,25 +143,36 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
   return found;
 }
 
+/// For each descriptor the point that looks most like it, the first of several. Point by point, as the descriptors of
+/// an image stay in the cache and those of the map do not.
+std::vector<KeyframeMap::Alike> KeyframeMap::most_alike(const MapQuery& query,
+                                                        std::span<const std::optional<Descriptor>> descriptors) const {
+  std::vector<Alike> alike(descriptors.size(), Alike{kAlike, 0, nullptr});
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    const MapKeyframe& keyframe = keyframes_[k];
+    if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
+    for (const MapPoint& point : keyframe.points) {
+      if (!point.descriptor) continue;
+      for (std::size_t i = 0; i < descriptors.size(); ++i) {
+        if (!descriptors[i]) continue;
+        const int bits = distance(*descriptors[i], *point.descriptor);
+        if (bits < alike[i].bits) alike[i] = {bits, k, &point};
+      }
+    }
+  }
+  return alike;
+}
+
 std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
                                           std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
                                           double focal) const {
+  const std::vector<Alike> alike = most_alike(query, descriptors);
   std::vector<PlaceMatch> matches;
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    if (!descriptors[i]) continue;
-    int nearest = kAlike;
-    PlaceMatch match{points[i], {}};
-    for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-      const MapKeyframe& keyframe = keyframes_[k];
-      if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
-      for (const MapPoint& point : keyframe.points) {
-        const int bits = point.descriptor ? distance(*descriptors[i], *point.descriptor) : kAlike;
-        if (bits >= nearest) continue;
-        nearest = bits;
-        match.p_M = query.T_M_K[k] * (keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth));
-      }
-    }
-    if (nearest < kAlike) matches.push_back(match);
+  for (std::size_t i = 0; i < alike.size(); ++i) {
+    const auto& [bits, k, point] = alike[i];
+    if (point == nullptr) continue;
+    const Eigen::Vector3d p_K = keyframes_[k].T_B_C * (point->point.homogeneous() / point->inverse_depth);
+    matches.push_back({points[i], query.T_M_K[k] * p_K});
   }
   const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, kAgreement_px / focal);
   if (!pose || pose->agreeing < kFewestAgreeing ||

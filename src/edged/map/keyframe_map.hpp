@@ -95,6 +95,12 @@ class KeyframeMap {
   const std::vector<MapKeyframe>& keyframes() const { return keyframes_; }
 
  private:
+  struct Alike {
+    int bits;  ///< that differ
+    std::size_t keyframe;
+    const MapPoint* point;  ///< null: none is alike
+  };
+  std::vector<Alike> most_alike(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const;
   std::vector<std::size_t> near(const MapQuery& query, const SE3& T_M_C) const;
 
   KeyframeMapConfig config_;
