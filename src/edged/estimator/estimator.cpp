@@ -50,14 +50,12 @@ bool sees_frames(const Window& window) {
                              [](const WindowCamera& camera) { return camera.given.modality == Modality::Frames; });
 }
 
-/// The input's, as good as they are.
-std::vector<CameraObservations> weighed_observations(const EstimatorInput& input) {
-  std::vector<CameraObservations> all = input.observations;
-  if (!input.motion.gyro_clipped()) return all;
-  for (CameraObservations& view : all) {
+/// As good as they are while the gyro is clipped.
+std::vector<CameraObservations> of_unseen_turn(std::vector<CameraObservations> observations) {
+  for (CameraObservations& view : observations) {
     for (FeatureObservation& feature : view.features) feature.sigma *= kUnseenTurnNoise;
   }
-  return all;
+  return observations;
 }
 
 /// Of covariances.
@@ -170,7 +168,9 @@ void Estimator::append(const EstimatorInput& input) {
   WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
   const bool rested = standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed);
   state.rested = rested;
-  const StateId id = window_.add_state(std::move(state), weighed_observations(input));
+  const StateId id = input.motion.gyro_clipped()
+                         ? window_.add_state(std::move(state), of_unseen_turn(input.observations))
+                         : window_.add_state(std::move(state), input.observations);
   if (!rested) return;
   NavState rest;
   rest.bias_gyro = standstill_.mean_gyro_B();
