@@ -140,6 +140,7 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   const double accel_sigma = noise_.accel_noise * (accel_out ? noise_.saturation_inflation : 1.0);
   saturated_ = saturated_ || gyro_out || accel_out;
   gyro_clipped_ = gyro_clipped_ || gyro_clipped;
+  gapped_ = gapped_ || gap;
   const double gyro_jump = gyro_out ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kUsualGyroJump);
   const double accel_jump = accel_out ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kUsualAccelJump);
   covariance_ = next_covariance(covariance_, step, gyro_sigma * gyro_sigma / dt + gyro_jump * gyro_jump,

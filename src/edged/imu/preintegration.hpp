@@ -72,6 +72,8 @@ class Preintegration {
   bool saturated() const { return saturated_; }
   /// Some sample reached the gyro's range: how far the body has turned is the cameras' word alone.
   bool gyro_clipped() const { return gyro_clipped_; }
+  /// False where it was clipped, or samples were missing.
+  bool gyro_trusted() const { return !gyro_clipped_ && !gapped_; }
 
  private:
   void integrate_step(const ImuSample& a, const ImuSample& b);
@@ -87,7 +89,7 @@ class Preintegration {
                   d_dv_d_ba_ = Eigen::Matrix3d::Zero(), d_dp_d_bg_ = Eigen::Matrix3d::Zero(),
                   d_dp_d_ba_ = Eigen::Matrix3d::Zero();
   Matrix9d covariance_ = Matrix9d::Zero();
-  bool saturated_ = false, gyro_clipped_ = false;
+  bool saturated_ = false, gyro_clipped_ = false, gapped_ = false;
 };
 
 /// The state at the last sample, from the state at the first. Biases are carried over.

@@ -4,14 +4,6 @@
 
 namespace edged {
 
-bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise) {
-  for (std::size_t i = 0; i < imu.size(); ++i) {
-    if (imu[i].gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation) return false;
-    if (i > 0 && in_gap(imu[i - 1], imu[i])) return false;
-  }
-  return true;
-}
-
 Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool started) {
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
   const Timestamp t = motion.end();

@@ -12,9 +12,6 @@
 
 namespace edged {
 
-/// False when a sample reached the range of the gyro, or samples are missing.
-bool gyro_trusted(const std::vector<ImuSample>& imu, const ImuNoise& noise);
-
 class BodyMotion {
  public:
   /// history: how long before a packet poses are kept (the oldest event that a packet's frame can show).

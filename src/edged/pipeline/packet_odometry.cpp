@@ -141,8 +141,8 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
 
 Preintegration PacketOdometry::predict(const Packet& packet) {
   const auto timer = timings_.measure("predict");
-  gyro_saturated_ |= !gyro_trusted(packet.imu, noise_);
   Preintegration motion = body_.predict(packet.imu, estimator_.initialized());
+  gyro_saturated_ |= !motion.gyro_trusted();
   turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
   gyro_clipped_ = motion.gyro_clipped();
   return motion;
