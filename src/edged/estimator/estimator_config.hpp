@@ -92,8 +92,8 @@ struct EstimatorConfig {
   double init_scale_sigma = 0.08;        ///< of ln scale; a wrong start of too large a scale passes more easily
   double provisional_scale_sigma = 0.2;  ///< a start that knows it to this is used, but not Good
   double noise_gain = 0.05;              ///< adaptation of each camera's noise to its residuals, a packet
-  double noise_inflation = 1.3;          ///< sigma over the spread of what each observation adds to the one before
-  double event_noise_inflation = 4.0;    ///< times as much for events beside frames: their drift goes on as it was
+  double noise_inflation = 2.0;          ///< sigma over the spread of what each observation adds to the one before
+  double event_noise_inflation = 2.5;    ///< times as much for events beside frames: their drift goes on as it was
   double min_noise_scale = 0.05;         ///< bounds of the adapted noise over the configured one
   double max_noise_scale = 4.0;
   double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
