@@ -50,7 +50,10 @@ class CheckRun {
     status_.clear();
   }
 
-  CalibrationFit fit() { return judge_fit(found_, check_.findings(*source_.dataset), statistics_.waiting_for()); }
+  CalibrationFit fit() {
+    return judge_fit(found_, check_.findings(*source_.dataset, source_.dataset->ground_truth()),
+                     statistics_.waiting_for());
+  }
   /// As found: by all that came before the estimate was last good.
   const Rig& rig() const { return rig_; }
 

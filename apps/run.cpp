@@ -291,7 +291,9 @@ RunSummary Run::summarize() {
   summary.statistics = statistics_;
   summary.poses = writer_->poses();
   summary.calibration = compare_calibrations(source_.calibration.rig, odometry_, calibration_config_);
-  summary.verdict = judge_run(check_.findings(*source_.dataset), statistics_, summary.calibration, options_.source);
+  const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
+  summary.verdict =
+      judge_run(check_.findings(*source_.dataset, truth), statistics_, summary.calibration, options_.source);
   summary.map = map_.finish(odometry_);
   summary.status = broken_off_ ? "broken off" : run_status(statistics_, summary.verdict);
   if (live_)
@@ -299,7 +301,6 @@ RunSummary Run::summarize() {
         LiveSummary{live_->latency(), live_->shed(), odometry_.counters().packets.packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
-  const std::optional<GroundTruth> truth = source_.dataset->ground_truth();
   const Hindsight known = hindsight();
   write_hindsight(folder_, frame_, known, headed("final: each by all that was found again before and after"));
   const StatesTable states = read_states(folder_);

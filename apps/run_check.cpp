@@ -210,12 +210,12 @@ std::vector<Finding> RunCheck::news() {
   return fresh;
 }
 
-std::vector<Finding> RunCheck::findings(const Dataset& dataset) {
+std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
   for (Camera& camera : cameras_) {
     if (!camera.done && !camera.waits && camera.turning >= least_turning(camera.given)) compare(camera);
     camera.done = true;
   }
-  return judge(surveyor_.result(dataset));
+  return judge(surveyor_.result(dataset, truth));
 }
 
 }  // namespace edged

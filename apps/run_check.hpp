@@ -27,8 +27,8 @@ class RunCheck {
   /// Errors that have become certain and were not given out before.
   std::vector<Finding> news();
 
-  /// Warnings and errors by all that has come; after the last measurement.
-  std::vector<Finding> findings(const Dataset& dataset);
+  /// Warnings and errors by all that has come; after the last measurement. truth: that of the dataset.
+  std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth);
 
  private:
   struct Camera {

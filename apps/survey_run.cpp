@@ -24,7 +24,7 @@ SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<voi
   } catch (const InputError& error) {
     damage = error.what();
   }
-  return {surveyor.result(dataset), damage};
+  return {surveyor.result(dataset, dataset.ground_truth()), damage};
 }
 
 }  // namespace edged

@@ -67,10 +67,10 @@ Survey Surveyor::so_far() const {
   return survey;
 }
 
-Survey Surveyor::result(const Dataset& dataset) const {
+Survey Surveyor::result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const {
   Survey survey = so_far();
   survey.info = dataset.info();
-  if (const auto truth = dataset.ground_truth()) survey.truth = survey_truth(*truth);
+  if (truth) survey.truth = survey_truth(*truth);
   survey.repairs = dataset.repairs();
   return survey;
 }

@@ -47,8 +47,8 @@ class Surveyor {
   void add(const Measurement& measurement, Detail detail = Detail::All);
   /// By the measurements that have come: without ground truth and repairs.
   Survey so_far() const;
-  /// After the last measurement.
-  Survey result(const Dataset& dataset) const;
+  /// After the last measurement; truth: that of the dataset, which takes long to read.
+  Survey result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
 
  private:
   DatasetInfo info_;

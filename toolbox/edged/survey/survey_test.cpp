@@ -194,7 +194,7 @@ TEST(Survey, OverlapIsTheTimeThatAllSensorsCover) {
     std::optional<Measurement> next() override { return std::nullopt; }
     DatasetInfo info_;
   } dataset;
-  EXPECT_EQ(surveyor.result(dataset).overlap(), std::chrono::seconds(6));
+  EXPECT_EQ(surveyor.result(dataset, std::nullopt).overlap(), std::chrono::seconds(6));
 }
 
 }  // namespace
