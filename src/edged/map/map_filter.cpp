@@ -34,12 +34,12 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
   P_.block<3, 3>(3, 3) = yaw_sigma * yaw_sigma * up_B * up_B.transpose();
 }
 
-void MapFilter::predict(const SE3& T_O_B, Timestamp t) {
+void MapFilter::predict(const SE3& T_O_B, Timestamp t, double drift) {
   const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_B);
   P_.topRows<6>() = F * P_.topRows<6>().eval();
   P_.leftCols<6>() = P_.leftCols<6>().eval() * F.transpose();
   T_O_B_ = T_O_B;
-  P_.topLeftCorner<6, 6>() += drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
+  P_.topLeftCorner<6, 6>() += drift * drift * drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
   t_ = t;
 }
 

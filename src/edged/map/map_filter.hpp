@@ -25,8 +25,8 @@ class MapFilter {
 
   /// A new frame O of the odometry: where it lies in M is a guess with these sigmas [m], [rad] of position and yaw.
   void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
-  /// The odometry has come to T_O_B.
-  void predict(const SE3& T_O_B, Timestamp t);
+  /// The odometry has come to T_O_B. drift: how much more it drifts than the options say.
+  void predict(const SE3& T_O_B, Timestamp t, double drift = 1.0);
   /// A keyframe of the odometry, at T_O_K: it comes last in keyframes().
   void add_keyframe(const SE3& T_O_K, Timestamp t);
   /// The keyframes of another run, in place of those there are, and how well they are known: six rows each.

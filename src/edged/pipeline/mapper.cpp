@@ -10,12 +10,14 @@ namespace edged {
 namespace {
 
 constexpr double kSearchSigmas = 3.0;
+constexpr double kSearchInterval_s = 0.09;  // between images, as long as the place is not known
 constexpr double kLeastSearch_px = 2.0;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
 constexpr double kUnnoticed_s = 2.5;                         // until a loss is said, StatusConfig::lost_after_s
 constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // that dead reckoning may be off
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
+constexpr double kYoungDrift = 5.0;              // of an odometry that has just started, whose scale is still poor
 constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to say how much of it the map shows
 
 /// The live corners of a camera, and what they look like.
@@ -72,7 +74,8 @@ std::optional<SavedMap> Mapper::save() const {
 }
 
 void Mapper::predict(const NavState& now) {
-  filter_.predict(now.T_W_B, now.t);
+  const bool young = !map_.keyframes().empty() && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
+  filter_.predict(now.T_W_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
 }
 
@@ -118,7 +121,9 @@ bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
 }
 
 bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
-  if (looked_at_ && to_seconds(t - *looked_at_) < config_.min_interval_s) return false;
+  const bool lost_here = searching_ || elsewhere_before_;
+  const double interval_s = lost_here ? kSearchInterval_s : config_.min_interval_s;
+  if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
   const SE3 T_O_C = view.channel->T_W_C(T_O_B);
@@ -127,7 +132,7 @@ bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   const auto older = std::ranges::count_if(
       here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
   const bool agreed = update(filter_, here, t);
-  if (!searching_ && !elsewhere_before_) return false;
+  if (!lost_here) return false;
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_sights;
   const bool found_by_looks = (elsewhere_before_ || !found_by_guess) && recognise(t, view, T_O_C);
   if (found_by_looks) elsewhere_before_.reset();
