@@ -131,7 +131,8 @@ TEST(Revisits, FindThePlaceAgainAfterTheLensWasCovered) {
   for (const Mode mode : {Mode::Frames, Mode::Fused, Mode::Events}) {
     const double without = error_after_cover(flight, mode, false), with = error_after_cover(flight, mode, true);
     std::cout << mode_name(mode) << ": " << 1e3 * without << " -> " << 1e3 * with << " mm\n";
-    EXPECT_GT(without, 0.1) << "dead reckoning for 4 s";
+    EXPECT_LT(without, 0.15) << "the IMU alone for 4 s";  // 0.42 to 0.76 where the body is held to stay in place
+    EXPECT_LT(with, without);
     EXPECT_LT(with, mode == Mode::Events ? 0.08 : 0.03);
   }
 }

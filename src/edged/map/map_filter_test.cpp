@@ -201,5 +201,15 @@ TEST_F(OneKeyframe, ForgetsAKeyframeAndKeepsTheOthers) {
   EXPECT_TRUE(filter_.update(sights, sights.size(), world_.T_B_C));
 }
 
+TEST(MapFilter, IsLessSureOfAnOdometryThatDriftsMore) {
+  const auto variance_after = [](double drift) {
+    MapFilter filter(config_of_world());
+    filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
+    filter.predict(SE3(), timestamp_from_seconds(1.0), drift);
+    return filter.covariance().trace();
+  };
+  EXPECT_NEAR(variance_after(5.0), 25.0 * variance_after(1.0), 1e-12);
+}
+
 }  // namespace
 }  // namespace edged

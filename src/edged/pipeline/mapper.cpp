@@ -10,7 +10,7 @@ namespace edged {
 namespace {
 
 constexpr double kSearchSigmas = 3.0;
-constexpr double kSearchInterval_s = 0.09;  // between images, as long as the place is not known
+constexpr double kSearchInterval_s = 0.09;  // between images, as long as the place is not known after a loss
 constexpr double kLeastSearch_px = 2.0;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
 constexpr double kUnnoticed_s = 2.5;                         // until a loss is said, StatusConfig::lost_after_s
@@ -74,7 +74,7 @@ std::optional<SavedMap> Mapper::save() const {
 }
 
 void Mapper::predict(const NavState& now) {
-  const bool young = !map_.keyframes().empty() && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
+  const bool young = blind_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
   filter_.predict(now.T_W_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
 }
@@ -121,8 +121,8 @@ bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
 }
 
 bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
-  const bool lost_here = searching_ || elsewhere_before_;
-  const double interval_s = lost_here ? kSearchInterval_s : config_.min_interval_s;
+  // In a map of another run no dead reckoning tells right from wrong: two looks that agree must be further apart.
+  const double interval_s = searching_ && !elsewhere_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
@@ -132,7 +132,7 @@ bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   const auto older = std::ranges::count_if(
       here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
   const bool agreed = update(filter_, here, t);
-  if (!lost_here) return false;
+  if (!searching_ && !elsewhere_before_) return false;
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_sights;
   const bool found_by_looks = (elsewhere_before_ || !found_by_guess) && recognise(t, view, T_O_C);
   if (found_by_looks) elsewhere_before_.reset();

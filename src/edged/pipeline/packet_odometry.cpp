@@ -22,6 +22,9 @@ constexpr double kCornersForMap = 20.0;
 /// Without a frame for so long, events no longer count on them.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
+/// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
+constexpr Duration kReckoned = std::chrono::seconds(10);
+
 Rig rig_of_mode(const Rig& rig, Mode mode) {
   Rig used{rig.name, {}};
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
@@ -80,6 +83,7 @@ void PacketOdometry::begin_time() {
   before_ = hindsight();
   mapper_ = Mapper(config_.map);  // its keyframes are of the time before
   judge_.lose("a clock was set back");
+  reckoned_until_ = Timestamp::min();
   last_keyframe_.reset();
   last_frame_.reset();
   covariance_.reset();
@@ -107,6 +111,7 @@ Step PacketOdometry::process(Packet packet) {
   step.scene_depth = scene_depth;
   if (status == TrackingStatus::Lost && estimator_.initialized()) {
     estimator_ = fresh_estimator();
+    reckoned_until_ = judge_.went_blind() ? step.t + kReckoned : step.t;
   }
   return step;
 }
@@ -141,7 +146,7 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
 
 Preintegration PacketOdometry::predict(const Packet& packet) {
   const auto timer = timings_.measure("predict");
-  Preintegration motion = body_.predict(packet.imu, estimator_.initialized());
+  Preintegration motion = body_.predict(packet.imu, estimator_.initialized() || packet.t < reckoned_until_);
   gyro_saturated_ |= !motion.gyro_trusted();
   turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
   gyro_clipped_ = motion.gyro_clipped();

@@ -104,6 +104,7 @@ class PacketOdometry {
   std::optional<Timestamp> last_keyframe_, last_frame_;
   std::optional<PoseCovariance> covariance_;
   Timestamp covariance_at_;
+  Timestamp reckoned_until_ = Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
 };
 
 }  // namespace edged

@@ -26,6 +26,8 @@ class StatusJudge {
   void lose(std::string reason) { reason_ = std::move(reason); }
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
+  /// The last one was Lost only because nothing was seen any more: it was right until then.
+  bool went_blind() const { return went_blind_; }
 
  private:
   StatusConfig config_;
@@ -33,6 +35,7 @@ class StatusJudge {
   double patience_ = 1.0;                    ///< multiplies the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or rest, since the start
   std::string reason_;
+  bool went_blind_ = false;
 };
 
 }  // namespace edged
