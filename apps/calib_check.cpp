@@ -37,7 +37,7 @@ class CheckRun {
   CheckRun(Source& source, Mode mode, bool quiet)
       : source_(source),
         mode_(mode),
-        check_(source.dataset->info(), source.calibration, mode),
+        check_(source.dataset->info(), source.calibration, used_cameras(source.calibration.rig, mode)),
         odometry_(source.calibration.rig, source.calibration.imu, mode, config_, {kInOrder}),
         status_(quiet),
         rig_(odometry_.rig()),

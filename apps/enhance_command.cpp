@@ -105,7 +105,8 @@ class RunUpTo {
   }
 
   bool go_on(Step step) {
-    if (step.frame) frame_ = step.frame->image;
+    const CameraStep* frames = step.find(Modality::Frames);
+    if (frames && !frames->image.empty()) frame_ = frames->image;
     const double now_s = to_seconds(step.t - *begin_);
     if (status_.due()) status_.show(fmt::format("{:.1f} / {:.1f} s", now_s, options_.at_s));
     if (now_s < options_.at_s) return true;
@@ -114,11 +115,12 @@ class RunUpTo {
   }
 
   Moment moment(Step step) const {
-    if (step.event_frame.empty()) throw too_few_events(options_, step.events.size(), config_);
+    const CameraStep& events = *step.find(Modality::Events);
+    if (events.image.empty()) throw too_few_events(options_, events.events.size(), config_);
     const CameraModel& camera = source_.calibration.rig.find(Modality::Events)->model;
     const UndistortTable table(camera, ideal_pinhole(camera));
     const cv::Mat uncompensated =
-        draw_event_frame(step.drawn_events(), CameraMotion(), 1.0, table, config_.event_frame);
+        draw_event_frame(events.drawn_events(), CameraMotion(), 1.0, table, config_.event_frame);
     return {std::move(step), uncompensated, frame_, "motion-compensated"};
   }
 
@@ -161,7 +163,8 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   const double pixels = static_cast<double>(lens.width()) * lens.height();
   const auto most = static_cast<std::size_t>(config.packets.window_per_pixel * pixels);
   Moment moment{{}, {}, {}, ideal == lens ? "as the events fell" : "undistorted, not motion-compensated"};
-  std::vector<Event>& events = moment.step.events;
+  CameraStep& camera = moment.step.cameras.emplace_back(CameraStep{.name = "events", .modality = Modality::Events});
+  std::vector<Event>& events = camera.events;
   std::optional<Timestamp> begin = recording.dataset->info().begin;
   refuse_outside(options, begin, recording.dataset->info().end);
   Timestamp newest;
@@ -186,11 +189,10 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   if (events.size() > most) events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(most));
   if (events.empty() || static_cast<double>(events.size()) < config.min_events_per_pixel * pixels)
     throw too_few_events(options, events.size(), config);
-  moment.step.drawn = events.size();
+  camera.drawn = events.size();
   const double span_s = to_seconds(moment.step.t - events.front().t);
-  moment.step.event_rate_hz = span_s > 0.0 ? static_cast<double>(events.size()) / span_s : 0.0;
-  moment.step.event_frame =
-      draw_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
+  camera.event_rate_hz = span_s > 0.0 ? static_cast<double>(events.size()) / span_s : 0.0;
+  camera.image = draw_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
   return moment;
 }
 
@@ -220,7 +222,7 @@ const std::pair<EdgeMethod, const char*> kEdgeMethods[] = {{EdgeMethod::Canny, "
 
 /// One row a step of Algorithm 1, one column a method.
 std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& config) {
-  const cv::Mat& events = moment.step.event_frame;
+  const cv::Mat& events = moment.step.find(Modality::Events)->image;
   const EnhanceConfig clahe = with_method(config, EdgeMethod::Clahe);
   std::vector<SheetRow> rows{
       {{"standard frame", moment.frame},
@@ -256,13 +258,14 @@ std::string file_name(int number, const std::string& caption) {
 
 std::vector<std::string> title(const EnhanceOptions& options, const Moment& moment, const EnhanceConfig& config) {
   const Step& step = moment.step;
-  const std::span<const Event> events = step.drawn_events();
+  const CameraStep& camera = *step.find(Modality::Events);
+  const std::span<const Event> events = camera.drawn_events();
   const std::string known = moment.uncompensated.empty()
                                 ? moment.drawn_how
                                 : fmt::format("scene depth {:.2f} m, {}", step.scene_depth, to_string(step.status));
   return {
       fmt::format("{} at {:.3f} s: {} events of {:.1f} ms, {}ev/s, {}", options.source.recording, options.at_s,
-                  events.size(), 1e3 * to_seconds(step.t - events.front().t), si_number(step.event_rate_hz), known),
+                  events.size(), 1e3 * to_seconds(step.t - events.front().t), si_number(camera.event_rate_hz), known),
       fmt::format(
           "blur {} px, CLAHE clip {} on {} x {} tiles, lambda {}, gain {}, Canny {} to {}, blend {} event + {} edge",
           config.blur_sigma_px, config.clahe_clip, config.clahe_tiles, config.clahe_tiles, config.sharpen_lambda,
@@ -293,7 +296,7 @@ int run_enhance(const EnhanceOptions& options) {
   write_picture(options.out / "sheet.png", draw_contact_sheet(lines, rows));
   const nlohmann::ordered_json json = {{"out", options.out.string()},
                                        {"pictures", number},
-                                       {"events", moment.step.drawn},
+                                       {"events", moment.step.find(Modality::Events)->drawn},
                                        {"drawn_how", moment.drawn_how}};
   fmt::print("{}\n", options.json ? json_text(json)
                                   : fmt::format("{}\n{}: sheet.png and every step by itself", lines.front(),

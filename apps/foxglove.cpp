@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "edged/core/angles.hpp"
+#include "kind_numbers.hpp"
 #include "report_rows.hpp"
 #include "run_album.hpp"
 #include "status_changes.hpp"
@@ -117,16 +118,17 @@ Json log(Timestamp t, Level level, const std::string& message) {
 }
 
 Json stats(const Step& step) {
+  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
   Json json = {{"timestamp", time(step.t)},
                {"status", to_string(step.status)},
                {"status_code", static_cast<int>(step.status)},
                {"reason", reason_of(step)},
                {"keyframe", step.keyframe},
                {"found_again", step.found_again},
-               {"event_tracks", step.event_tracks.size()},
-               {"frame_tracks", step.frame_tracks.size()},
+               {"event_tracks", events.tracks},
+               {"frame_tracks", frames.tracks},
                {"landmarks", step.landmarks.size()},
-               {"event_rate_hz", rounded(step.event_rate_hz, 0)},
+               {"event_rate_hz", rounded(events.event_rate_hz, 0)},
                {"scene_depth_m", rounded(step.scene_depth, 4)}};
   if (step.status != TrackingStatus::Initializing) {
     json["velocity_mps"] = vector(step.state.v_W);

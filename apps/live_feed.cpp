@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_text.hpp"
+#include "kind_numbers.hpp"
 #include "report_rows.hpp"
 #include "run_folder.hpp"
 #include "track_picture.hpp"
@@ -88,12 +89,13 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   put(step.state.v_W, started);
   put(step.state.bias_gyro, started);
   put(step.state.bias_accel, started);
+  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
   for (const double number :
-       {step.keyframe ? 1.0 : 0.0, static_cast<double>(step.event_tracks.size()),
-        static_cast<double>(step.frame_tracks.size()), static_cast<double>(step.landmarks.size()),
-        step.event_survival.value_or(kUnknown), step.frame_survival.value_or(kUnknown),
-        step.found.empty() ? kUnknown : static_cast<double>(step.found.size()), map_reach_s(step).value_or(kUnknown),
-        step.event_rate_hz, step.scene_depth, pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
+       {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks), static_cast<double>(frames.tracks),
+        static_cast<double>(step.landmarks.size()), events.survival.value_or(kUnknown),
+        frames.survival.value_or(kUnknown), step.found.empty() ? kUnknown : static_cast<double>(step.found.size()),
+        map_reach_s(step).value_or(kUnknown), events.event_rate_hz, step.scene_depth, pace.processing_ms,
+        pace.latency_ms.value_or(kUnknown)})
     *value++ = number;
   const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
   put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());
@@ -118,17 +120,18 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
 }
 
-/// Copies, as the odometry goes on with its own, at the pace of a viewer.
+/// Copies of the first camera of each kind, as the odometry goes on with its own, at the pace of a viewer.
 void LiveFeed::take_shots(const Step& step) {
   const auto now = LiveClockTime::now();
-  const auto take = [&](std::shared_ptr<const Shot>& shot, const cv::Mat& image, const std::vector<Track>& tracks) {
-    if (image.empty() || (shot && now < shot->taken + kShotPeriod)) return;
-    auto taken = std::make_shared<const Shot>(Shot{shot ? shot->number + 1 : 1, now, image.clone(), tracks});
+  const auto take = [&](std::shared_ptr<const Shot>& shot, const CameraStep* camera) {
+    if (camera == nullptr || camera->image.empty() || (shot && now < shot->taken + kShotPeriod)) return;
+    auto taken =
+        std::make_shared<const Shot>(Shot{shot ? shot->number + 1 : 1, now, camera->image.clone(), camera->tracks});
     const std::lock_guard lock(mutex_);
     shot = std::move(taken);
   };
-  take(event_shot_, step.event_frame, step.event_tracks);
-  if (step.frame) take(frame_shot_, step.frame->image, step.frame_tracks);
+  take(event_shot_, step.find(Modality::Events));
+  take(frame_shot_, step.find(Modality::Frames));
 }
 
 void LiveFeed::finish(RunProgress progress) {

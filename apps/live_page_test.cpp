@@ -28,7 +28,8 @@ class LiveRun : public ::testing::Test {
       step.state.T_W_B = SE3(Eigen::Quaterniond::Identity(), {1e-3 * made, 0.0, 0.0});
       step.keyframe = true;
       step.landmarks = {{static_cast<FeatureId>(made), Eigen::Vector3d(2.0, made, 0.0)}};
-      step.event_frame = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99));
+      step.cameras = {
+          {.name = "events", .modality = Modality::Events, .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99))}};
       statistics.add(step);
       album.add(step);
       feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0, {4.0, std::nullopt}}, album);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drawing.hpp"
+#include "kind_numbers.hpp"
 
 namespace edged {
 namespace {
@@ -174,20 +175,26 @@ int draw_image(cv::Mat& canvas, const cv::Mat& image, const std::string& caption
 }  // namespace
 
 void LiveliestMoment::consider(const Step& step) {
+  const KindNumbers events = numbers_of(step, Modality::Events);
+  const auto image_of = [&step](Modality modality) {
+    const CameraStep* camera = step.find(modality);
+    return camera ? camera->image : cv::Mat();
+  };
+  const cv::Mat event_frame = image_of(Modality::Events), frame = image_of(Modality::Frames);
   const double age_s = last_ ? to_seconds(step.t - *last_) : 0.0;
-  usual_rate_hz_ += (last_ ? 1.0 - std::exp(-age_s) : 1.0) * (step.event_rate_hz - usual_rate_hz_);
+  usual_rate_hz_ += (last_ ? 1.0 - std::exp(-age_s) : 1.0) * (events.event_rate_hz - usual_rate_hz_);
   last_ = step.t;
-  if (step.event_rate_hz > 4.0 * usual_rate_hz_) return;  // a flash or a burst of noise
-  if (!frame_.empty() && !step.frame) return;             // a moment with both images beats one with events alone
-  if (step.event_frame.empty() && !step.frame) return;
+  if (events.event_rate_hz > 4.0 * usual_rate_hz_) return;  // a flash or a burst of noise
+  if (!frame_.empty() && frame.empty()) return;             // a moment with both images beats one with events alone
+  if (event_frame.empty() && frame.empty()) return;
   const double liveliness =
-      step.event_frame.empty() ? static_cast<double>(step.frame_tracks.size()) : step.event_rate_hz;
+      event_frame.empty() ? static_cast<double>(numbers_of(step, Modality::Frames).tracks) : events.event_rate_hz;
   const double score = step.status == TrackingStatus::Good ? 1.0 + liveliness : -1.0 / (1.0 + liveliness);
-  const bool first_frame = frame_.empty() && step.frame;
+  const bool first_frame = frame_.empty() && !frame.empty();
   if (score <= score_ && !first_frame) return;
   score_ = score;
-  if (step.frame) frame_ = step.frame->image.clone();
-  event_frame_ = step.event_frame.clone();
+  if (!frame.empty()) frame_ = frame.clone();
+  event_frame_ = event_frame.clone();
 }
 
 cv::Mat draw_overview(const OverviewContent& content) {

@@ -15,9 +15,11 @@ namespace {
 Step good_step(double rate_hz, bool frame) {
   Step step;
   step.status = TrackingStatus::Good;
-  step.event_rate_hz = rate_hz;
-  step.event_frame = cv::Mat(18, 24, CV_8UC1, cv::Scalar(1));
-  if (frame) step.frame = Frame{{}, "frames", cv::Mat(18, 24, CV_8UC1, cv::Scalar(rate_hz))};
+  step.cameras = {{.name = "events",
+                   .modality = Modality::Events,
+                   .image = cv::Mat(18, 24, CV_8UC1, cv::Scalar(1)),
+                   .event_rate_hz = rate_hz},
+                  {.name = "frames", .image = frame ? cv::Mat(18, 24, CV_8UC1, cv::Scalar(rate_hz)) : cv::Mat()}};
   return step;
 }
 

@@ -93,10 +93,12 @@ class Report : public ::testing::Test {
     step.state.T_W_B = SE3(so3::exp({0.0, 0.0, a}), Eigen::Vector3d(std::cos(a), std::sin(a), 0.1 * a));
     step.keyframe = i % 5 == 0;
     step.found_again = i == 60;
-    step.event_survival = 0.9;
     if (i == 60) step.found = {{timestamp_from_seconds(100.0), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()}};
     step.landmarks = {{static_cast<FeatureId>(i), Eigen::Vector3d(3.0, i, 0.0)}};
-    step.event_frame = cv::Mat(180, 240, CV_8UC1, cv::Scalar(i % 256));
+    step.cameras = {{.name = "events",
+                     .modality = Modality::Events,
+                     .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(i % 256)),
+                     .survival = 0.9}};
     if (i >= 10)
       step.covariance = PoseCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity()};
     return step;

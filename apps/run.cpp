@@ -12,6 +12,7 @@
 #include "edged/io/zip_writer.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
+#include "kind_numbers.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
 #include "run_archive.hpp"
@@ -101,7 +102,8 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
       source_(std::move(source)),
       mode_(mode),
       frame_(source_.calibration.rig, frame_name(options.frame, source_)),
-      check_(source_.dataset->info(), source_.calibration, mode_),
+      used_(used_cameras(source_.calibration.rig, mode_, config.odometry.cameras)),
+      check_(source_.dataset->info(), source_.calibration, used_),
       folder_(run_folder_path(options, source_.dataset->info(), mode_)),
       odometry_(source_.calibration.rig, source_.calibration.imu, mode_, config.odometry,
                 {kInOrder, options.live ? Inference::OwnThread : Inference::Synchronous}),
@@ -205,9 +207,10 @@ void Run::show_status(const Step& step) {
                                             : fmt::format("{:.1f} s", done_s);
   text += fmt::format("  {:.1f}x", done_s / meter_.wall_s());
   if (mode_ != Mode::Frames) {
-    text += fmt::format("  {}ev/s  event tracks {}", si_number(step.event_rate_hz), step.event_tracks.size());
+    const KindNumbers events = numbers_of(step, Modality::Events);
+    text += fmt::format("  {}ev/s  event tracks {}", si_number(events.event_rate_hz), events.tracks);
   }
-  if (mode_ != Mode::Events) text += fmt::format("  frame tracks {}", step.frame_tracks.size());
+  if (mode_ != Mode::Events) text += fmt::format("  frame tracks {}", numbers_of(step, Modality::Frames).tracks);
   text += "  " + to_string(step.status);
   if (!step.waiting_for.empty()) text += ", waits for " + step.waiting_for;
   status_line_.show(text);
@@ -225,7 +228,7 @@ std::optional<Measurement> Run::next_measurement() {
   std::optional<Measurement> measurement = read();
   if (!measurement) return measurement;
   check(*measurement);
-  statistics_.add_visual(*measurement, source_.calibration.rig, mode_);
+  statistics_.add_visual(*measurement, used_);
   return measurement;
 }
 

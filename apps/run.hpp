@@ -73,6 +73,7 @@ class Run {
   Source source_;
   Mode mode_;
   OutputFrame frame_;
+  Rig used_;  ///< the cameras of the run
   RunCheck check_;
   std::filesystem::path folder_, archive_;
   StageTimings program_timings_;

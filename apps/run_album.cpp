@@ -41,18 +41,23 @@ void RunAlbum::add(const Step& step) {
 
 void RunAlbum::take_picture(const Step& step) {
   constexpr Duration kPatience = std::chrono::milliseconds(200);  // for a step with images of both cameras
-  const bool events = !step.event_frame.empty(), frame = step.frame && !step.frame->image.empty();
-  events_come_ |= events;
-  frames_come_ |= frame;
+  const auto seen_by = [&step](Modality modality) {               // the first camera of the kind
+    const CameraStep* camera = step.find(modality);
+    return camera && !camera->image.empty() ? camera : nullptr;
+  };
+  const CameraStep *events = seen_by(Modality::Events), *frame = seen_by(Modality::Frames);
+  events_come_ |= events != nullptr;
+  frames_come_ |= frame != nullptr;
   if (!events && !frame) return;
   if (!due_) due_ = step.t;
   if (step.t < *due_) return;
   if ((events_come_ && !events) || (frames_come_ && !frame)) {
     if (step.t < *due_ + kPatience) return;
   }
-  pictures_.push_back(
-      {step.t, events ? track_picture(step.event_frame, step.event_tracks, kWidest_px) : std::vector<unsigned char>{},
-       frame ? track_picture(step.frame->image, step.frame_tracks, kWidest_px) : std::vector<unsigned char>{}});
+  const auto picture = [](const CameraStep* camera) {
+    return camera ? track_picture(camera->image, camera->tracks, kWidest_px) : std::vector<unsigned char>{};
+  };
+  pictures_.push_back({step.t, picture(events), picture(frame)});
   if (pictures_.size() > kMostPictures) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pictures_.size(); i += 2) std::swap(pictures_[kept++], pictures_[i]);

@@ -100,11 +100,11 @@ void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
 
 }  // namespace
 
-RunCheck::RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode mode)
-    : has_extrinsics_(calibration.has_extrinsics), mode_(mode), surveyor_(info) {
+RunCheck::RunCheck(const DatasetInfo& info, const Calibration& calibration, const Rig& used)
+    : has_extrinsics_(calibration.has_extrinsics), surveyor_(info) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
-    if (mode == (modality == Modality::Events ? Mode::Frames : Mode::Events)) continue;
-    const RigCamera& camera = *calibration.rig.find(modality);
+    if (used.find(modality) == nullptr) continue;
+    const RigCamera& camera = *used.find(modality);
     cameras_.push_back({camera, VisualTurns(camera, kCorners)});
     cameras_.back().next_look = least_turning(camera);
     cameras_.back().twin = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
@@ -113,10 +113,12 @@ RunCheck::RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode
 }
 
 void RunCheck::add(const Measurement& measurement) {
-  if (std::holds_alternative<EventBatch>(measurement)
-          ? mode_ == Mode::Frames
-          : std::holds_alternative<Frame>(measurement) && mode_ == Mode::Events)
-    return;
+  const auto* batch = std::get_if<EventBatch>(&measurement);
+  const auto* frame = std::get_if<Frame>(&measurement);
+  const auto is_its = [&](const Camera& camera) {
+    return camera.given.name == (batch ? batch->camera : frame->camera);
+  };
+  if ((batch || frame) && std::ranges::none_of(cameras_, is_its)) return;
   using Detail = Surveyor::Detail;
   surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps);
   const auto first = first_stamp(measurement), last = last_stamp(measurement);

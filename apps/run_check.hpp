@@ -19,9 +19,10 @@ namespace edged {
 /// turns, and of two behind one lens only one. That, and that most events are only counted, makes it cheap.
 class RunCheck {
  public:
-  RunCheck(const DatasetInfo& info, const Calibration& calibration, Mode mode);
+  /// used: the cameras of the run; the first of each kind is checked.
+  RunCheck(const DatasetInfo& info, const Calibration& calibration, const Rig& used);
 
-  /// Every measurement that comes, before it is used; what the mode does not need is passed over.
+  /// Every measurement that comes, before it is used; those of other cameras are passed over.
   void add(const Measurement& measurement);
 
   /// Errors that have become certain and were not given out before.
@@ -50,7 +51,6 @@ class RunCheck {
   std::vector<Finding> judge(Survey survey) const;
 
   bool has_extrinsics_;
-  Mode mode_;
   Surveyor surveyor_;
   GyroIntegral gyro_;
   double rate_ = 0.0;  ///< of the gyro, at present [rad/s]

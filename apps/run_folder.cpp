@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "edged/core/check.hpp"
+#include "kind_numbers.hpp"
 
 namespace edged {
 namespace {
@@ -74,13 +75,14 @@ std::string state_line(const Step& step) {
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
   }
-  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, step.event_tracks.size(),
-                      step.frame_tracks.size(), step.landmarks.size());
-  for (const std::optional<double>& number : {step.event_survival, step.frame_survival})
+  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
+  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, events.tracks, frames.tracks,
+                      step.landmarks.size());
+  for (const std::optional<double>& number : {events.survival, frames.survival})
     line += number ? fmt::format(",{}", *number) : ",";
   const std::optional<double> reach_s = map_reach_s(step);
   line += reach_s ? fmt::format(",{},{}", step.found.size(), *reach_s) : ",,";
-  line += fmt::format(",{},{}", step.event_rate_hz, step.scene_depth);
+  line += fmt::format(",{},{}", events.event_rate_hz, step.scene_depth);
   const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
   if (step.covariance) {

@@ -121,10 +121,8 @@ void RunMcap::add(const Step& step, const RunAlbum& album) {
   put_status(step);
   put("/stats", "edged.Stats", step.t, foxglove::stats(step));
   if (is_tracking(step.status)) put_pose(step);
-  if (!step.event_frame.empty() && event_pace_.due(step.t))
-    put_picture(step.t, Modality::Events, step.event_frame, step.event_tracks);
-  if (step.frame && frame_pace_.due(step.t))
-    put_picture(step.t, Modality::Frames, step.frame->image, step.frame_tracks);
+  put_picture(step, Modality::Events, event_pace_);
+  put_picture(step, Modality::Frames, frame_pace_);
   if (!album.points().empty() && map_pace_.due(step.t)) {
     put("/map", kPointCloud, step.t, foxglove::point_cloud(step.t, kWorld, album_points(album)));
     put_keyframes(step.t);
@@ -137,6 +135,7 @@ void RunMcap::describe_cameras(Timestamp t) {
   std::vector<foxglove::Transform> transforms;
   for (const RigCamera& camera : rig_.cameras) {
     transforms.push_back({kBody, camera.name, camera.T_B_C});
+    if (&camera != rig_.find(camera.modality)) continue;  // its pictures are not shown
     put(topic_of(camera.modality, "calibration"), "foxglove.CameraCalibration", t,
         foxglove::camera_calibration(t, camera, picture_scale(camera.model.width())));
   }
@@ -159,9 +158,12 @@ void RunMcap::put_pose(const Step& step) {
   }
 }
 
-void RunMcap::put_picture(Timestamp t, Modality modality, const cv::Mat& image, const std::vector<Track>& tracks) {
-  put(topic_of(modality, "image"), "foxglove.CompressedImage", t,
-      foxglove::compressed_image(t, rig_.find(modality)->name, track_picture(image, tracks, kWidestOfFile_px)));
+/// Of the first camera of that kind.
+void RunMcap::put_picture(const Step& step, Modality modality, Pace& pace) {
+  const CameraStep* camera = step.find(modality);
+  if (camera == nullptr || camera->image.empty() || !pace.due(step.t)) return;
+  put(topic_of(modality, "image"), "foxglove.CompressedImage", step.t,
+      foxglove::compressed_image(step.t, camera->name, track_picture(camera->image, camera->tracks, kWidestOfFile_px)));
 }
 
 void RunMcap::put_keyframes(Timestamp t) {

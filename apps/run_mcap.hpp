@@ -48,7 +48,7 @@ class RunMcap {
   void put(const std::string& topic, const char* type, Timestamp t, const foxglove::Json& message);
   void describe_cameras(Timestamp t);
   void put_pose(const Step& step);
-  void put_picture(Timestamp t, Modality modality, const cv::Mat& image, const std::vector<Track>& tracks);
+  void put_picture(const Step& step, Modality modality, Pace& pace);
   void put_keyframes(Timestamp t);
   void put_status(const Step& step);
 

@@ -27,7 +27,7 @@ Step step_of(int number) {
   step.keyframe = true;
   step.state.T_W_B = SE3(Eigen::Quaterniond::Identity(), {0.01 * number, 0, 0});
   step.landmarks = {{7, {1, 2, 3}}};
-  step.frame = Frame{step.t, "left", cv::Mat(960, 1280, CV_8UC1, cv::Scalar(90))};
+  step.cameras = {{.name = "left", .image = cv::Mat(960, 1280, CV_8UC1, cv::Scalar(90))}};
   return step;
 }
 

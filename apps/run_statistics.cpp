@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 namespace {
@@ -36,13 +35,14 @@ void RunStatistics::add_visual(Timestamp first, Timestamp last) {
   last_visual_ = std::max(last_visual_, last);
 }
 
-void RunStatistics::add_visual(const Measurement& measurement, const Rig& rig, Mode mode) {
+void RunStatistics::add_visual(const Measurement& measurement, const Rig& used) {
   const std::optional<Timestamp> first = first_stamp(measurement);
   if (!first || std::holds_alternative<ImuSample>(measurement)) return;
-  const bool events = std::holds_alternative<EventBatch>(measurement);
-  if (const RigCamera* camera = used_camera(rig, mode, events ? Modality::Events : Modality::Frames)) {
+  const auto* batch = std::get_if<EventBatch>(&measurement);
+  const std::string& name = batch ? batch->camera : std::get<Frame>(measurement).camera;
+  const auto camera = std::ranges::find(used.cameras, name, &RigCamera::name);
+  if (camera != used.cameras.end())
     add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);
-  }
 }
 
 void RunStatistics::add(const Step& step) {

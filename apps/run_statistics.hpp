@@ -20,7 +20,7 @@ class RunStatistics {
   /// A visual measurement that the mode uses: spans the time that a pose could cover.
   void add_visual(Timestamp first, Timestamp last);
   /// The same of a measurement as recorded, where it is one.
-  void add_visual(const Measurement& measurement, const Rig& rig, Mode mode);
+  void add_visual(const Measurement& measurement, const Rig& used);
   void add(const Step& step);
 
   std::size_t packets() const { return packets_; }

@@ -66,9 +66,8 @@ std::vector<GrowingTrails> follow_corners(Source& source, Mode mode, const Odome
       odometry, [&] { return source.dataset->next(); },
       [&](const Step& step) {
         for (GrowingTrails& camera : cameras) {
-          const bool events = camera.seen.camera.modality == Modality::Events;
-          const bool image = events ? !step.event_frame.empty() : step.frame.has_value();
-          if (image) camera.add(events ? step.event_tracks : step.frame_tracks, step.t, is_tracking(step.status));
+          const CameraStep& seen = *step.find(camera.seen.camera.name);
+          if (!seen.image.empty()) camera.add(seen.tracks, step.t, is_tracking(step.status));
         }
         return true;
       });

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "end_to_end.hpp"
+#include "kind_numbers.hpp"
 
 namespace edged {
 namespace {
@@ -20,10 +21,11 @@ const Flight& flight() {
 }
 
 /// Every number of a step but its stamp.
-std::vector<double> numbers_of(const Step& o) {
+std::vector<double> all_numbers_of(const Step& o) {
   const auto& p = o.state.T_W_B.translation();
   const auto& q = o.state.T_W_B.rotation();
   const auto &v = o.state.v_W, &bg = o.state.bias_gyro, &ba = o.state.bias_accel;
+  const KindNumbers events = numbers_of(o, Modality::Events), frames = edged::numbers_of(o, Modality::Frames);
   return {p.x(),
           p.y(),
           p.z(),
@@ -40,11 +42,11 @@ std::vector<double> numbers_of(const Step& o) {
           ba.x(),
           ba.y(),
           ba.z(),
-          o.event_rate_hz,
+          events.event_rate_hz,
           o.scene_depth,
           static_cast<double>(o.keyframe),
-          static_cast<double>(o.event_tracks.size()),
-          static_cast<double>(o.frame_tracks.size()),
+          static_cast<double>(events.tracks),
+          static_cast<double>(frames.tracks),
           static_cast<double>(o.landmarks.size()),
           static_cast<double>(o.status)};
 }
@@ -57,7 +59,7 @@ void expect_the_same_bits(const FlightRun& a, const FlightRun& b, Duration shift
   for (std::size_t i = 0; i < a.steps.size(); ++i) {
     ASSERT_EQ(a.steps[i].state.t + shift, b.steps[i].state.t) << "packet " << i;
     ASSERT_EQ(a.event_frame_sums[i], b.event_frame_sums[i]) << "packet " << i;
-    const std::vector<double> x = numbers_of(a.steps[i]), y = numbers_of(b.steps[i]);
+    const std::vector<double> x = all_numbers_of(a.steps[i]), y = all_numbers_of(b.steps[i]);
     ASSERT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0)
         << "packet " << i << " at " << to_seconds(a.steps[i].state.t) << " s: " << testing::PrintToString(x) << " and "
         << testing::PrintToString(y);

@@ -12,6 +12,7 @@
 #include "claims.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 namespace {
@@ -50,17 +51,21 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
                      const OdometryConfig& config) {
   Odometry odometry(calibration.rig, calibration.imu, mode, config, {kInOrder});
   FlightRun run;
+  const Rig used = used_cameras(calibration.rig, mode, config.cameras);
   const auto next_measurement = [&, next = measurements.begin()]() mutable -> std::optional<Measurement> {
     if (next == measurements.end()) return std::nullopt;
-    run.statistics.add_visual(*next, calibration.rig, mode);
+    run.statistics.add_visual(*next, used);
     return *next++;
   };
   drive(odometry, next_measurement, [&](Step step) {
     run.statistics.add(step);
-    run.event_frame_sums.push_back(step.event_frame.empty() ? 0.0 : cv::sum(step.event_frame)[0]);
-    step.event_frame.release();
-    step.frame.reset();
-    step.events = {}, step.drawn = 0;
+    double sum = 0.0;
+    for (CameraStep& camera : step.cameras) {
+      if (camera.modality == Modality::Events && !camera.image.empty()) sum += cv::sum(camera.image)[0];
+      camera.image.release();
+      camera.events = {}, camera.drawn = 0;
+    }
+    run.event_frame_sums.push_back(sum);
     run.steps.push_back(std::move(step));
     return true;
   });

@@ -60,6 +60,7 @@ struct StatusConfig {
 struct OdometryConfig {
   OdometryConfig();
 
+  std::string cameras;  ///< names, separated by commas; empty: the rig's first of each kind that the mode uses
   PacketizerConfig packets;
   EventFrameConfig event_frame;
   EnhanceConfig enhance;

@@ -128,7 +128,7 @@ struct RigCamera {
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };
 
-/// A run uses one event camera and one frame camera, the first of its modality; others may be there.
+/// A run uses the first event camera and the first frame camera, or those that the option `cameras` names.
 struct Rig {
   std::string name;
   std::vector<RigCamera> cameras;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/estimator/keyframe_record.hpp"
@@ -33,6 +34,26 @@ struct PoseCovariance {
   Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
 };
 
+/// One camera of the run, at one packet.
+struct CameraStep {
+  std::string name;
+  Modality modality = Modality::Frames;
+  /// CV_8UC1: the event frame, motion-compensated and undistorted, empty when there were too few events; or the frame
+  /// as it came, empty in packets without one.
+  cv::Mat image = {};
+  /// The live corners by id, in pixels of `image`; where that is empty those of the camera's last one.
+  std::vector<Track> tracks = {};
+  /// Running mean of the share of corners that live through an image, 0 to 1: blur, noise and darkness end them.
+  double survival = 1.0;
+
+  // Of event cameras:
+  std::vector<Event> events = {};  ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
+  std::size_t drawn = 0;           ///< how many of them, the newest, `image` is of
+  double event_rate_hz = 0.0;      ///< of this packet
+
+  std::span<const Event> drawn_events() const { return std::span(events).last(drawn); }
+};
+
 /// Images share their pixels with those of the odometry: they are to be looked at, not drawn on.
 struct Step {
   Timestamp t;  ///< the packet's instant, IMU clock
@@ -53,24 +74,16 @@ struct Step {
   std::string started;       ///< the estimator has started with this packet: how, with numbers
   std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
 
-  /// The live corners by id, undistorted pixels on the event frame, as given on the standard frame. Where the packet
-  /// brought no image of a camera they are those of its last one.
-  std::vector<Track> event_tracks, frame_tracks;
-  /// Running mean of the share of corners that live through an image of that camera, 0 to 1: blur, noise and darkness
-  /// end them. Nothing where the mode has no such camera.
-  std::optional<double> event_survival, frame_survival;
+  std::vector<CameraStep> cameras;   ///< those of the run: event cameras, then frame cameras, as the rig has them
   std::vector<Landmark> landmarks;   ///< in the window, where it was solved
   std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this packet
 
-  cv::Mat event_frame;         ///< motion-compensated, CV_8UC1, undistorted; empty when there were too few events
-  std::optional<Frame> frame;  ///< that came at t
-  std::vector<Event> events;   ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
-  std::size_t drawn = 0;       ///< how many of them, the newest, event_frame is of
-  double event_rate_hz = 0;    ///< of this packet
-  double scene_depth = 0;      ///< z-depth [m] used by the warp
+  double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
 
-  std::span<const Event> drawn_events() const { return std::span(events).last(drawn); }
+  /// The first camera of that kind, null where the run has none.
+  const CameraStep* find(Modality modality) const;
+  const CameraStep* find(std::string_view camera) const;
 };
 
 }  // namespace edged

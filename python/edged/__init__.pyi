@@ -87,6 +87,31 @@ class _BodyState:
 class State(_BodyState): ...
 
 
+class CameraStep:
+    """One camera of the run, at one packet."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def modality(self) -> Literal["events", "frames"]: ...
+    @property
+    def image(self) -> NDArray[np.uint8] | None:
+        """The event frame, motion-compensated and undistorted, or the frame as it came; None in packets without."""
+    @property
+    def tracks(self) -> NDArray[np.void]:
+        """id, pixel, point, previous_pixel, age, first_seen; pixels of image."""
+    @property
+    def survival(self) -> float:
+        """Running mean of the share of corners that live through an image, 0 to 1."""
+    @property
+    def events(self) -> NDArray[np.void]:
+        """Of the packet, oldest first, on the IMU's clock; some were in the one before."""
+    @property
+    def drawn(self) -> int:
+        """How many of them, the newest, image shows."""
+    @property
+    def event_rate_hz(self) -> float: ...
+
+
 class Step(_BodyState):
     """What one packet of measurements brought. The state means nothing while status is INITIALIZING. Arrays are the step's own
     memory, read-only, and keep it alive."""
@@ -112,6 +137,9 @@ class Step(_BodyState):
     def started(self) -> str: ...
     @property
     def lost_because(self) -> str: ...
+    @property
+    def cameras(self) -> dict[str, CameraStep]:
+        """By name: those of the run, event cameras first. What follows is of the first of its kind."""
     @property
     def event_tracks(self) -> NDArray[np.void]:
         """id, pixel, point, previous_pixel, age, first_seen; pixels of the event frame."""

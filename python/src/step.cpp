@@ -37,27 +37,66 @@ std::optional<Eigen::Matrix3d> covariance(const Step& step, Part part) {
   return (*step.covariance).*part;
 }
 
-py::object frame_of(const py::object& self) {
-  const auto& step = self.cast<const Step&>();
-  return step.frame ? py::object(view(step.frame->image, self)) : py::object(py::none());
+/// What stands for a camera that the run does not have.
+const CameraStep& camera_of(const Step& step, Modality modality) {
+  static const CameraStep kNone;
+  const CameraStep* camera = step.find(modality);
+  return camera ? *camera : kNone;
 }
 
-py::object event_frame_of(const py::object& self) {
-  const auto& step = self.cast<const Step&>();
-  return step.event_frame.empty() ? py::object(py::none()) : py::object(view(step.event_frame, self));
+py::object picture(const cv::Mat& image, const py::object& owner) {
+  return image.empty() ? py::object(py::none()) : py::object(view(image, owner));
 }
 
-void bind_arrays(py::class_<Step>& bound) {
-  const auto add = [&](const char* name, auto member) {
-    bound.def_property_readonly(name,
-                                [=](const py::object& self) { return view(self.cast<const Step&>().*member, self); });
+void bind_camera(py::module_& module) {
+  py::class_<CameraStep> camera(module, "CameraStep");
+  camera.def_readonly("name", &CameraStep::name)
+      .def_property_readonly("modality",
+                             [](const CameraStep& c) { return c.modality == Modality::Events ? "events" : "frames"; })
+      .def_property_readonly("image",
+                             [](const py::object& self) { return picture(self.cast<const CameraStep&>().image, self); })
+      .def_property_readonly("tracks",
+                             [](const py::object& self) { return view(self.cast<const CameraStep&>().tracks, self); })
+      .def_property_readonly("events",
+                             [](const py::object& self) { return view(self.cast<const CameraStep&>().events, self); })
+      .def_readonly("survival", &CameraStep::survival)
+      .def_readonly("drawn", &CameraStep::drawn)
+      .def_readonly("event_rate_hz", &CameraStep::event_rate_hz)
+      .def("__repr__", [](const CameraStep& c) {
+        return fmt::format("<edged.CameraStep '{}' {} tracks>", c.name, c.tracks.size());
+      });
+}
+
+/// Each camera keeps the step alive.
+py::dict cameras_of(const py::object& self) {
+  py::dict cameras;
+  for (const CameraStep& camera : self.cast<const Step&>().cameras)
+    cameras[py::str(camera.name)] = py::cast(&camera, py::return_value_policy::reference_internal, self);
+  return cameras;
+}
+
+/// Those of the first camera of a kind have names of their own: most runs have one of each.
+void bind_first_cameras(py::class_<Step>& bound) {
+  const auto add = [&](const char* name, Modality modality, auto value) {
+    bound.def_property_readonly(
+        name, [=](const py::object& self) { return value(camera_of(self.cast<const Step&>(), modality), self); });
   };
-  add("event_tracks", &Step::event_tracks);
-  add("frame_tracks", &Step::frame_tracks);
-  add("landmarks", &Step::landmarks);
-  add("events", &Step::events);
-  bound.def_property_readonly("event_frame", &event_frame_of);
-  bound.def_property_readonly("frame", &frame_of);
+  const auto tracks = [](const CameraStep& camera, const py::object& self) { return view(camera.tracks, self); };
+  const auto image = [](const CameraStep& camera, const py::object& self) { return picture(camera.image, self); };
+  const auto survival = [](const CameraStep& camera, const py::object&) {
+    return camera.name.empty() ? std::nullopt : std::optional(camera.survival);
+  };
+  add("event_tracks", Modality::Events, tracks);
+  add("frame_tracks", Modality::Frames, tracks);
+  add("event_frame", Modality::Events, image);
+  add("frame", Modality::Frames, image);
+  add("event_survival", Modality::Events, survival);
+  add("frame_survival", Modality::Frames, survival);
+  add("events", Modality::Events,
+      [](const CameraStep& camera, const py::object& self) { return view(camera.events, self); });
+  add("drawn", Modality::Events, [](const CameraStep& camera, const py::object&) { return camera.drawn; });
+  add("event_rate_hz", Modality::Events,
+      [](const CameraStep& camera, const py::object&) { return camera.event_rate_hz; });
 }
 
 }  // namespace
@@ -73,9 +112,10 @@ void bind_step(py::module_& module) {
   state.def_readonly("t", &NavState::t);
   bind_state(state, [](const NavState& s) -> const NavState& { return s; });
 
+  bind_camera(module);
   py::class_<Step> step(module, "Step");
   bind_state(step, [](const Step& s) -> const NavState& { return s.state; });
-  bind_arrays(step);
+  bind_first_cameras(step);
   step.def_readonly("t", &Step::t)
       .def_readonly("status", &Step::status)
       .def_property_readonly("is_tracking", [](const Step& s) { return is_tracking(s.status); })
@@ -88,10 +128,9 @@ void bind_step(py::module_& module) {
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)
-      .def_readonly("event_survival", &Step::event_survival)
-      .def_readonly("frame_survival", &Step::frame_survival)
-      .def_readonly("drawn", &Step::drawn)
-      .def_readonly("event_rate_hz", &Step::event_rate_hz)
+      .def_property_readonly("cameras", &cameras_of)
+      .def_property_readonly("landmarks",
+                             [](const py::object& self) { return view(self.cast<const Step&>().landmarks, self); })
       .def_readonly("scene_depth", &Step::scene_depth)
       .def("__repr__", &step_text);
 }

@@ -34,9 +34,13 @@ Node::Node(const NodeConfig& config, const Calibration& calibration)
       backlog_(config.max_age_s),
       outputs_(private_, config),
       spinner_(kThreads) {
-  const auto camera = [&](Modality modality) { return used_camera(calibration.rig, config.mode, modality); };
-  if (const RigCamera* events = camera(Modality::Events)) subscribe("events", Role::Events, events->name);
-  if (const RigCamera* frames = camera(Modality::Frames)) subscribe("image", Role::Frames, frames->name);
+  // The first of a kind has a short name for its topic, another has its own.
+  const Rig used = used_cameras(calibration.rig, config.mode, config.options.cameras);
+  for (const RigCamera& camera : used.cameras) {
+    const bool events = camera.modality == Modality::Events, first = &camera == used.find(camera.modality);
+    const std::string topic = events ? "events" : "image";
+    subscribe(first ? topic : camera.name + "/" + topic, events ? Role::Events : Role::Frames, camera.name);
+  }
   subscribe("imu", Role::Imu, "");
 }
 

@@ -28,7 +28,7 @@ Outputs::Outputs(ros::NodeHandle& node, const NodeConfig& config)
 }
 
 void Outputs::publish(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig) {
-  publish_images(step, rig);
+  publish_images(step);
   if (!is_tracking(step.status)) return;
   publish_pose(step, gyro_B, rig);
   if (!step.landmarks.empty() && landmarks_.getNumSubscribers() > 0)
@@ -55,15 +55,14 @@ void Outputs::extend_path(Timestamp t, const nav_msgs::Odometry& odometry) {
   path_sent_ = t;
 }
 
-void Outputs::publish_images(const Step& step, const Rig& rig) const {
-  const auto name = [&](Modality modality) {
-    const RigCamera* camera = rig.find(modality);
-    return camera ? camera->name : std::string();
+void Outputs::publish_images(const Step& step) const {
+  const auto publish = [&step](Modality modality, const ros::Publisher& publisher) {
+    const CameraStep* camera = step.find(modality);
+    if (camera && !camera->image.empty() && publisher.getNumSubscribers() > 0)
+      publisher.publish(tracks_message(step.t, camera->name, camera->image, camera->tracks));
   };
-  if (step.frame && frame_tracks_.getNumSubscribers() > 0)
-    frame_tracks_.publish(tracks_message(step.t, step.frame->camera, step.frame->image, step.frame_tracks));
-  if (!step.event_frame.empty() && event_tracks_.getNumSubscribers() > 0)
-    event_tracks_.publish(tracks_message(step.t, name(Modality::Events), step.event_frame, step.event_tracks));
+  publish(Modality::Frames, frame_tracks_);
+  publish(Modality::Events, event_tracks_);
 }
 
 void Outputs::publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,

@@ -25,7 +25,7 @@ class Outputs {
 
  private:
   void publish_pose(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig);
-  void publish_images(const Step& step, const Rig& rig) const;
+  void publish_images(const Step& step) const;
   void extend_path(Timestamp t, const nav_msgs::Odometry& odometry);
 
   const FrameNames frames_;

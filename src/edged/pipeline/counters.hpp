@@ -10,7 +10,7 @@ namespace edged {
 /// What was left out as it came.
 struct IntakeCounters {
   std::size_t unknown_camera = 0;   ///< measurements of a camera that the rig does not have
-  std::size_t unused_camera = 0;    ///< of one that the mode does not use, or that is not the first of its kind
+  std::size_t unused_camera = 0;    ///< of one of the rig that the run does not use
   std::size_t absurd_stamps = 0;    ///< events and measurements more than 146 years from zero
   std::size_t far_ahead = 0;        ///< the same more than 10 s ahead of all, and contradicted by the next
   std::size_t clocks_set_back = 0;  ///< how often; each time all begins anew

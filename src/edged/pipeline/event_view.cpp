@@ -32,17 +32,19 @@ EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
       least_events_(static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * pixels()))),
       thinned_every_(std::max(1, static_cast<int>(camera.width() / config.thin_width_px))) {}
 
-bool EventView::quiet(const Packet& packet) const { return packet.event_rate_hz < quiet_rate_per_pixel_ * pixels(); }
+bool EventView::quiet(const PacketEvents& events) const {
+  return events.event_rate_hz < quiet_rate_per_pixel_ * pixels();
+}
 
-EventsToDraw EventView::drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth,
+EventsToDraw EventView::drawn_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
                                      bool thin) const {
-  const std::span<const Event> window = packet.window();
+  const std::span<const Event> window = events.window();
   if (window.size() < least_events_ || body.poses().size() < 2) return {};
   const int every = thin ? thinned_every_ : 1;
   if (!body.started()) return {window, every};
   const double travel_px_per_s = ideal().mean_focal() * body.now().v_W.norm() / scene_depth;
   const double age_s = std::min(max_travel_px_ / std::max(travel_px_per_s, 1e-3), max_age_s_);
-  const auto oldest = std::lower_bound(window.begin(), window.end(), packet.t - duration_from_seconds(age_s),
+  const auto oldest = std::lower_bound(window.begin(), window.end(), body.now().t - duration_from_seconds(age_s),
                                        [](const Event& event, Timestamp t) { return event.t < t; });
   return {window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_)), every};
 }

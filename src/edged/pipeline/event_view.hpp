@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the event camera shows of a packet: which of its events are drawn, where, and how the frame is enhanced.
+// What an event camera shows of a packet: which of its events are drawn, where, and how the frame is enhanced.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -10,7 +10,7 @@
 #include "edged/events/accumulate.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
-#include "edged/pipeline/packetizer.hpp"
+#include "edged/pipeline/packet.hpp"
 
 namespace edged {
 
@@ -32,12 +32,12 @@ class EventView {
   EventView(const CameraModel& camera, const OdometryConfig& config);
 
   /// Fewer events than anything that moves would make.
-  bool quiet(const Packet& packet) const;
-  /// Those of the packet's window that make a frame: shortened when the body moves fast, as over a long way the warp
+  bool quiet(const PacketEvents& events) const;
+  /// Those of the window that make a frame: shortened when the body moves fast, as over a long way the warp
   /// smears what does not lie at the scene's one depth (z, [m]). Rotation does not count, its warp knows no depth.
-  /// body: predicted to the packet. Empty when there are too few. thin: a wide sensor's picture may be noisier than its
-  /// events allow.
-  EventsToDraw drawn_events(const Packet& packet, const BodyMotion& body, double scene_depth, bool thin) const;
+  /// body: at the time of their packet, as predicted. Empty when there are too few. thin: a wide sensor's picture may
+  /// be noisier than its events allow.
+  EventsToDraw drawn_events(const PacketEvents& events, const BodyMotion& body, double scene_depth, bool thin) const;
   /// drawn: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
   /// all.
   EventImage draw(const EventsToDraw& drawn, const RigCamera& camera, const BodyMotion& body, double scene_depth,

@@ -14,10 +14,9 @@ namespace {
 constexpr double kSpan_s = 0.1, kDepth_m = 2.0;
 constexpr int kPixels = 240 * 180;
 
-/// A packet at 0.1 s whose events come evenly over the time before, all over the image.
-Packet packet_of(std::size_t events) {
-  Packet packet;
-  packet.t = timestamp_from_seconds(kSpan_s);
+/// Those of a packet at 0.1 s, which come evenly over the time before, all over the image.
+PacketEvents packet_of(std::size_t events) {
+  PacketEvents packet;
   for (std::size_t i = 0; i < events; ++i) {
     const double t_s = kSpan_s * static_cast<double>(i + 1) / static_cast<double>(events);
     const std::size_t place = i * 0x9e3779b97f4a7c15U >> 24U;  // as good as random
@@ -51,7 +50,7 @@ class EventViewTest : public testing::Test {
 
   EventImage draw(std::size_t events, double speed, bool thin = false) {
     EventView view(camera_.model, config_);
-    const Packet packet = packet_of(events);
+    const PacketEvents packet = packet_of(events);
     const BodyMotion body = moving(speed);
     const EventsToDraw drawn = view.drawn_events(packet, body, kDepth_m, thin);
     return drawn.events.empty() ? EventImage{} : view.draw(drawn, camera_, body, kDepth_m, nullptr);

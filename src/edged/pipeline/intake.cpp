@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "edged/core/measurement_stamps.hpp"
@@ -15,18 +16,14 @@ constexpr Duration kBehind = std::chrono::seconds(1);
 constexpr Duration kSure = std::chrono::milliseconds(500);
 constexpr std::size_t kMostTimes = 2;
 
-/// Stamps are compared as recorded: what a camera's clock is behind the IMU's by, it lags by, and the other way round.
-SensorDelays as_recorded(SensorDelays delays, const Rig& rig, Mode mode) {
-  delays.validate();
-  if (delays == kInOrder) return delays;
-  for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    const RigCamera* camera = used_camera(rig, mode, modality);
-    if (camera == nullptr) continue;
-    const double offset_s = to_seconds(camera->time_offset);
-    (modality == Modality::Events ? delays.events_s : delays.frames_s) += std::max(0.0, offset_s);
-    delays.imu_s = std::max(delays.imu_s, delays.imu_s - offset_s);
+/// A camera's name for what has waited at its gate.
+template <typename T>
+Measurement measurement_of(const std::string& camera, T item) {
+  if constexpr (std::is_same_v<T, Event>) {
+    return EventBatch{camera, {item}};
+  } else {
+    return item;
   }
-  return delays;
 }
 
 }  // namespace
@@ -42,38 +39,47 @@ bool ClockWatch::set_back(Timestamp t) {
   return t - *behind_since_ >= kSure;
 }
 
-Intake::Intake(const Rig& rig, Mode mode, const SensorDelays& delays)
-    : mode_(mode), delays_(as_recorded(delays, rig, mode)) {
-  times_.emplace_back(mode_, delays_);
-  const RigCamera* events = used_camera(rig, mode, Modality::Events);
-  const RigCamera* frames = used_camera(rig, mode, Modality::Frames);
-  if (events != nullptr) event_camera_ = events->name;
-  for (const RigCamera& camera : rig.cameras) {
-    cameras_.push_back({camera.name, camera.modality, camera.model, &camera == events || &camera == frames});
+Intake::Intake(const Rig& rig, const Rig& used, const SensorDelays& delays) : used_(used), delays_(delays) {
+  delays_.validate();
+  times_.emplace_back(used_, delays_);
+  for (const RigCamera& camera : rig.cameras) known_.emplace_back(camera.name, camera.modality);
+  for (const RigCamera& camera : used.cameras) {
+    if (camera.modality == Modality::Events) {
+      events_.push_back({camera.name, camera.model});
+    } else {
+      frames_.push_back({camera.name, camera.model});
+    }
   }
 }
 
 void Intake::add(Measurement measurement) {
   const std::lock_guard lock(mutex_);
-  std::visit(
-      [this](auto& item) {
-        if (admit(item)) judge(std::move(item));
-      },
-      measurement);
+  std::visit([this](auto& item) { accept(std::move(item)); }, measurement);
 }
 
 /// Of events each is judged by itself.
-void Intake::judge(EventBatch batch) {
-  const std::size_t regular = events_.gate.push_first(batch.events);
+void Intake::accept(EventBatch batch) {
+  Sensor<Event>* sensor = find(events_, batch.camera);
+  if (sensor == nullptr || !admit(batch, sensor->model)) return;
+  const std::size_t regular = sensor->gate.push_first(batch.events);
   if (regular < batch.events.size()) {
     const auto rest = batch.events.begin() + static_cast<std::ptrdiff_t>(regular);
     std::vector<Event> passed(batch.events.begin(), rest);
     const auto pass = [&](const Event& event) { passed.push_back(event); };
     const auto drop = [&](const Event&, Timestamp) { ++counters_.far_ahead; };
-    for (const Event& event : std::span(rest, batch.events.end())) events_.gate.push(event, pass, drop);
+    for (const Event& event : std::span(rest, batch.events.end())) sensor->gate.push(event, pass, drop);
     batch.events = std::move(passed);
   }
-  if (!batch.events.empty()) take(std::move(batch), events_.clock);
+  if (!batch.events.empty()) take(std::move(batch), sensor->clock);
+}
+
+void Intake::accept(Frame frame) {
+  Sensor<Frame>* sensor = find(frames_, frame.camera);
+  if (sensor != nullptr && admit(frame, sensor->model)) judge(*sensor, std::move(frame));
+}
+
+void Intake::accept(const ImuSample& sample) {
+  if (admit(sample)) judge(imu_, sample);
 }
 
 template <typename T>
@@ -85,34 +91,45 @@ void Intake::judge(Sensor<T>& sensor, T item) {
   for (T& one : passed) take(std::move(one), sensor.clock);
 }
 
+/// give(gate, what takes what comes out of it).
+template <typename Give>
+void Intake::for_each_gate(const Give& give) {
+  const auto open = [&]<typename T>(Sensor<T>& sensor) {
+    give(sensor.gate, [this, &sensor](T item) { take(measurement_of(sensor.name, std::move(item)), sensor.clock); });
+  };
+  for (Sensor<Event>& sensor : events_) open(sensor);
+  for (Sensor<Frame>& sensor : frames_) open(sensor);
+  open(imu_);
+}
+
 void Intake::take(Measurement measurement, ClockWatch& clock) {
   const Timestamp t = *last_stamp(measurement);
   if (clock.set_back(t)) begin_time();
   counters_.no_room += times_.back().add(std::move(measurement)) ? 0 : 1;
   // What waits near it has not come from a damaged stamp either, and still gets into its place.
-  events_.gate.confirm(t, [this](const Event& event) { take(EventBatch{event_camera_, {event}}, events_.clock); });
-  frames_.gate.confirm(t, [this](Frame frame) { take(std::move(frame), frames_.clock); });
-  imu_.gate.confirm(t, [this](const ImuSample& sample) { take(sample, imu_.clock); });
+  for_each_gate([t](auto& gate, const auto& pass) { gate.confirm(t, pass); });
 }
 
 void Intake::begin_time() {
   ++counters_.clocks_set_back;
-  events_ = {};
-  frames_ = {};
-  imu_ = {};
+  const auto begin = []<typename T>(Sensor<T>& sensor) {
+    sensor.gate = JumpGate<T>{false};
+    sensor.clock = {};
+  };
+  std::ranges::for_each(events_, begin);
+  std::ranges::for_each(frames_, begin);
+  begin(imu_);
   times_.back().finish();
   if (times_.size() == kMostTimes) {  // next() has not been called for long
     counters_.no_room += times_.back().waiting();
     times_.pop_back();
   }
-  times_.emplace_back(mode_, delays_);
+  times_.emplace_back(used_, delays_);
 }
 
 void Intake::finish() {
   const std::lock_guard lock(mutex_);
-  events_.gate.finish([this](const Event& event) { take(EventBatch{event_camera_, {event}}, events_.clock); });
-  frames_.gate.finish([this](Frame frame) { take(std::move(frame), frames_.clock); });
-  imu_.gate.finish([this](const ImuSample& sample) { take(sample, imu_.clock); });
+  for_each_gate([](auto& gate, const auto& pass) { gate.finish(pass); });
   times_.back().finish();
 }
 
@@ -137,34 +154,31 @@ IntakeCounters Intake::counters() const {
   return counters_;
 }
 
-const Intake::Camera* Intake::find(const std::string& name, Modality modality) {
-  const auto found = std::ranges::find_if(
-      cameras_, [&](const Camera& camera) { return camera.name == name && camera.modality == modality; });
-  if (found != cameras_.end() && found->used) return &*found;
-  ++(found == cameras_.end() ? counters_.unknown_camera : counters_.unused_camera);
+template <typename T>
+Intake::Sensor<T>* Intake::find(std::vector<Sensor<T>>& cameras, const std::string& name) {
+  const auto found = std::ranges::find(cameras, name, &Sensor<T>::name);
+  if (found != cameras.end()) return &*found;
+  const Modality modality = std::is_same_v<T, Event> ? Modality::Events : Modality::Frames;
+  const bool known = std::ranges::find(known_, std::pair(name, modality)) != known_.end();
+  ++(known ? counters_.unused_camera : counters_.unknown_camera);
   return nullptr;
 }
 
 /// Takes out events that cannot be.
-bool Intake::admit(EventBatch& batch) {
-  const Camera* camera = find(batch.camera, Modality::Events);
-  if (camera == nullptr) return false;
-  const int width = camera->model.width(), height = camera->model.height();
+bool Intake::admit(EventBatch& batch, const CameraModel& camera) {
+  const int width = camera.width(), height = camera.height();
   counters_.events_outside +=
       std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
   counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return !is_plausible(event.t); });
   // What is masked must not cut packets either, nor pass for motion.
-  if (camera->model.is_masked())
-    std::erase_if(batch.events, [&](const Event& event) { return !camera->model.uses(event.x, event.y); });
+  if (camera.is_masked())
+    std::erase_if(batch.events, [&](const Event& event) { return !camera.uses(event.x, event.y); });
   return !batch.events.empty();
 }
 
-bool Intake::admit(Frame& frame) {
-  const Camera* camera = find(frame.camera, Modality::Frames);
-  if (camera == nullptr) return false;
+bool Intake::admit(Frame& frame, const CameraModel& camera) {
   cv::Mat& image = frame.image;
-  const bool fits =
-      image.type() == CV_8UC1 && image.cols == camera->model.width() && image.rows == camera->model.height();
+  const bool fits = image.type() == CV_8UC1 && image.cols == camera.width() && image.rows == camera.height();
   counters_.frames_unfit += fits ? 0 : 1;
   if (fits && image.u == nullptr) image = image.clone();  // a driver's memory, which may be gone by the time it is used
   counters_.absurd_stamps += is_plausible(frame.t) ? 0 : 1;

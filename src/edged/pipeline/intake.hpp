@@ -41,9 +41,10 @@ class Intake {
     bool begins_time = false;  ///< a clock was set back: what came before belongs to another time
   };
 
-  Intake(const Rig& rig, Mode mode, const SensorDelays& delays);
+  /// used: the cameras of the run, some of the rig's.
+  Intake(const Rig& rig, const Rig& used, const SensorDelays& delays);
 
-  /// From any thread. Measurements of cameras that the mode does not use are passed over.
+  /// From any thread. Measurements of cameras that are not used are passed over.
   void add(Measurement measurement);
   void finish();
 
@@ -54,38 +55,36 @@ class Intake {
   IntakeCounters counters() const;
 
  private:
-  struct Camera {
-    std::string name;
-    Modality modality;
-    CameraModel model;
-    bool used;
-  };
-  const Camera* find(const std::string& name, Modality modality);
-  bool admit(EventBatch& batch);
-  bool admit(Frame& frame);
-  bool admit(const ImuSample& sample);
-  void judge(EventBatch batch);
-  void judge(Frame frame) { judge(frames_, std::move(frame)); }
-  void judge(const ImuSample& sample) { judge(imu_, sample); }
   template <typename T>
   struct Sensor {
+    std::string name = {};  ///< of the camera
+    CameraModel model = {};
     JumpGate<T> gate{false};
     ClockWatch clock = {};
   };
   template <typename T>
+  Sensor<T>* find(std::vector<Sensor<T>>& cameras, const std::string& name);
+  void accept(EventBatch batch);
+  void accept(Frame frame);
+  void accept(const ImuSample& sample);
+  bool admit(EventBatch& batch, const CameraModel& camera);
+  bool admit(Frame& frame, const CameraModel& camera);
+  bool admit(const ImuSample& sample);
+  template <typename T>
   void judge(Sensor<T>& sensor, T item);
   void take(Measurement measurement, ClockWatch& clock);
+  template <typename Give>
+  void for_each_gate(const Give& give);
   void begin_time();
 
-  Mode mode_;
+  Rig used_;
   SensorDelays delays_;
-  std::string event_camera_;  // empty: not used in this mode
-  std::vector<Camera> cameras_;
-  mutable std::mutex mutex_;     // of what is below
-  std::deque<Sequencer> times_;  // the last is what comes, those before it are ended and not yet handed out
-  bool begins_time_ = false;     // of what comes next out of the first
-  Sensor<Event> events_;
-  Sensor<Frame> frames_;
+  std::vector<std::pair<std::string, Modality>> known_;  // all cameras of the rig
+  mutable std::mutex mutex_;                             // of what is below
+  std::deque<Sequencer> times_;        // the last is what comes, those before it are ended and not yet handed out
+  bool begins_time_ = false;           // of what comes next out of the first
+  std::vector<Sensor<Event>> events_;  // one a camera that is used
+  std::vector<Sensor<Frame>> frames_;
   Sensor<ImuSample> imu_;
   IntakeCounters counters_;
 };

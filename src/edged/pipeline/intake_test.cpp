@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 namespace {
@@ -59,18 +60,18 @@ TEST(Intake, CountsWhatComesFromCamerasThatItDoesNotUse) {
   Rig rig = two_cameras();
   rig.cameras.push_back(rig.cameras.front());
   rig.cameras.back().name = "dvs2";
-  Intake intake(rig, Mode::Fused, kInOrder);
+  Intake intake(rig, used_cameras(rig, Mode::Fused), kInOrder);
   intake.add(EventBatch{"dvs2", {{at_ms(1), 1, 1, true}}});
   EXPECT_EQ(intake.counters().unused_camera, 1U);
   EXPECT_EQ(intake.counters().unknown_camera, 0U);
-  Intake without_frames(rig, Mode::Events, kInOrder);
+  Intake without_frames(rig, used_cameras(rig, Mode::Events), kInOrder);
   without_frames.add(Frame{at_ms(1), "cam", cv::Mat(10, 10, CV_8UC1)});
   EXPECT_EQ(without_frames.counters().unused_camera, 1U) << "the mode does not use it";
 }
 
 TEST(Intake, ADamagedStampCostsOneMeasurement) {
   for (const SensorDelays& delays : {SensorDelays{}, kInOrder}) {
-    Intake intake(two_cameras(), Mode::Fused, delays);
+    Intake intake(two_cameras(), two_cameras(), delays);
     Received all = received(intake, 0, 1000, right);
     intake.add(ImuSample{at_ms(998 + kHour), {0, 0, 0}, {0, 0, 9.81}});
     intake.add(Frame{at_ms(998 + kHour), "cam", cv::Mat(10, 10, CV_8UC1)});
@@ -88,7 +89,7 @@ TEST(Intake, ADamagedStampCostsOneMeasurement) {
 }
 
 TEST(Intake, ADamagedFirstStampCostsHalfASecond) {
-  Intake intake(two_cameras(), Mode::Fused, {});
+  Intake intake(two_cameras(), two_cameras(), {});
   intake.add(ImuSample{at_ms(kHour), {0, 0, 0}, {0, 0, 9.81}});
   const Received all = received(intake, 0, 2000, right);
   ASSERT_EQ(all.begins.size(), 1U);
@@ -98,7 +99,7 @@ TEST(Intake, ADamagedFirstStampCostsHalfASecond) {
 
 TEST(Intake, AClockThatIsSetBackBeginsANewTimeOnce) {
   for (const int back_ms : {2'000, 10'000, kHour}) {
-    Intake intake(two_cameras(), Mode::Fused, {});
+    Intake intake(two_cameras(), two_cameras(), {});
     const Received before = received(intake, 0, 1000, right);
     const Received after = received(intake, 1000, 3000, [=](int ms) { return ms - back_ms; });
     EXPECT_TRUE(before.begins.empty());
@@ -110,7 +111,7 @@ TEST(Intake, AClockThatIsSetBackBeginsANewTimeOnce) {
 }
 
 TEST(Intake, ASensorWhoseDriverSetsItsClockBackLaterBeginsAnotherTime) {
-  Intake intake(two_cameras(), Mode::Fused, {});
+  Intake intake(two_cameras(), two_cameras(), {});
   received(intake, 0, 1000, right);
   Received all;
   for (int ms = 1000; ms < 5000; ms += 5) {
@@ -124,13 +125,13 @@ TEST(Intake, ASensorWhoseDriverSetsItsClockBackLaterBeginsAnotherTime) {
 }
 
 TEST(Intake, LessThanASecondBackIsLateUntilTheOldTimeIsReached) {
-  Intake intake(two_cameras(), Mode::Fused, {});
+  Intake intake(two_cameras(), two_cameras(), {});
   received(intake, 0, 1000, right);
   EXPECT_TRUE(received(intake, 1000, 3000, [](int ms) { return ms - 900; }).begins.empty());
 }
 
 TEST(Intake, WhatWasNotAskedForIsStillThereAfterAClockWasSetBack) {
-  Intake intake(two_cameras(), Mode::Fused, {});
+  Intake intake(two_cameras(), two_cameras(), {});
   for (int ms = 0; ms < 2000; ms += 5) {
     intake.add(ImuSample{at_ms(ms < 1000 ? ms : ms - kHour), {0, 0, 0}, {0, 0, 9.81}});
   }
@@ -143,7 +144,7 @@ TEST(Intake, WhatWasNotAskedForIsStillThereAfterAClockWasSetBack) {
 }
 
 TEST(Intake, AHoleOfAllSensorsLeavesTheOrderAsItWas) {
-  Intake whole(two_cameras(), Mode::Fused, kInOrder), holed(two_cameras(), Mode::Fused, kInOrder);
+  Intake whole(two_cameras(), two_cameras(), kInOrder), holed(two_cameras(), two_cameras(), kInOrder);
   const auto feed = [](Intake& intake, int hole_ms) {
     const Received all = received(intake, 0, 1000, [=](int ms) { return ms < 500 ? ms : ms + hole_ms; });
     std::vector<Timestamp> stamps = all.stamps;
@@ -161,7 +162,7 @@ TEST(Intake, EventsUnderTheMaskNeverComeIn) {
   std::vector<std::uint8_t> used(100, 255);
   used[11] = 0;  // (1, 1)
   rig.cameras[0].model = rig.cameras[0].model.masked(used);
-  Intake intake(rig, Mode::Events, kInOrder);
+  Intake intake(rig, used_cameras(rig, Mode::Events), kInOrder);
   intake.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
   intake.add(EventBatch{"dvs", {{at_ms(1), 1, 1, true}, {at_ms(1), 2, 1, true}, {at_ms(2), 1, 1, false}}});
   intake.finish();

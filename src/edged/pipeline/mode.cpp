@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/mode.hpp"
 
+#include <algorithm>
 #include <map>
+#include <sstream>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/core/dataset.hpp"
@@ -12,14 +15,52 @@ namespace {
 
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
 
+/// Between commas, without the blanks around them.
+std::vector<std::string> names_of(const std::string& list) {
+  std::vector<std::string> names;
+  std::istringstream fields(list);
+  for (std::string field; std::getline(fields, field, ',');) {
+    const std::size_t begin = field.find_first_not_of(' '), end = field.find_last_not_of(' ');
+    names.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
+  }
+  return names;
+}
+
+std::string listed(const Rig& rig) {
+  std::string list;
+  for (const RigCamera& camera : rig.cameras)
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name,
+                        camera.modality == Modality::Events ? "events" : "frames");
+  return list;
+}
+
 }  // namespace
 
-const RigCamera* used_camera(const Rig& rig, Mode mode, Modality modality) {
-  if (!uses(mode, modality)) return nullptr;
-  if (const RigCamera* camera = rig.find(modality)) return camera;
-  const bool events = modality == Modality::Events;
-  throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name,
-                           events ? "event" : "frame", events ? "frames" : "events");
+Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted) {
+  const std::vector<std::string> names = names_of(wanted);
+  for (const std::string& name : names) {
+    if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
+      throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));
+    if (std::ranges::count(names, name) > 1)
+      throw InputError::format("option 'cameras': '{}' is there twice; rig '{}' has {}", name, rig.name, listed(rig));
+  }
+  Rig used{rig.name, {}};
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    if (!uses(mode, modality)) continue;
+    const std::size_t before = used.cameras.size();
+    for (const RigCamera& camera : rig.cameras) {
+      const bool chosen = names.empty() ? &camera == rig.find(modality) : std::ranges::count(names, camera.name) > 0;
+      if (chosen && camera.modality == modality) used.cameras.push_back(camera);
+    }
+    if (used.cameras.size() > before) continue;
+    const bool events = modality == Modality::Events;
+    if (rig.find(modality) != nullptr)
+      throw InputError::format("option 'cameras': '{}' names no {} camera, which --mode {} needs; there are {}", wanted,
+                               events ? "event" : "frame", mode_name(mode), listed(rig));
+    throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name,
+                             events ? "event" : "frame", events ? "frames" : "events");
+  }
+  return used;
 }
 
 std::string mode_name(Mode mode) {

@@ -16,9 +16,10 @@ constexpr bool uses(Mode mode, Modality modality) {
   return mode != (modality == Modality::Events ? Mode::Frames : Mode::Events);
 }
 
-/// The rig's first camera of the modality, null where the mode does not use one. Throws InputError when the rig lacks
-/// it.
-const RigCamera* used_camera(const Rig& rig, Mode mode, Modality modality);
+/// The cameras of a run: those of events, then those of frames, each as the rig has them. wanted: their names,
+/// separated by commas, of which the mode uses what is of its modalities; empty: the first of each. Throws InputError,
+/// with the names there are, for a name that there is not or that comes twice, and where none is left of a modality.
+Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted = "");
 
 /// The mode asked for, or for "auto" the most that the recording holds. Throws InputError where it lacks a sensor.
 Mode choose_mode(const std::string& wanted, const DatasetInfo& info);

@@ -34,5 +34,41 @@ TEST(ModeChoice, NamesReadBack) {
   for (const Mode mode : {Mode::Events, Mode::Frames, Mode::Fused}) EXPECT_EQ(parse_mode(mode_name(mode)), mode);
 }
 
+Rig stereo_of_both() {
+  Rig rig{"pairs", {}};
+  for (const char* name : {"cam0", "dvs0", "cam1", "dvs1"}) {
+    const bool events = name[0] == 'd';
+    rig.cameras.push_back({name, events ? Modality::Events : Modality::Frames, CameraModel(), SE3()});
+  }
+  return rig;
+}
+
+std::string used(Mode mode, const std::string& wanted) {
+  std::string names;
+  for (const RigCamera& camera : used_cameras(stereo_of_both(), mode, wanted).cameras) names += camera.name + " ";
+  return names;
+}
+
+TEST(UsedCameras, AreTheFirstOfEachKindUnlessNamed) {
+  EXPECT_EQ(used(Mode::Fused, ""), "dvs0 cam0 ");
+  EXPECT_EQ(used(Mode::Frames, ""), "cam0 ");
+  EXPECT_EQ(used(Mode::Fused, "cam1, cam0,dvs1"), "dvs1 cam0 cam1 ");
+  EXPECT_EQ(used(Mode::Events, "cam1,dvs1,dvs0"), "dvs0 dvs1 ");
+}
+
+TEST(UsedCameras, AreRefusedWithTheNamesThereAre) {
+  for (const char* wrong : {"cam0,dvs2", "cam0,dvs0,cam0", "cam0,cam1", "cam0,,dvs0", ","}) {
+    try {
+      used(Mode::Fused, wrong);
+      ADD_FAILURE() << wrong << " was accepted";
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("cam0 (frames), dvs0 (events), cam1 (frames), dvs1 (events)"),
+                std::string::npos)
+          << e.what();
+    }
+  }
+  EXPECT_THROW(used_cameras({"blind", {}}, Mode::Events), InputError);
+}
+
 }  // namespace
 }  // namespace edged

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "edged/pipeline/intake.hpp"
+#include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
 #include "edged/pipeline/state_prediction.hpp"
 
@@ -12,12 +13,14 @@ namespace edged {
 
 struct Odometry::Impl {
   Impl(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config, const FeedConfig& feed)
-      : intake(rig, mode, feed.delays),
-        new_packetizer([rig, mode, packets = config.packets](const PacketizerCounters& so_far) {
-          return Packetizer(rig, mode, packets, so_far);
+      : Impl(rig, used_cameras(rig, mode, config.cameras), noise, config, feed) {}
+  Impl(const Rig& rig, const Rig& used, const ImuNoise& noise, const OdometryConfig& config, const FeedConfig& feed)
+      : intake(rig, used, feed.delays),
+        new_packetizer([used, packets = config.packets](const PacketizerCounters& so_far) {
+          return Packetizer(used, packets, so_far);
         }),
         packetizer(new_packetizer({})),
-        packet_odometry(rig, noise, mode, config, feed.inference) {}
+        packet_odometry(used, noise, config, feed.inference) {}
 
   std::optional<Packet> next_packet();
 

@@ -12,6 +12,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
 
 namespace edged {
@@ -65,14 +66,14 @@ std::vector<Measurement> measurements(int length_ms) {
 std::vector<double> numbers_of(const Step& step) {
   const NavState& s = step.state;
   const Eigen::Quaterniond& q = s.T_W_B.rotation();
-  std::vector<double> numbers{
-      to_seconds(step.t), static_cast<double>(step.status), q.w(), q.x(), q.y(), q.z(), step.event_rate_hz,
-      step.scene_depth};
+  std::vector<double> numbers{to_seconds(step.t), static_cast<double>(step.status), q.w(), q.x(), q.y(), q.z(),
+                              step.scene_depth};
   for (const Eigen::Vector3d& v : {s.T_W_B.translation(), s.v_W, s.bias_gyro, s.bias_accel}) {
     numbers.insert(numbers.end(), v.data(), v.data() + 3);
   }
-  for (const auto* tracks : {&step.event_tracks, &step.frame_tracks}) {
-    for (const Track& track : *tracks) numbers.insert(numbers.end(), {track.pixel.x(), track.pixel.y()});
+  for (const CameraStep& camera : step.cameras) {
+    numbers.push_back(camera.event_rate_hz);
+    for (const Track& track : camera.tracks) numbers.insert(numbers.end(), {track.pixel.x(), track.pixel.y()});
   }
   return numbers;
 }
@@ -109,8 +110,9 @@ Numbers fed_in_order(const std::vector<Measurement>& all, Mode mode) {
 TEST(Odometry, GivesTheBitsOfItsPartsInEveryMode) {
   const std::vector<Measurement> all = measurements(1500);
   for (const Mode mode : {Mode::Events, Mode::Frames, Mode::Fused}) {
-    Packetizer packetizer(small_rig(), mode, {});
-    PacketOdometry parts(small_rig(), {}, mode, {}, Inference::Synchronous);
+    const Rig used = used_cameras(small_rig(), mode);
+    Packetizer packetizer(used, {});
+    PacketOdometry parts(used, {}, {}, Inference::Synchronous);
     Numbers steps;
     const auto process = [&] {
       while (auto packet = packetizer.next()) steps.push_back(numbers_of(parts.process(std::move(*packet))));
@@ -235,7 +237,7 @@ TEST(Odometry, KeepsAnImageInADriversMemory) {
       buffer.setTo(0);
     }
     while (const auto step = odometry.next())
-      frames += std::ranges::equal(cv::Mat_<uchar>(step->frame->image), cv::Mat_<uchar>(image)) ? 1 : 0;
+      frames += std::ranges::equal(cv::Mat_<uchar>(step->find("cam")->image), cv::Mat_<uchar>(image)) ? 1 : 0;
   }
   EXPECT_GT(frames, 4);
 }
@@ -249,17 +251,17 @@ TEST(Odometry, TellsAllOfAStep) {
     odometry.add(m);
     while (auto step = odometry.next()) {
       starts += step->started.empty() ? 0 : 1;
-      if (step->frame) last = std::move(*step);
+      if (!step->find("cam")->image.empty()) last = std::move(*step);
     }
   }
   EXPECT_EQ(starts, 1);
   EXPECT_EQ(last.status, TrackingStatus::Good);
   EXPECT_EQ(last.state.t, last.t);
-  EXPECT_GT(last.frame_tracks.size(), 10U);
-  EXPECT_EQ(last.event_frame.size(), cv::Size(kWidth, kHeight));
-  EXPECT_GT(last.drawn, 0U);
-  EXPECT_LE(last.drawn_events().back().t, last.t);
-  EXPECT_EQ(last.frame->camera, "cam");
+  const CameraStep &cam = *last.find("cam"), &dvs = *last.find(Modality::Events);
+  EXPECT_GT(cam.tracks.size(), 10U);
+  EXPECT_EQ(dvs.image.size(), cv::Size(kWidth, kHeight));
+  EXPECT_GT(dvs.drawn, 0U);
+  EXPECT_LE(dvs.drawn_events().back().t, last.t);
   EXPECT_GT(odometry.counters().packets.packets, 20U);
 }
 
@@ -322,10 +324,10 @@ TEST(Odometry, LosesNothingOfSensorsThatLagWithinTheirDelaysAndCountsWhatTheyLos
     Numbers steps;
     for (const Measurement& m : all) {
       odometry.add(m);
-      while (const auto step = odometry.next()) steps.push_back(numbers_of(*step));
+      std::ranges::move(rest_of(odometry), std::back_inserter(steps));
     }
     odometry.finish();
-    for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
+    std::ranges::move(rest_of(odometry), std::back_inserter(steps));
     return steps;
   };
   Odometry patient(small_rig(), {}, Mode::Fused), hasty(small_rig(), {}, Mode::Fused, {}, {kInOrder});

@@ -11,6 +11,7 @@ namespace {
 
 /// What a user may have reason to change; all else is for who works on the method.
 constexpr std::string_view kForEveryone[] = {
+    "cameras",
     "packets.events_per_pixel",
     "packets.window_per_pixel",
     "packets.max_interval_s",
@@ -67,6 +68,10 @@ void OdometryConfig::visit(ConfigFields& fields) {
 }
 
 void OdometryConfig::declare(ConfigFields& fields) {
+  fields.add(
+      "cameras", cameras,
+      {.effect = "names of the cameras to use, separated by commas, any number of a kind; empty: the first event "
+                 "camera and the first frame camera, as the mode uses them"});
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);

@@ -25,19 +25,9 @@ constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 /// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
 constexpr Duration kReckoned = std::chrono::seconds(10);
 
-Rig rig_of_mode(const Rig& rig, Mode mode) {
-  Rig used{rig.name, {}};
-  for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    if (const RigCamera* camera = used_camera(rig, mode, modality)) used.cameras.push_back(*camera);
-  }
-  return used;
-}
-
-/// The scene's depth is that of the event camera, where there is one.
-const RigCamera& depth_camera(const Rig& rig) {
-  const RigCamera* events = rig.find(Modality::Events);
-  return events ? *events : rig.cameras.front();
-}
+/// The scene's depth is one for all cameras: as the first event camera sees it, where there is one, as a depth network
+/// looks through one camera only.
+const RigCamera& depth_camera(const Rig& rig) { return rig.cameras.front(); }
 
 /// The packetizer takes the time offsets out; what is left over is up to the estimator.
 Rig without_offsets(Rig rig) {
@@ -47,20 +37,25 @@ Rig without_offsets(Rig rig) {
 
 }  // namespace
 
-PacketOdometry::PacketOdometry(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config,
+PacketOdometry::PacketOdometry(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config,
                                Inference inference)
-    : mode_(mode),
-      config_(config),
+    : config_(config),
       inference_(inference),
       noise_(noise),
-      given_rig_(rig_of_mode(rig, mode)),
+      given_rig_(cameras),
       rig_(without_offsets(given_rig_)),
       estimator_(fresh_estimator()),
       mapper_(config.map),
       judge_(config.status),
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
-      dim_frames_(config.dim_frames),
       depth_(config.depth, depth_camera(rig_), config.estimator.depth_factor.enabled, inference) {
+  for (const RigCamera& camera : rig_.cameras) {
+    if (camera.modality == Modality::Events) {
+      event_views_.emplace_back(camera.model, config_);
+    } else {
+      dim_frames_.emplace_back(config_.dim_frames);
+    }
+  }
   make_channels();
 }
 
@@ -68,8 +63,8 @@ void PacketOdometry::make_channels() {
   channels_.clear();
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
-      if (!event_view_) event_view_.emplace(camera.model, config_);
-      channels_.emplace_back(camera, event_view_->ideal(), config_.event_tracker, config_.alignment, config_.health);
+      const CameraModel& ideal = event_views_[channels_.size()].ideal();
+      channels_.emplace_back(camera, ideal, config_.event_tracker, config_.alignment, config_.health);
     } else {
       channels_.emplace_back(camera, camera.model, config_.frame_tracker, AlignmentConfig{}, config_.health);
     }
@@ -94,7 +89,7 @@ Step PacketOdometry::process(Packet packet) {
   EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   Preintegration motion = predict(packet);
   const double scene_depth = measure_depth(packet);
-  const EventImage drawn = draw(packet, scene_depth);
+  const std::vector<EventImage> drawn = draw(packet, scene_depth);
   const std::vector<ChannelView> views = views_of(packet, drawn);
   for (const ChannelView& view : views) track(view, packet.t, scene_depth);
   for (const ChannelView& view : views) reject(view);
@@ -116,7 +111,7 @@ Step PacketOdometry::process(Packet packet) {
   return step;
 }
 
-Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const EstimatorResult& result,
+Step PacketOdometry::describe(Packet packet, std::span<const EventImage> drawn, const EstimatorResult& result,
                               TrackingStatus status) const {
   Step step;
   step.t = packet.t;
@@ -126,20 +121,25 @@ Step PacketOdometry::describe(Packet packet, const EventImage& drawn, const Esti
   step.waiting_for = result.waiting_for;
   step.started = result.started;
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
-  for (const Channel& channel : channels_) {
-    const bool events = channel.camera.modality == Modality::Events;
-    (events ? step.event_tracks : step.frame_tracks) = channel.tracker.tracks();
-    (events ? step.event_survival : step.frame_survival) = channel.survival();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Channel& channel = channels_[i];
+    CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
+    camera.tracks = channel.tracker.tracks();
+    camera.survival = channel.survival();
+    if (i < drawn.size()) {
+      camera.image = drawn[i].frame;
+      camera.events = std::move(packet.events[i].events);
+      camera.drawn = drawn[i].drawn;
+      camera.event_rate_hz = packet.events[i].event_rate_hz;
+    } else if (const Frame* frame = packet.find_frame(camera.name)) {
+      camera.image = frame->image;
+    }
+    step.cameras.push_back(std::move(camera));
   }
   step.T_W_O = world_.T_W_S();
   step.found = mapper_.found(packet.t);
   step.landmarks = world_.of(result.landmarks);
   step.left = world_.of(result.left);
-  step.event_frame = drawn.frame;
-  step.frame = std::move(packet.frame);
-  step.events = std::move(packet.events);
-  step.drawn = drawn.drawn;
-  step.event_rate_hz = packet.event_rate_hz;
   step.ln_depth_scale = estimator_.depth_scale();
   return step;
 }
@@ -155,31 +155,30 @@ Preintegration PacketOdometry::predict(const Packet& packet) {
 
 double PacketOdometry::measure_depth(const Packet& packet) {
   const auto timer = timings_.measure("depth");
-  depth_.add_events(std::span(packet.events).last(packet.new_events));
+  if (!packet.events.empty()) {
+    const PacketEvents& first = packet.events.front();
+    depth_.add_events(std::span(first.events).last(first.new_events));
+  }
   return depth_.at(packet.t);
 }
 
-EventImage PacketOdometry::draw(const Packet& packet, double scene_depth) {
-  if (!event_view_) return {};
-  const auto timer = timings_.measure("event_frame");
-  const EventsToDraw events = event_view_->drawn_events(packet, body_, scene_depth, frames_carry());
-  if (events.events.empty()) return {};
-  const std::optional<DepthGrid> depths = event_depths(scene_depth);
-  return event_view_->draw(events, find_channel(Modality::Events)->camera, body_, scene_depth,
-                           depths ? &*depths : nullptr);
+/// One image an event camera, empty where there were too few events.
+std::vector<EventImage> PacketOdometry::draw(const Packet& packet, double scene_depth) {
+  std::vector<EventImage> drawn(event_views_.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const auto timer = timings_.measure("event_frame");
+    EventView& view = event_views_[i];
+    const EventsToDraw events = view.drawn_events(packet.events[i], body_, scene_depth, frames_carry());
+    if (events.events.empty()) continue;
+    const std::optional<DepthGrid> depths = event_depths(channels_[i], view.ideal(), scene_depth);
+    drawn[i] = view.draw(events, channels_[i].camera, body_, scene_depth, depths ? &*depths : nullptr);
+  }
+  return drawn;
 }
 
-const Channel* PacketOdometry::find_channel(Modality modality) const {
-  const auto found =
-      std::ranges::find_if(channels_, [&](const Channel& channel) { return channel.camera.modality == modality; });
-  return found == channels_.end() ? nullptr : &*found;
-}
-
-/// The landmarks of all cameras as that of the events, where there is one, sees them now; else that of the frames.
-std::vector<SeenDepth> PacketOdometry::landmarks_in_view() const {
+/// The landmarks of all cameras as that one sees them now.
+std::vector<SeenDepth> PacketOdometry::landmarks_seen_by(const Channel& viewer) const {
   std::vector<SeenDepth> seen;
-  const Channel* events = find_channel(Modality::Events);
-  const Channel& viewer = events ? *events : channels_.front();
   const SE3 T_C_W = viewer.T_W_C(T_W_B_of(viewer)).inverse();
   for (const Channel& channel : channels_) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
@@ -194,28 +193,29 @@ std::vector<SeenDepth> PacketOdometry::landmarks_in_view() const {
 }
 
 /// Of every event in its place; nothing where one depth does for the whole scene, or no other is known.
-std::optional<DepthGrid> PacketOdometry::event_depths(double scene_depth) const {
+std::optional<DepthGrid> PacketOdometry::event_depths(const Channel& channel, const CameraModel& ideal,
+                                                      double scene_depth) const {
   if (config_.event_frame.depth != EventDepth::Landmarks || !estimator_.initialized()) return std::nullopt;
   std::vector<DepthSample> samples;
-  const CameraModel& camera = event_view_->ideal();
-  for (const SeenDepth& seen : landmarks_in_view()) {
+  for (const SeenDepth& seen : landmarks_seen_by(channel)) {
     const Eigen::Vector3d p_C = seen.depth_m * seen.point.homogeneous();
-    if (const auto pixel = camera.project(p_C)) samples.push_back({*pixel, seen.depth_m});
+    if (const auto pixel = ideal.project(p_C)) samples.push_back({*pixel, seen.depth_m});
   }
-  return DepthGrid(camera.width(), camera.height(), config_.event_frame.depth_grid, samples, scene_depth);
+  return DepthGrid(ideal.width(), ideal.height(), config_.event_frame.depth_grid, samples, scene_depth);
 }
 
 /// The cameras that the packet brought an image of.
-std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, const EventImage& drawn) {
+std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, std::span<const EventImage> drawn) {
   std::vector<ChannelView> views;
-  for (Channel& channel : channels_) {
-    if (channel.camera.modality == Modality::Events) {
-      if (!drawn.frame.empty()) views.push_back({&channel, drawn.track, drawn.detect});
-    } else if (packet.frame) {
-      const cv::Mat image = dim_frames_(packet.frame->image);
-      views.push_back({&channel, image, image});
-      last_frame_ = packet.t;
-    }
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!drawn[i].frame.empty()) views.push_back({&channels_[i], drawn[i].track, drawn[i].detect});
+  }
+  for (std::size_t i = drawn.size(); i < channels_.size(); ++i) {
+    const Frame* frame = packet.find_frame(channels_[i].camera.name);
+    if (frame == nullptr) continue;
+    const cv::Mat image = dim_frames_[i - drawn.size()](frame->image);
+    views.push_back({&channels_[i], image, image});
+    last_frame_ = packet.t;
   }
   return views;
 }
@@ -242,7 +242,7 @@ bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const ChannelVi
   if (leader == nullptr) return false;
   // With both cameras at work a keyframe waits for the next frame, so that both see it.
   const bool frame_due =
-      mode_ == Mode::Fused && !packet.frame && last_frame_ && packet.t - *last_frame_ < std::chrono::milliseconds(60);
+      is_fused() && packet.frames.empty() && last_frame_ && packet.t - *last_frame_ < std::chrono::milliseconds(60);
   if (frame_due) return false;
   SinceKeyframe since;
   since.any = last_keyframe_.has_value();
@@ -256,22 +256,30 @@ bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const ChannelVi
   return keyframe_reason(since, config_.keyframes) != KeyframeReason::None;
 }
 
+double PacketOdometry::carried_by_frames() const {
+  double carried = 0.0;
+  for (std::size_t i = event_views_.size(); i < channels_.size(); ++i) carried += channels_[i].carried();
+  return carried;
+}
+
 bool PacketOdometry::frames_at_work() const {
-  return mode_ == Mode::Fused && last_frame_ && body_.now().t - *last_frame_ < kFramesMissing;
+  return is_fused() && last_frame_ && body_.now().t - *last_frame_ < kFramesMissing;
 }
 
 /// As many corners as event frames keep beside them.
 bool PacketOdometry::frames_carry() const {
-  return frames_at_work() && find_channel(Modality::Frames)->carried() >= config_.health.min_event_corners;
+  return frames_at_work() && carried_by_frames() >= config_.health.min_event_corners;
 }
 
 /// Frames tell more about a corner than events do, where they see it at all: in good light a few corners on the event
-/// frame are enough, in the dark, in glare and without frames it takes all it can get.
+/// frame are enough, in the dark, in glare and without frames it takes all it can get. Cameras of a kind share what one
+/// alone would have: more views of the same scene should not cost more.
 int PacketOdometry::corners_wanted(const Channel& channel) const {
-  const int all = config_.event_tracker.detector.max_features;
-  if (channel.camera.modality == Modality::Frames) return config_.frame_tracker.detector.max_features;
-  if (!frames_at_work()) return all;
-  return std::max(config_.health.min_event_corners, all - static_cast<int>(find_channel(Modality::Frames)->carried()));
+  if (channel.camera.modality == Modality::Frames)
+    return config_.frame_tracker.detector.max_features / static_cast<int>(dim_frames_.size());
+  const int all = config_.event_tracker.detector.max_features, cameras = static_cast<int>(event_views_.size());
+  if (!frames_at_work()) return all / cameras;
+  return std::max(config_.health.min_event_corners, all - static_cast<int>(carried_by_frames())) / cameras;
 }
 
 void PacketOdometry::mark_keyframe(Timestamp t, std::span<const ChannelView> views) {
@@ -284,11 +292,17 @@ void PacketOdometry::mark_keyframe(Timestamp t, std::span<const ChannelView> vie
   gyro_saturated_ = false;
 }
 
+/// Nothing moves before any event camera.
+bool PacketOdometry::is_quiet(const Packet& packet) const {
+  bool quiet = !event_views_.empty();
+  for (std::size_t i = 0; i < event_views_.size(); ++i) quiet = quiet && event_views_[i].quiet(packet.events[i]);
+  return quiet;
+}
+
 EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration motion,
                                          std::span<const ChannelView> views, bool keyframe) {
   const auto timer = timings_.measure("estimate");
-  const bool quiet = event_view_ && event_view_->quiet(packet);
-  EstimatorInput input{packet.t, std::move(motion), {}, keyframe, quiet, depth_.for_factor(packet.t)};
+  EstimatorInput input{packet.t, std::move(motion), {}, keyframe, is_quiet(packet), depth_.for_factor(packet.t)};
   for (const ChannelView& view : views) {
     view.channel->T_W_Blast = T_W_B_of(*view.channel);
     input.observations.push_back(view.channel->observations());
@@ -303,12 +317,12 @@ EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration mo
   }
   calibrate();
   for (const ChannelView& view : views) view.channel->settle(T_W_B_of(*view.channel), keyframe);
-  depth_.add_landmarks(packet.t, landmarks_in_view());
+  depth_.add_landmarks(packet.t, landmarks_seen_by(channels_.front()));
   return result;
 }
 
-/// Frames are what the map is of, where they see enough: the look of an event frame changes with the motion. True when
-/// the body has been found in it after a loss.
+/// Frames are what the map is of, where they see enough: the look of an event frame changes with the motion; those of
+/// the first camera of the kind. True when the body has been found in it after a loss.
 bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result,
                                 bool keyframe) {
   if (!estimator_.initialized()) return false;
@@ -318,10 +332,10 @@ bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views,
   const auto timer = timings_.measure("map");
   bool found_again = false;
   mapper_.predict(body_.now());
-  const Channel* frames = find_channel(Modality::Frames);
-  const bool by_frames = mode_ == Mode::Frames || (frames && frames->carried() >= kCornersForMap);
-  const Modality modality = by_frames ? Modality::Frames : Modality::Events;
-  const auto view = std::ranges::find(views, modality, [](const ChannelView& v) { return v.channel->camera.modality; });
+  const Channel* leading = &channels_.front();
+  if (is_fused() && channels_[event_views_.size()].carried() >= kCornersForMap)
+    leading = &channels_[event_views_.size()];
+  const auto view = std::ranges::find(views, leading, &ChannelView::channel);
   if (view != views.end()) {
     found_again = mapper_.localize(t, *view, T_W_B_of(*view->channel));
     if (keyframe) mapper_.keyframe(t, *view, T_W_B_of(*view->channel));

@@ -32,8 +32,8 @@ namespace edged {
 /// own.
 class PacketOdometry {
  public:
-  /// config: validated. Throws InputError when the rig lacks a camera the mode needs.
-  PacketOdometry(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config, Inference inference);
+  /// cameras: those of the run, event cameras first; config: validated.
+  PacketOdometry(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config, Inference inference);
 
   /// Packets in time order. Never throws on data; lost tracking is a status.
   Step process(Packet packet);
@@ -56,13 +56,15 @@ class PacketOdometry {
   void make_channels();
   Preintegration predict(const Packet& packet);
   double measure_depth(const Packet& packet);
-  EventImage draw(const Packet& packet, double scene_depth);
-  std::optional<DepthGrid> event_depths(double scene_depth) const;
-  std::vector<SeenDepth> landmarks_in_view() const;
-  std::vector<ChannelView> views_of(const Packet& packet, const EventImage& drawn);
+  std::vector<EventImage> draw(const Packet& packet, double scene_depth);
+  std::optional<DepthGrid> event_depths(const Channel& channel, const CameraModel& ideal, double scene_depth) const;
+  std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer) const;
+  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> drawn);
   void track(const ChannelView& view, Timestamp t, double scene_depth);
   void reject(const ChannelView& view);
   bool is_keyframe(const Packet& packet, std::span<const ChannelView> views) const;
+  bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
+  double carried_by_frames() const;
   bool frames_at_work() const;
   bool frames_carry() const;
   int corners_wanted(const Channel& channel) const;
@@ -72,22 +74,22 @@ class PacketOdometry {
   bool follow_map(Timestamp t, std::span<const ChannelView> views, const EstimatorResult& result, bool keyframe);
   void calibrate();
   void update_covariance(Timestamp t);
-  Step describe(Packet packet, const EventImage& drawn, const EstimatorResult& result, TrackingStatus status) const;
+  bool is_quiet(const Packet& packet) const;
+  Step describe(Packet packet, std::span<const EventImage> drawn, const EstimatorResult& result,
+                TrackingStatus status) const;
 
   /// The body at the instant of the channel's image: the packet's, but for what the camera's clock is still off by.
   SE3 T_W_B_of(const Channel& channel) const { return body_.moved_on(channel.camera.time_offset); }
-  /// The first of that modality, null without any.
-  const Channel* find_channel(Modality modality) const;
 
-  Mode mode_;
   OdometryConfig config_;
   Inference inference_;
   ImuNoise noise_;
-  Rig given_rig_;  ///< the cameras of the mode
+  Rig given_rig_;  ///< the cameras of the run
   Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
   Estimator estimator_;
-  std::vector<Channel> channels_;  ///< as in rig_
-  std::optional<EventView> event_view_;
+  std::vector<Channel> channels_;            ///< as in rig_
+  std::vector<EventView> event_views_;       ///< of the event cameras, the first channels
+  std::vector<DimImageStretch> dim_frames_;  ///< of the frame cameras, the others
   StageTimings timings_;
 
   WorldFrame world_;
@@ -95,8 +97,7 @@ class PacketOdometry {
   Hindsight before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
-  BodyMotion body_;  ///< predicted, then optimised
-  DimImageStretch dim_frames_;
+  BodyMotion body_;              ///< predicted, then optimised
   bool gyro_clipped_ = false;    ///< in this packet
   bool turned_unseen_ = false;   ///< it was until this packet
   bool gyro_saturated_ = false;  ///< since the last keyframe

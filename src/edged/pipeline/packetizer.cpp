@@ -3,7 +3,6 @@
 #include "edged/pipeline/packetizer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -20,8 +19,16 @@ constexpr Duration kFramesGivenUp = std::chrono::seconds(5);          // longer 
 constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // slower frames are not waited for
 constexpr std::size_t kMaxWaitingPackets = 256;
 
-std::size_t count_of(double per_pixel, const CameraModel& camera) {
-  return static_cast<std::size_t>(std::max(1.0, std::round(per_pixel * camera.width() * camera.height())));
+/// Frames of several cameras that lie closer belong together.
+constexpr Duration kSynchronised = std::chrono::milliseconds(1);
+/// Batches of two event cameras overlap, and where they are cut is chance: so long as IMU samples or frames come, which
+/// events they follow does not depend on that, they alone tell how far all has come.
+constexpr Duration kEventsAlone = std::chrono::seconds(1);
+
+std::size_t events_in(const Packet& packet) {
+  std::size_t sum = 0;
+  for (const PacketEvents& events : packet.events) sum += events.events.size();
+  return sum;
 }
 
 }  // namespace
@@ -41,51 +48,52 @@ void PacketizerConfig::visit(ConfigFields& fields) {
              {"events", 1000, 1e9, "events kept while the IMU is late; beyond, the oldest packets are dropped"});
 }
 
-Packetizer::Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config, const PacketizerCounters& so_far)
-    : mode_(mode), config_(config), counters_(so_far) {
+Packetizer::Packetizer(const Rig& cameras, const PacketizerConfig& config, const PacketizerCounters& so_far)
+    : config_(config), least_offset_(cameras.cameras.front().time_offset), counters_(so_far) {
   if (config_.min_interval_s > config_.max_interval_s) {
     throw InputError::format("packets.min_interval_s = {} is above packets.max_interval_s = {}: lower it",
                              config_.min_interval_s, config_.max_interval_s);
   }
-  if (const RigCamera* camera = used_camera(rig, mode_, Modality::Events)) {
-    event_camera_ = camera->name;
-    event_offset_ = camera->time_offset;
-    cut_events_ = count_of(config_.events_per_pixel, camera->model);
-    window_events_ = count_of(config_.window_per_pixel, camera->model);
+  for (const RigCamera& camera : cameras.cameras) {
+    least_offset_ = std::min(least_offset_, camera.time_offset);
+    if (camera.modality == Modality::Events) {
+      if (events_.empty()) event_offset_ = camera.time_offset;
+      events_.emplace_back(camera, config_);
+    } else {
+      frame_cameras_.push_back({camera.name, camera.time_offset});
+    }
   }
-  if (const RigCamera* camera = used_camera(rig, mode_, Modality::Frames)) {
-    frame_camera_ = camera->name;
-    frame_offset_ = camera->time_offset;
-  }
+  if (frame_cameras_.size() > 1) frame_patience_ = kSynchronised;
 }
 
-void Packetizer::add(Measurement measurement) {
-  if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
-    if (batch->events.empty()) return;
-    advance_clock(batch->events.back().t, false);
-    if (mode_ != Mode::Frames && batch->camera == event_camera_) add_events(*batch);
-  } else if (auto* frame = std::get_if<Frame>(&measurement)) {
-    advance_clock(frame->t, true);
-    if (mode_ != Mode::Events && frame->camera == frame_camera_) add_frame(std::move(*frame));
-  } else {
-    const ImuSample& sample = std::get<ImuSample>(measurement);
-    advance_clock(sample.t, false);
-    add_imu(sample);
-  }
-  Timestamp complete_until = Timestamp::max();
-  if (mode_ != Mode::Frames) complete_until = std::min(complete_until, events_complete_);
-  if (mode_ != Mode::Events) complete_until = std::min(complete_until, frames_complete_);
-  make_packets(complete_until);
+Packetizer::FrameCamera* Packetizer::find_frame_camera(const std::string& name) {
+  const auto found = std::ranges::find(frame_cameras_, name, &FrameCamera::name);
+  return found == frame_cameras_.end() ? nullptr : &*found;
 }
 
 /// The stream is in the order of the recorded stamps, ties broken IMU, events, frame: what can still come is not before
-/// `recorded`, and after a frame not at it either.
-void Packetizer::advance_clock(Timestamp recorded, bool is_frame) {
+/// that of the newest measurement, and after a frame not at it either, unless there is another frame camera.
+void Packetizer::add(Measurement measurement) {
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
+    if (batch->events.empty()) return;
+    const Timestamp first = batch->events.front().t, last = batch->events.back().t;
+    advance_clock(last, events_.size() > 1 ? first - kEventsAlone : last - kTick);
+    add_events(*batch);
+  } else if (auto* frame = std::get_if<Frame>(&measurement)) {
+    advance_clock(frame->t, frame_cameras_.size() > 1 ? frame->t - kTick : frame->t);
+    add_frame(std::move(*frame));
+  } else {
+    const ImuSample& sample = std::get<ImuSample>(measurement);
+    advance_clock(sample.t, sample.t - kTick);
+    add_imu(sample);
+  }
+  if (complete_ != Timestamp::min()) make_packets(complete_ + least_offset_);
+}
+
+void Packetizer::advance_clock(Timestamp recorded, Timestamp complete) {
   if (last_recorded_ && recorded - *last_recorded_ > kHole) heartbeat_from_ = recorded + event_offset_;
   if (!last_recorded_ || recorded > *last_recorded_) last_recorded_ = recorded;
-  const Timestamp complete = is_frame ? recorded : recorded - kTick;
-  events_complete_ = std::max(events_complete_, complete + event_offset_);
-  frames_complete_ = std::max(frames_complete_, complete + frame_offset_);
+  complete_ = std::max(complete_, complete);
 }
 
 /// The first event or frame: time starts just before it.
@@ -94,30 +102,30 @@ void Packetizer::start_at(Timestamp t) {
   started_ = true;
   last_cut_ = heartbeat_from_ = t - kTick;
   // Another sensor is far ahead already, by another clock or a damaged stamp: no heartbeats from here to there.
-  if (events_complete_ - t > kHole) heartbeat_from_ = events_complete_;
+  const Timestamp complete = complete_ + event_offset_;
+  if (complete - t > kHole) heartbeat_from_ = complete;
 }
 
 void Packetizer::add_events(const EventBatch& batch) {
-  start_at(batch.events.front().t + event_offset_);
-  for (Event event : batch.events) {
-    event.t += event_offset_;
-    const bool late = event.t <= last_cut_ || (!events_.empty() && event.t < events_.back().t);
-    if (late) {
-      ++counters_.events_late;
-    } else {
-      events_.push_back(event);
-    }
-  }
+  const auto history = std::ranges::find(events_, batch.camera, &EventHistory::camera);
+  if (history == events_.end()) return;
+  start_at(batch.events.front().t + history->offset());
+  counters_.events_late += history->add(batch.events, last_cut_);
 }
 
 void Packetizer::add_frame(Frame frame) {
-  frame.t += frame_offset_;
+  FrameCamera* camera = find_frame_camera(frame.camera);
+  if (camera == nullptr) return;
+  frame.t += camera->offset;
   start_at(frame.t);
-  if (frame.t <= (frames_.empty() ? last_cut_ : frames_.back().t)) {
+  if (frame.t <= std::max(last_cut_, camera->newest.value_or(last_cut_))) {
     ++counters_.frames_late;
     return;
   }
-  frames_.push_back(std::move(frame));
+  camera->newest = frame.t;
+  const auto after =
+      std::upper_bound(frames_.begin(), frames_.end(), frame.t, [](Timestamp t, const Frame& f) { return t < f.t; });
+  frames_.insert(after, std::move(frame));
 }
 
 void Packetizer::add_imu(const ImuSample& sample) {
@@ -142,76 +150,65 @@ void Packetizer::make_packets(Timestamp complete_until) {
 }
 
 std::optional<Packetizer::Cut> Packetizer::next_cut(Timestamp complete_until) const {
-  const bool frame_ready = !frames_.empty() && frames_.front().t <= complete_until;
-  const Timestamp by_time = mode_ == Mode::Frames ? frames_given_up() : next_event_cut();
-  if (frame_ready && frames_.front().t <= by_time) return Cut{frames_.front().t, true};
+  const Timestamp by_time = events_.empty() ? frames_given_up() : next_event_cut();
+  if (!frames_.empty() && frames_.front().t <= by_time) {
+    const Timestamp t = frames_.front().t;
+    return t + frame_patience_ <= complete_until ? std::optional(Cut{t, true}) : std::nullopt;
+  }
   if (by_time <= complete_until) return Cut{by_time, false};
   return std::nullopt;
 }
 
-/// Frames mode: where a packet without a frame is cut.
+/// Without event cameras: where a packet without a frame is cut.
 Timestamp Packetizer::frames_given_up() const { return heartbeat_from_ + kFramesGivenUp; }
 
-/// Where the count or the longest time cuts, unless a frame comes before.
+/// Where a count or the longest time cuts, unless a frame comes before.
 Timestamp Packetizer::next_event_cut() const {
   Timestamp t = heartbeat_from_ + duration_from_seconds(config_.max_interval_s);
-  if (const std::size_t last = uncut_begin_ + cut_events_ - 1; last < events_.size()) t = std::min(t, events_[last].t);
+  for (const EventHistory& history : events_) t = std::min(t, history.complete().value_or(t));
   const Duration spacing = duration_from_seconds(config_.min_interval_s);
   t = std::max(t, last_cut_ + std::max(spacing, kTick));
 
   if (!frames_.empty()) return frames_.front().t - t < spacing ? std::max(t, frames_.front().t) : t;
-  if (!expected_frame_) return t;
-  const Timestamp frame_given_up = *expected_frame_ + frame_period_ / 10;
-  const bool frame_is_due = t > *expected_frame_ - spacing && t < frame_given_up;
-  return frame_is_due ? frame_given_up : t;
+  for (const FrameCamera& camera : frame_cameras_) {
+    if (!camera.expected) continue;
+    const Timestamp given_up = *camera.expected + camera.period / 10;
+    if (t > *camera.expected - spacing && t < given_up) t = given_up;
+  }
+  return t;
 }
 
 void Packetizer::make_packet(const Cut& cut) {
   Packet packet;
   packet.t = cut.t;
-  if (mode_ != Mode::Frames) {
-    take_events(packet);
-  } else if (!cut.by_frame) {
-    ++counters_.frames_missing;
-  }
+  for (EventHistory& history : events_) packet.events.push_back(history.take(cut.t, last_cut_));
   if (cut.by_frame) {
-    if (last_frame_) {
-      frame_period_ = cut.t - *last_frame_;
-      expected_frame_.reset();
-      if (frame_period_ <= kMaxFramePeriod) expected_frame_ = cut.t + frame_period_;
-    }
-    last_frame_ = cut.t;
-    packet.frame = std::move(frames_.front());
-    frames_.pop_front();
+    take_frames(packet);
+  } else if (events_.empty()) {
+    ++counters_.frames_missing;
   }
   last_cut_ = cut.t;
   heartbeat_from_ = std::max(heartbeat_from_, cut.t);
-  waiting_events_ += packet.events.size();
+  waiting_events_ += events_in(packet);
   waiting_.push_back(std::move(packet));
   drop_overflow();
 }
 
-void Packetizer::take_events(Packet& packet) {
-  const auto index_of = [&](auto it) { return static_cast<std::size_t>(it - events_.begin()); };
-  const auto at = [&](std::size_t i) { return events_.begin() + static_cast<std::ptrdiff_t>(i); };
-  const std::size_t end = index_of(
-      std::upper_bound(at(uncut_begin_), events_.end(), packet.t, [](Timestamp t, const Event& e) { return t < e.t; }));
-  const Timestamp oldest = packet.t - duration_from_seconds(config_.max_age_s);
-  std::size_t window_begin = index_of(
-      std::lower_bound(at(history_begin_), at(end), oldest, [](const Event& e, Timestamp t) { return e.t < t; }));
-  if (end - window_begin > window_events_) window_begin = end - window_events_;
-
-  packet.events.assign(at(std::min(window_begin, uncut_begin_)), at(end));
-  packet.new_events = end - uncut_begin_;
-  packet.window_events = end - window_begin;
-  packet.event_rate_hz = static_cast<double>(packet.new_events) / std::max(1e-3, to_seconds(packet.t - last_cut_));
-
-  history_begin_ = window_begin;
-  uncut_begin_ = end;
-  if (history_begin_ < events_.size() / 2) return;
-  events_.erase(events_.begin(), at(history_begin_));
-  uncut_begin_ -= history_begin_;
-  history_begin_ = 0;
+/// The one that cuts, and those of other cameras that belong to it.
+void Packetizer::take_frames(Packet& packet) {
+  while (!frames_.empty() && frames_.front().t <= packet.t + frame_patience_) {
+    const Timestamp t = frames_.front().t;
+    FrameCamera& camera = *find_frame_camera(frames_.front().camera);
+    if (camera.cut >= packet.t) return;  // is in already: this one cuts the next packet
+    if (camera.cut) {
+      camera.period = t - *camera.cut;
+      camera.expected.reset();
+      if (camera.period <= kMaxFramePeriod) camera.expected = t + camera.period;
+    }
+    camera.cut = t;
+    packet.frames.push_back(std::move(frames_.front()));
+    frames_.pop_front();
+  }
 }
 
 void Packetizer::drop_overflow() {
@@ -223,8 +220,8 @@ void Packetizer::drop_overflow() {
 }
 
 void Packetizer::drop_waiting(const std::deque<Packet>::iterator& packet) {
-  counters_.events_lost += packet->new_events;
-  waiting_events_ -= packet->events.size();
+  for (const PacketEvents& events : packet->events) counters_.events_lost += events.new_events;
+  waiting_events_ -= events_in(*packet);
   waiting_.erase(packet);
 }
 
@@ -238,7 +235,7 @@ std::optional<Packet> Packetizer::next() {
     }
     Packet packet = std::move(waiting_.front());
     waiting_.pop_front();
-    waiting_events_ -= packet.events.size();
+    waiting_events_ -= events_in(packet);
     packet.imu = slice_imu(imu_, from, packet.t);
     last_handed_out_ = packet.t;
     const auto after =
@@ -252,13 +249,12 @@ std::optional<Packet> Packetizer::next() {
 
 void Packetizer::finish() {
   Timestamp end = last_cut_;
-  if (!events_.empty()) end = std::max(end, events_.back().t);
+  for (const EventHistory& history : events_) end = std::max(end, history.newest().value_or(end));
   if (!frames_.empty()) end = std::max(end, frames_.back().t);
-  make_packets(end);
-  const bool rest = started_ && uncut_begin_ < events_.size();
+  make_packets(end + frame_patience_);
+  const bool rest = std::ranges::any_of(events_, [](const EventHistory& history) { return history.new_events() > 0; });
   if (rest && end - last_cut_ >= duration_from_seconds(config_.min_interval_s)) make_packet({end, false});
-  counters_.events_lost += events_.size() - uncut_begin_;
-  uncut_begin_ = events_.size();
+  for (EventHistory& history : events_) counters_.events_lost += history.give_up();
   while (!waiting_.empty() && (imu_.empty() || waiting_.back().t > imu_.back().t)) {
     ++counters_.packets_after_imu;
     drop_waiting(std::prev(waiting_.end()));

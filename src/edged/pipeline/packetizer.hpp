@@ -1,53 +1,39 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Cuts the measurement stream into packets: events since the last cut, an optional frame, and the IMU that covers them.
+// Cuts the measurement stream into packets: events since the last cut, frames where some came, and the IMU that covers
+// them.
 #pragma once
 
 #include <cstddef>
 #include <deque>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/counters.hpp"
-#include "edged/pipeline/mode.hpp"
+#include "edged/pipeline/event_history.hpp"
+#include "edged/pipeline/packet.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
 
-/// One step of the odometry. All stamps are on the IMU clock: camera time offsets are applied here, once, to events
-/// and frames alike.
-struct Packet {
-  Timestamp t;                 ///< reference time, the instant of the cut: the frame's stamp, the stamp of the event
-                               ///< that completed the count, or where a time limit fell
-  std::vector<Event> events;   ///< oldest first, all t <= packet t; overlaps the previous packet's (augmented packet)
-  std::size_t new_events = 0;  ///< how many of them came since the previous packet (at the end of `events`)
-  std::size_t window_events = 0;  ///< how many to draw (at the end of `events`)
-  std::optional<Frame> frame;     ///< set when a frame cut the packet; its stamp is t
-  std::vector<ImuSample> imu;     ///< from the previous packet's t (or the first sample) to t, both ends interpolated
-  double event_rate_hz = 0.0;     ///< new events over the time since the previous cut, at least 1 ms
-
-  /// The events of the event frame: the newest window_per_pixel * pixels, none older than max_age_s.
-  std::span<const Event> window() const { return std::span<const Event>(events).last(window_events); }
-};
-
-/// Frames cut packets always. Events cut one when there are enough of them, or after the longest time; these cuts keep
-/// min_interval_s from the last cut and give way to a frame that is there or, by the frame period, due within
-/// min_interval_s. In Frames mode, when frames stay away, a packet without one is cut every 5 s: the IMU samples do not
-/// pile up, and whoever reads the steps learns that nothing is seen.
+/// Frames cut packets always, those of several cameras within 1 ms, as of a synchronised pair, one together. Events cut
+/// one when there are enough of them of any camera, or after the longest time; these cuts keep min_interval_s from the
+/// last cut and give way to a frame that is there or, by the period of its camera, due within min_interval_s. Without
+/// event cameras, when frames stay away, a packet without one is cut every 5 s: the IMU samples do not pile up, and
+/// whoever reads the steps learns that nothing is seen.
 ///
-/// Single-threaded and deterministic. Memory is bounded by the window, the delay of the IMU and, in Frames mode, the
-/// IMU samples of 5 s. Before the first packet 20 to 40 s of IMU are kept.
+/// Single-threaded and deterministic. Memory is bounded by the windows, the delay of the IMU and, without event
+/// cameras, the IMU samples of 5 s. Before the first packet 20 to 40 s of IMU are kept.
 class Packetizer {
  public:
-  /// Uses the rig's first event camera (Events, Fused) and first frame camera (Frames, Fused); InputError when it lacks
-  /// one or the intervals contradict each other. Counts on from so_far.
-  Packetizer(const Rig& rig, Mode mode, const PacketizerConfig& config, const PacketizerCounters& so_far = {});
+  /// cameras: those of the run. Throws InputError when the intervals contradict each other. Counts on from so_far.
+  Packetizer(const Rig& cameras, const PacketizerConfig& config, const PacketizerCounters& so_far = {});
 
-  /// The next measurement of a Dataset: in the order of the recorded stamps, each on its own clock.
+  /// The next measurement of a Dataset: in the order of the recorded stamps, each on its own clock; the batches of two
+  /// event cameras by their first ones.
   void add(Measurement measurement);
   /// The next packet whose IMU is complete, if there is one. Call until it returns nothing after each add.
   std::optional<Packet> next();
@@ -62,42 +48,46 @@ class Packetizer {
     Timestamp t;
     bool by_frame = false;
   };
+  struct FrameCamera {
+    std::string name;
+    Duration offset{0};
+    std::optional<Timestamp> newest = {}, cut = {};  ///< stamps of the last that came and of the last in a packet
+    std::optional<Timestamp> expected = {};
+    Duration period{0};
+  };
 
   void add_events(const EventBatch& batch);
   void add_frame(Frame frame);
   void add_imu(const ImuSample& sample);
-  void advance_clock(Timestamp recorded, bool is_frame);
+  void advance_clock(Timestamp recorded, Timestamp complete);
   void start_at(Timestamp t);
   void make_packets(Timestamp complete_until);
   std::optional<Cut> next_cut(Timestamp complete_until) const;
   Timestamp next_event_cut() const;
   Timestamp frames_given_up() const;
   void make_packet(const Cut& cut);
-  void take_events(Packet& packet);
+  void take_frames(Packet& packet);
   void drop_overflow();
   void drop_waiting(const std::deque<Packet>::iterator& packet);
+  FrameCamera* find_frame_camera(const std::string& name);
 
-  Mode mode_;
   PacketizerConfig config_;
-  std::string event_camera_, frame_camera_;  // empty: not used in this mode
-  Duration event_offset_{0}, frame_offset_{0};
-  std::size_t cut_events_ = 0, window_events_ = 0;  // per packet
+  std::vector<EventHistory> events_;        // one an event camera
+  std::vector<FrameCamera> frame_cameras_;  // in the order of the rig
+  Duration event_offset_{0};                // of the first event camera
+  Duration least_offset_;                   // of all cameras
+  Duration frame_patience_{0};              // how long a frame waits for those of other cameras
   PacketizerCounters counters_;
+
+  std::optional<Timestamp> last_recorded_;  // newest stamp of any sensor, as recorded
+  Timestamp complete_ = Timestamp::min();   // up to here all sensors have come, as recorded
 
   // On the IMU clock from here on.
   bool started_ = false;  // an event or a frame has come
   Timestamp last_cut_ = Timestamp::min();
-  Timestamp heartbeat_from_ = Timestamp::min();   // last cut, or the end of a hole in the recording
-  std::optional<Timestamp> last_recorded_;        // newest stamp of any sensor, as recorded
-  Timestamp events_complete_ = Timestamp::min();  // all events up to here have come
-  Timestamp frames_complete_ = Timestamp::min();
-  std::optional<Timestamp> last_frame_;
-  std::optional<Timestamp> expected_frame_;
-  Duration frame_period_{0};
+  Timestamp heartbeat_from_ = Timestamp::min();  // last cut, or the end of a hole in the recording
 
-  std::vector<Event> events_;  // history, then the uncut ones
-  std::size_t history_begin_ = 0, uncut_begin_ = 0;
-  std::deque<Frame> frames_;    // not cut yet
+  std::deque<Frame> frames_;    // not cut yet, in the order of their stamps
   std::deque<Packet> waiting_;  // cut, without IMU
   std::size_t waiting_events_ = 0;
   std::vector<ImuSample> imu_;

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/pipeline/mode.hpp"
 
 namespace edged {
 namespace {
@@ -64,7 +65,7 @@ Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const Packetiz
   std::stable_sort(stream.measurements.begin(), stream.measurements.end(), [&](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : rank(a.second) < rank(b.second);
   });
-  Packetizer packetizer(rig, mode, config);
+  Packetizer packetizer(used_cameras(rig, mode), config);
   Result result;
   const auto collect = [&] {
     while (auto packet = packetizer.next()) result.packets.push_back(std::move(*packet));
@@ -81,7 +82,7 @@ Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const Packetiz
 
 std::size_t sum_of_new_events(const Result& result) {
   std::size_t sum = 0;
-  for (const Packet& packet : result.packets) sum += packet.new_events;
+  for (const Packet& packet : result.packets) sum += packet.events[0].new_events;
   return sum;
 }
 
@@ -90,10 +91,10 @@ TEST(Packetizer, CutsAfterAGivenNumberOfEvents) {
   const Result result = run(Stream().imu(-10, 400, 1).events(0, 350, 1), Mode::Events);
   ASSERT_GE(result.packets.size(), 9U);
   for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(result.packets[i].new_events, kCut);
-    EXPECT_EQ(result.packets[i].t, result.packets[i].events.back().t);
+    EXPECT_EQ(result.packets[i].events[0].new_events, kCut);
+    EXPECT_EQ(result.packets[i].t, result.packets[i].events[0].events.back().t);
     EXPECT_NEAR(to_ms(result.packets[i].t), 34.0 + 35.0 * static_cast<double>(i), 1e-6);
-    EXPECT_NEAR(result.packets[i].event_rate_hz, 1000.0, 30.0);
+    EXPECT_NEAR(result.packets[i].events[0].event_rate_hz, 1000.0, 30.0);
   }
 }
 
@@ -110,9 +111,9 @@ TEST(Packetizer, KeepsTheShortestTimeWhenEventsAreMany) {
   ASSERT_GE(result.packets.size(), 9U);
   for (std::size_t i = 1; i + 1 < result.packets.size(); ++i) {
     EXPECT_EQ(result.packets[i].t - result.packets[i - 1].t, duration_from_seconds(0.015));
-    EXPECT_EQ(result.packets[i].new_events, 150U);
-    EXPECT_EQ(result.packets[i].window().size(), kCut);
-    EXPECT_LT(result.packets[i].t - result.packets[i].window().back().t, duration_from_seconds(1.001e-4));
+    EXPECT_EQ(result.packets[i].events[0].new_events, 150U);
+    EXPECT_EQ(result.packets[i].events[0].window().size(), kCut);
+    EXPECT_LT(result.packets[i].t - result.packets[i].events[0].window().back().t, duration_from_seconds(1.001e-4));
   }
 }
 
@@ -121,11 +122,11 @@ TEST(Packetizer, BeatsAtStandstillWithoutAnyEvent) {
   ASSERT_GE(result.packets.size(), 20U);
   for (std::size_t i = 1; i < 20; ++i) {
     EXPECT_EQ(result.packets[i].t - result.packets[i - 1].t, duration_from_seconds(0.04));
-    EXPECT_EQ(result.packets[i].new_events, 0U);
-    EXPECT_EQ(result.packets[i].event_rate_hz, 0.0);
+    EXPECT_EQ(result.packets[i].events[0].new_events, 0U);
+    EXPECT_EQ(result.packets[i].events[0].event_rate_hz, 0.0);
   }
-  EXPECT_EQ(result.packets[3].window().size(), 1U);
-  EXPECT_TRUE(result.packets[10].window().empty());  // the event is older than 0.25 s
+  EXPECT_EQ(result.packets[3].events[0].window().size(), 1U);
+  EXPECT_TRUE(result.packets[10].events[0].window().empty());  // the event is older than 0.25 s
 }
 
 TEST(Packetizer, OverlapsTheWindowOfThePacketBefore) {
@@ -133,13 +134,13 @@ TEST(Packetizer, OverlapsTheWindowOfThePacketBefore) {
   config.window_per_pixel = 1.0;
   const Result result = run(Stream().imu(-10, 400, 1).events(0, 350, 1), Mode::Events, make_rig(), config);
   ASSERT_GE(result.packets.size(), 8U);
-  EXPECT_EQ(result.packets[0].events.size(), 35U);
-  EXPECT_EQ(result.packets[1].events.size(), 70U);
+  EXPECT_EQ(result.packets[0].events[0].events.size(), 35U);
+  EXPECT_EQ(result.packets[1].events[0].events.size(), 70U);
   for (std::size_t i = 2; i < 8; ++i) {
-    EXPECT_EQ(result.packets[i].events.size(), 100U);
-    EXPECT_EQ(result.packets[i].window_events, 100U);
-    EXPECT_EQ(result.packets[i].new_events, 35U);
-    EXPECT_LE(result.packets[i].events.front().t, result.packets[i - 1].t);
+    EXPECT_EQ(result.packets[i].events[0].events.size(), 100U);
+    EXPECT_EQ(result.packets[i].events[0].window_events, 100U);
+    EXPECT_EQ(result.packets[i].events[0].new_events, 35U);
+    EXPECT_LE(result.packets[i].events[0].events.front().t, result.packets[i - 1].t);
   }
 }
 
@@ -148,11 +149,11 @@ TEST(Packetizer, CutsAtEveryFrameWithTheEventsUpToItsStamp) {
   ASSERT_EQ(result.packets.size(), 15U);
   for (std::size_t i = 0; i < result.packets.size(); ++i) {
     const Packet& packet = result.packets[i];
-    ASSERT_TRUE(packet.frame.has_value());
-    EXPECT_EQ(packet.frame->t, packet.t);
+    ASSERT_EQ(packet.frames.size(), 1U);
+    EXPECT_EQ(packet.frames[0].t, packet.t);
     EXPECT_NEAR(to_ms(packet.t), 10.0 + 20.0 * static_cast<double>(i), 1e-6);
-    EXPECT_EQ(packet.events.back().t, packet.t);  // the event at the frame's own stamp is in
-    EXPECT_EQ(packet.new_events, i == 0 ? 6U : 10U);
+    EXPECT_EQ(packet.events[0].events.back().t, packet.t);  // the event at the frame's own stamp is in
+    EXPECT_EQ(packet.events[0].new_events, i == 0 ? 6U : 10U);
   }
   EXPECT_EQ(result.counters.events_lost, 5U);  // after the last frame, 10 ms: too short for a packet
 }
@@ -165,7 +166,7 @@ TEST(Packetizer, CutsBetweenFramesByCountButNotJustBeforeAFrame) {
       run(Stream().imu(-10, 501, 1).events(0, 500, 0.5).frames(0, 500, 50), Mode::Fused, make_rig(), config);
   int between = 0;
   for (std::size_t i = 4; i < result.packets.size(); ++i) {
-    if (result.packets[i].frame) continue;
+    if (!result.packets[i].frames.empty()) continue;
     ++between;
     EXPECT_NEAR(std::fmod(to_ms(result.packets[i].t), 50.0), 17.5, 0.6);
   }
@@ -187,8 +188,8 @@ TEST(Packetizer, CutsAtAFrameHoweverShortlyAfterAnEventPacket) {
   stream.frames(36, 36, 1);  // the count is reached at 34 ms; nothing told of this frame
   const Result result = run(stream, Mode::Fused);
   ASSERT_GE(result.packets.size(), 2U);
-  EXPECT_FALSE(result.packets[0].frame.has_value());
-  ASSERT_TRUE(result.packets[1].frame.has_value());
+  EXPECT_TRUE(result.packets[0].frames.empty());
+  ASSERT_EQ(result.packets[1].frames.size(), 1U);
   EXPECT_NEAR(to_ms(result.packets[1].t) - to_ms(result.packets[0].t), 2.0, 1e-6);
 }
 
@@ -196,7 +197,7 @@ TEST(Packetizer, InFramesModeCutsOnlyAtFrames) {
   const Result result = run(Stream().imu(-10, 1000, 5).events(0, 900, 0.5).frames(0, 900, 100), Mode::Frames);
   ASSERT_EQ(result.packets.size(), 10U);
   for (const Packet& packet : result.packets) {
-    EXPECT_TRUE(packet.frame.has_value());
+    EXPECT_EQ(packet.frames.size(), 1U);
     EXPECT_TRUE(packet.events.empty());
   }
 }
@@ -207,7 +208,7 @@ TEST(Packetizer, InEventsModeIgnoresFrames) {
   const Result plain = run(without, Mode::Events);
   ASSERT_EQ(with.packets.size(), plain.packets.size());
   for (std::size_t i = 0; i < with.packets.size(); ++i) {
-    EXPECT_FALSE(with.packets[i].frame.has_value());
+    EXPECT_TRUE(with.packets[i].frames.empty());
     EXPECT_EQ(with.packets[i].t, plain.packets[i].t);
   }
 }
@@ -249,7 +250,7 @@ TEST(Packetizer, StillDeliversAcrossAGapInTheImu) {
 }
 
 TEST(Packetizer, WaitsUntilTheImuPassesThePacket) {
-  Packetizer packetizer(make_rig(), Mode::Frames, {});
+  Packetizer packetizer(used_cameras(make_rig(), Mode::Frames), {});
   packetizer.add(imu_at(0));
   packetizer.add(Frame{at_ms(10), "cam", cv::Mat()});
   EXPECT_FALSE(packetizer.next().has_value());
@@ -268,9 +269,9 @@ TEST(Packetizer, AppliesTheTimeOffsetToEventsAndFramesAlike) {
   const Duration offset = duration_from_seconds(2.4e-3);
   for (std::size_t i = 0; i < plain.packets.size(); ++i) {
     EXPECT_EQ(shifted.packets[i].t, plain.packets[i].t + offset);
-    ASSERT_EQ(shifted.packets[i].events.size(), plain.packets[i].events.size());
-    EXPECT_EQ(shifted.packets[i].events.back().t, plain.packets[i].events.back().t + offset);
-    EXPECT_EQ(shifted.packets[i].frame.has_value(), plain.packets[i].frame.has_value());
+    ASSERT_EQ(shifted.packets[i].events[0].events.size(), plain.packets[i].events[0].events.size());
+    EXPECT_EQ(shifted.packets[i].events[0].events.back().t, plain.packets[i].events[0].events.back().t + offset);
+    EXPECT_EQ(shifted.packets[i].frames.size(), plain.packets[i].frames.size());
   }
 }
 
@@ -283,11 +284,11 @@ TEST(Packetizer, WaitsForEventsAndFramesWhoseOffsetsDiffer) {
     EXPECT_EQ(sum_of_new_events(result) + result.counters.events_lost, 301U);
     int frames = 0;
     for (const Packet& packet : result.packets) {
-      if (!packet.frame) continue;
+      if (packet.frames.empty()) continue;
       ++frames;
-      ASSERT_FALSE(packet.events.empty());
-      EXPECT_LE(packet.events.back().t, packet.t);
-      EXPECT_LT(packet.t - packet.events.back().t, duration_from_seconds(1.001e-3));
+      ASSERT_FALSE(packet.events[0].events.empty());
+      EXPECT_LE(packet.events[0].events.back().t, packet.t);
+      EXPECT_LT(packet.t - packet.events[0].events.back().t, duration_from_seconds(1.001e-3));
     }
     EXPECT_EQ(frames, 9);
   }
@@ -314,7 +315,7 @@ TEST(Packetizer, LosesNoEventAndKeepsTheOrder) {
     for (const Packet& packet : result.packets) {
       EXPECT_GT(packet.t, last_cut);
       last_cut = packet.t;
-      const auto added = std::span<const Event>(packet.events).last(packet.new_events);
+      const auto added = std::span<const Event>(packet.events[0].events).last(packet.events[0].new_events);
       for (const Event& event : added) {
         EXPECT_GT(event.t, newest);
         EXPECT_LE(event.t, packet.t);
@@ -325,7 +326,7 @@ TEST(Packetizer, LosesNoEventAndKeepsTheOrder) {
 }
 
 TEST(Packetizer, DropsAndCountsWhatComesOutOfOrder) {
-  Packetizer packetizer(make_rig(), Mode::Fused, {});
+  Packetizer packetizer(make_rig(), {});
   packetizer.add(imu_at(0));
   packetizer.add(EventBatch{"dvs", {{at_ms(5), 1, 1, true}, {at_ms(4), 1, 1, true}, {at_ms(6), 1, 1, true}}});
   packetizer.add(Frame{at_ms(10), "cam", cv::Mat()});
@@ -336,7 +337,7 @@ TEST(Packetizer, DropsAndCountsWhatComesOutOfOrder) {
   packetizer.add(imu_at(15));
   const auto packet = packetizer.next();
   ASSERT_TRUE(packet.has_value());
-  EXPECT_EQ(packet->new_events, 2U);
+  EXPECT_EQ(packet->events[0].new_events, 2U);
   EXPECT_EQ(packetizer.counters().events_late, 2U);
   EXPECT_EQ(packetizer.counters().frames_late, 1U);
   EXPECT_EQ(packetizer.counters().imu_late, 1U);
@@ -349,7 +350,7 @@ TEST(Packetizer, KeepsItsMemoryBoundedWhenTheImuStaysAway) {
       run(Stream().imu(-10, 0, 1).imu(5000, 5010, 1).events(0, 5000, 1), Mode::Events, make_rig(), config);
   EXPECT_GT(result.counters.packets_overflow, 100U);
   std::size_t kept = 0;
-  for (const Packet& packet : result.packets) kept += packet.events.size();
+  for (const Packet& packet : result.packets) kept += packet.events[0].events.size();
   EXPECT_LE(kept, 1100U);
   EXPECT_EQ(sum_of_new_events(result) + result.counters.events_lost, 5001U);
   ASSERT_FALSE(result.packets.empty());
@@ -375,19 +376,15 @@ TEST(Packetizer, GivesTheSamePacketsHoweverTheEventsAreBatched) {
   ASSERT_EQ(a.packets.size(), b.packets.size());
   for (std::size_t i = 0; i < a.packets.size(); ++i) {
     EXPECT_EQ(a.packets[i].t, b.packets[i].t);
-    EXPECT_EQ(a.packets[i].new_events, b.packets[i].new_events);
-    EXPECT_EQ(a.packets[i].events.size(), b.packets[i].events.size());
+    EXPECT_EQ(a.packets[i].events[0].new_events, b.packets[i].events[0].new_events);
+    EXPECT_EQ(a.packets[i].events[0].events.size(), b.packets[i].events[0].events.size());
   }
 }
 
-TEST(Packetizer, ExplainsAMissingCameraAndContradictingIntervals) {
-  Rig rig = make_rig();
-  rig.cameras.pop_back();
-  EXPECT_THROW(Packetizer(rig, Mode::Fused, {}), InputError);
-  EXPECT_NO_THROW(Packetizer(rig, Mode::Events, {}));
+TEST(Packetizer, ExplainsContradictingIntervals) {
   PacketizerConfig config;
   config.min_interval_s = 0.1;
-  EXPECT_THROW(Packetizer(make_rig(), Mode::Fused, config), InputError);
+  EXPECT_THROW(Packetizer(make_rig(), config), InputError);
 }
 
 TEST(Packetizer, GivesNothingForAnEmptyRecording) {

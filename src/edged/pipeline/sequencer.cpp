@@ -3,6 +3,7 @@
 #include "edged/pipeline/sequencer.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -20,6 +21,13 @@ std::size_t bytes_of(const EventBatch& batch) { return batch.events.size() * siz
 std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.image.elemSize(); }
 std::size_t bytes_of(const ImuSample&) { return 0; }  // bounded by their number: no IMU sample makes way for an image
 
+template <typename Lines>
+auto& line_of(Lines& lines, const std::string& camera) {
+  const auto found = std::ranges::find_if(lines, [&](const auto& line) { return line.camera == camera; });
+  EDGED_CHECK(found != lines.end(), "a measurement of camera '{}', which is not used", camera);
+  return *found;
+}
+
 }  // namespace
 
 void SensorDelays::validate() const {
@@ -29,11 +37,23 @@ void SensorDelays::validate() const {
   }
 }
 
-Sequencer::Sequencer(Mode mode, const SensorDelays& delays, std::size_t most_bytes)
-    : most_bytes_(most_bytes),
-      events_{uses(mode, Modality::Events), duration_from_seconds(delays.events_s)},
-      frames_{uses(mode, Modality::Frames), duration_from_seconds(delays.frames_s)},
-      imu_{true, duration_from_seconds(delays.imu_s)} {}
+Sequencer::Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes)
+    : most_bytes_(most_bytes), imu_{"", {}} {
+  Duration least(0);  // of t_imu - t_cam: whose clock is the farthest ahead
+  for (const RigCamera& camera : cameras.cameras) least = std::min(least, camera.time_offset);
+  // What a clock is behind that by, its sensor lags by.
+  const auto delay = [&](double seconds, Duration offset) {
+    return delays == kInOrder ? Duration(0) : duration_from_seconds(seconds) + offset - least;
+  };
+  for (const RigCamera& camera : cameras.cameras) {
+    if (camera.modality == Modality::Events) {
+      events_.push_back({camera.name, delay(delays.events_s, camera.time_offset)});
+    } else {
+      frames_.push_back({camera.name, delay(delays.frames_s, camera.time_offset)});
+    }
+  }
+  imu_.delay = delay(delays.imu_s, Duration(0));
+}
 
 bool Sequencer::add(Measurement measurement) {
   if (finished_) return false;
@@ -42,13 +62,24 @@ bool Sequencer::add(Measurement measurement) {
   const bool taken = std::visit(
       [&](auto& item) {
         using Item = std::decay_t<decltype(item)>;
-        if constexpr (std::is_same_v<Item, EventBatch>) return push(events_, std::move(item), *last);
-        if constexpr (std::is_same_v<Item, Frame>) return push(frames_, std::move(item), *last);
-        if constexpr (std::is_same_v<Item, ImuSample>) return push(imu_, std::move(item), *last);
+        if constexpr (std::is_same_v<Item, ImuSample>) {
+          return push(imu_, std::move(item), *last);
+        } else {
+          auto& lines = std::get<std::vector<Line<Item>>&>(std::tie(events_, frames_));
+          auto& line = line_of(lines, item.camera);
+          return push(line, std::move(item), *last);
+        }
       },
       measurement);
   if (taken) newest_ = std::max(newest_.value_or(*last), *last);
   return taken;
+}
+
+std::size_t Sequencer::waiting() const {
+  std::size_t sum = imu_.waiting.size();
+  for (const Line<EventBatch>& line : events_) sum += line.waiting.size();
+  for (const Line<Frame>& line : frames_) sum += line.waiting.size();
+  return sum;
 }
 
 template <typename T>
@@ -64,24 +95,40 @@ bool Sequencer::push(Line<T>& line, T item, Timestamp last) {
 /// Of what the line may still give: of the first that waits, else of the first that can still come.
 template <typename T>
 Timestamp Sequencer::earliest(const Line<T>& line) const {
-  if (!line.waiting.empty()) return first_stamp_of(line.waiting.front());
-  if (!line.expected || finished_ || bytes_ > most_bytes_ / 2) return Timestamp::max();
+  if (!line.waiting.empty()) {
+    if constexpr (std::is_same_v<T, EventBatch>) {
+      return line.waiting.front().events[line.events_out].t;
+    } else {
+      return line.waiting.front().t;
+    }
+  }
+  if (finished_ || bytes_ > most_bytes_ / 2) return Timestamp::max();
   const Timestamp not_too_late = *newest_ - line.delay + kNextTick;
   if (!line.newest) return not_too_late;
   const Duration step = std::is_same_v<T, EventBatch> ? Duration(0) : kNextTick;  // two batches may share a stamp
   return std::max(*line.newest + step, not_too_late);
 }
 
+/// Whose turn comes first; ties in the order of the cameras. Null without any.
+template <typename T>
+Sequencer::Line<T>* Sequencer::first_of(std::vector<Line<T>>& lines) {
+  const auto first = std::ranges::min_element(lines, {}, [this](const Line<T>& line) { return earliest(line); });
+  return first == lines.end() ? nullptr : &*first;
+}
+
 std::optional<Measurement> Sequencer::next() {
   if (!newest_) return std::nullopt;
-  const NextStream next = next_stream(earliest(imu_), earliest(events_), earliest(frames_));
+  Line<EventBatch>* const events = first_of(events_);
+  Line<Frame>* const frames = first_of(frames_);
+  const NextStream next = next_stream(earliest(imu_), events ? earliest(*events) : Timestamp::max(),
+                                      frames ? earliest(*frames) : Timestamp::max());
   switch (next.stream) {
     case NextStream::Stream::Imu:
       return pop(imu_);
     case NextStream::Stream::Frame:
-      return pop(frames_);
+      return pop(*frames);
     case NextStream::Stream::Events:
-      return pop_events(next.events_end);
+      return pop_events(*events, next.events_end);
     case NextStream::Stream::None:
       break;
   }
@@ -97,18 +144,18 @@ std::optional<Measurement> Sequencer::pop(Line<T>& line) {
   return item;
 }
 
-std::optional<Measurement> Sequencer::pop_events(Timestamp end) {
-  if (events_.waiting.empty()) return std::nullopt;
-  EventBatch& batch = events_.waiting.front();
-  if (events_out_ == 0 && batch.events.back().t < end) return pop(events_);
-  const auto begin = batch.events.begin() + static_cast<std::ptrdiff_t>(events_out_);
+std::optional<Measurement> Sequencer::pop_events(Line<EventBatch>& line, Timestamp end) {
+  if (line.waiting.empty()) return std::nullopt;
+  EventBatch& batch = line.waiting.front();
+  if (line.events_out == 0 && batch.events.back().t < end) return pop(line);
+  const auto begin = batch.events.begin() + static_cast<std::ptrdiff_t>(line.events_out);
   const auto cut = std::partition_point(begin, batch.events.end(), [end](const Event& event) { return event.t < end; });
   EventBatch part{batch.camera, {begin, cut}};
-  events_out_ += part.events.size();
+  line.events_out += part.events.size();
   if (cut == batch.events.end()) {
     bytes_ -= bytes_of(batch);
-    events_.waiting.pop_front();
-    events_out_ = 0;
+    line.waiting.pop_front();
+    line.events_out = 0;
   }
   return part;
 }

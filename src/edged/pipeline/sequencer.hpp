@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/mode.hpp"
+#include "edged/rig.hpp"
 
 namespace edged {
 
@@ -24,27 +26,30 @@ class Sequencer {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
 
-  /// Waits for the sensors that the mode uses. The delays are valid, as of validate(), but for what was added to them.
-  Sequencer(Mode mode, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
+  /// Waits for these cameras and the IMU. The delays are valid, as of validate(); what the clocks of the cameras differ
+  /// by comes on top of them, as stamps are compared as recorded.
+  Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
 
-  /// False when there is no room for it, or after finish(). Batches without events are passed over.
+  /// False when there is no room for it, or after finish(). Batches without events are passed over. Of those cameras.
   bool add(Measurement measurement);
   /// No more will come: all that waits goes out.
   void finish() { finished_ = true; }
 
-  /// The next measurement, a batch of events up to the next other one; nothing as long as another may precede it.
+  /// The next measurement, a batch of events up to the next IMU sample or frame; nothing as long as another may precede
+  /// it. Batches of two event cameras may overlap, in the order of their first events.
   std::optional<Measurement> next();
   /// After finish(), and all has gone out.
   bool ended() const { return finished_ && waiting() == 0; }
   /// How many measurements have not gone out.
-  std::size_t waiting() const { return events_.waiting.size() + frames_.waiting.size() + imu_.waiting.size(); }
+  std::size_t waiting() const;
 
  private:
   template <typename T>
   struct Line {
-    bool expected;
+    std::string camera;
     Duration delay;
     std::deque<T> waiting = {};
+    std::size_t events_out = 0;  ///< of the first batch that waits
     std::optional<Timestamp> newest = {};
   };
 
@@ -54,17 +59,15 @@ class Sequencer {
   Timestamp earliest(const Line<T>& line) const;
   template <typename T>
   std::optional<Measurement> pop(Line<T>& line);
-  std::optional<Measurement> pop_events(Timestamp end);
-  Timestamp first_stamp_of(const EventBatch& batch) const { return batch.events[events_out_].t; }
-  static Timestamp first_stamp_of(const Frame& frame) { return frame.t; }
-  static Timestamp first_stamp_of(const ImuSample& sample) { return sample.t; }
+  std::optional<Measurement> pop_events(Line<EventBatch>& line, Timestamp end);
+  template <typename T>
+  Line<T>* first_of(std::vector<Line<T>>& lines);
 
   std::size_t most_bytes_;
-  Line<EventBatch> events_;  // none empty
-  Line<Frame> frames_;
+  std::vector<Line<EventBatch>> events_;  // one a camera, no batch empty
+  std::vector<Line<Frame>> frames_;       // one a camera
   Line<ImuSample> imu_;
-  std::size_t events_out_ = 0;  // of the first batch
-  std::size_t bytes_ = 0;       // of the events and frames that wait
+  std::size_t bytes_ = 0;  // of the events and frames that wait
   std::optional<Timestamp> newest_;
   bool finished_ = false;
 };

@@ -23,6 +23,17 @@ Measurement events(std::initializer_list<int> stamps_ms) {
   return batch;
 }
 
+/// Event cameras by these names, and frame cameras.
+Rig cameras(std::initializer_list<const char*> of_events, std::initializer_list<const char*> of_frames) {
+  Rig rig;
+  for (const char* name : of_events)
+    rig.cameras.push_back({.name = name, .modality = Modality::Events, .model = {}, .T_B_C = {}});
+  for (const char* name : of_frames)
+    rig.cameras.push_back({.name = name, .modality = Modality::Frames, .model = {}, .T_B_C = {}});
+  return rig;
+}
+const Rig kBoth = cameras({"dvs"}, {"cam"}), kEvents = cameras({"dvs"}, {});
+
 std::string to_text(const Measurement& measurement) {
   const auto ms = [](Timestamp t) { return t.time_since_epoch() / std::chrono::milliseconds(1); };
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) return fmt::format("i{}", ms(sample->t));
@@ -43,7 +54,7 @@ std::string ready(Sequencer& sequencer) {
 }
 
 TEST(Sequencer, PassesOnWhatItGetsWithoutACopyWhereNothingIsWaitedFor) {
-  Sequencer sequencer(Mode::Fused, kInOrder);
+  Sequencer sequencer(kBoth, kInOrder);
   Measurement batch = events({1, 2, 9});
   const Event* const place = std::get<EventBatch>(batch).events.data();
   sequencer.add(std::move(batch));
@@ -61,7 +72,7 @@ TEST(Sequencer, BreaksTiesByImuEventsFrameWhateverComesFirst) {
   std::vector<Measurement> tied{frame(10), events({10}), imu(10)};
   std::vector<int> order{0, 1, 2};
   do {
-    Sequencer sequencer(Mode::Fused, {});
+    Sequencer sequencer(kBoth, {});
     for (const int i : order) sequencer.add(tied[static_cast<std::size_t>(i)]);
     sequencer.finish();
     EXPECT_EQ(ready(sequencer), "i10 e10 f10");
@@ -69,7 +80,7 @@ TEST(Sequencer, BreaksTiesByImuEventsFrameWhateverComesFirst) {
 }
 
 TEST(Sequencer, CutsABatchWhereAnotherMeasurementFallsInside) {
-  Sequencer sequencer(Mode::Fused, {});
+  Sequencer sequencer(kBoth, {});
   for (Measurement m : {events({1, 5, 6, 10, 12}), imu(5), imu(11), frame(10)}) sequencer.add(std::move(m));
   EXPECT_EQ(ready(sequencer), "e1 i5 e5,6,10 f10");  // at 11 another frame may follow
   sequencer.finish();
@@ -78,7 +89,7 @@ TEST(Sequencer, CutsABatchWhereAnotherMeasurementFallsInside) {
 }
 
 TEST(Sequencer, WaitsForASilentSensorAsLongAsItsDelayAndNoLonger) {
-  Sequencer sequencer(Mode::Fused, {.events_s = 0.02, .frames_s = 0.03, .imu_s = 0.0});
+  Sequencer sequencer(kBoth, {.events_s = 0.02, .frames_s = 0.03, .imu_s = 0.0});
   sequencer.add(imu(10));
   sequencer.add(imu(39));
   EXPECT_EQ(ready(sequencer), "");
@@ -92,7 +103,7 @@ TEST(Sequencer, WaitsForASilentSensorAsLongAsItsDelayAndNoLonger) {
 }
 
 TEST(Sequencer, DoesNotWaitForSensorsThatTheModeDoesNotUse) {
-  Sequencer of_events(Mode::Events, {}), of_frames(Mode::Frames, {});
+  Sequencer of_events(kEvents, {}), of_frames(cameras({}, {"cam"}), {});
   for (const Measurement& m : {imu(10), events({11}), imu(12)}) of_events.add(m);
   EXPECT_EQ(ready(of_events), "i10 e11");
   for (const Measurement& m : {imu(10), frame(11), imu(12)}) of_frames.add(m);
@@ -100,7 +111,7 @@ TEST(Sequencer, DoesNotWaitForSensorsThatTheModeDoesNotUse) {
 }
 
 TEST(Sequencer, HandsOnAtOnceWhatComesLaterThanItsDelay) {
-  Sequencer sequencer(Mode::Events, {.events_s = 0.01, .imu_s = 0.01});
+  Sequencer sequencer(kEvents, {.events_s = 0.01, .imu_s = 0.01});
   for (int ms = 0; ms <= 50; ms += 5) sequencer.add(imu(ms));
   EXPECT_EQ(ready(sequencer), "i0 i5 i10 i15 i20 i25 i30 i35 i40");
   sequencer.add(events({20, 42, 47}));
@@ -132,7 +143,7 @@ std::string order_of(Sequencer& sequencer) {
 }
 
 TEST(Sequencer, GivesOneOrderHoweverTheSensorsLagWithinTheirDelays) {
-  Sequencer in_order(Mode::Fused, kInOrder);
+  Sequencer in_order(kBoth, kInOrder);
   std::string wanted;
   for (const Measurement& m : one_second()) {
     in_order.add(m);
@@ -145,7 +156,7 @@ TEST(Sequencer, GivesOneOrderHoweverTheSensorsLagWithinTheirDelays) {
     std::size_t i = 0;
     for (const Measurement& m : one_second()) arrivals.emplace_back(i++ + 2 * lag[m.index()], m);
     std::ranges::stable_sort(arrivals, {}, &std::pair<std::size_t, Measurement>::first);
-    Sequencer sequencer(Mode::Fused, {});
+    Sequencer sequencer(kBoth, {});
     std::string got;
     for (auto& [when, m] : arrivals) {
       sequencer.add(std::move(m));
@@ -158,7 +169,7 @@ TEST(Sequencer, GivesOneOrderHoweverTheSensorsLagWithinTheirDelays) {
 }
 
 TEST(Sequencer, HoldsABoundedAmountAndStopsWaitingBefore) {
-  Sequencer waiting(Mode::Fused, {.events_s = 10, .frames_s = 10, .imu_s = 10}, 100 * sizeof(Event));
+  Sequencer waiting(kBoth, {.events_s = 10, .frames_s = 10, .imu_s = 10}, 100 * sizeof(Event));
   for (int ms = 0; ms < 50; ++ms) EXPECT_TRUE(waiting.add(events({ms})));
   EXPECT_EQ(ready(waiting), "");
   EXPECT_TRUE(waiting.add(events({50})));
@@ -169,7 +180,7 @@ TEST(Sequencer, HoldsABoundedAmountAndStopsWaitingBefore) {
 }
 
 TEST(Sequencer, TakesNothingAfterTheEndAndPassesOverEmptyBatches) {
-  Sequencer sequencer(Mode::Fused, {});
+  Sequencer sequencer(kBoth, {});
   EXPECT_EQ(ready(sequencer), "");
   EXPECT_TRUE(sequencer.add(events({})));
   sequencer.finish();

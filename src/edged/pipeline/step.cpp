@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/step.hpp"
 
+#include <algorithm>
+
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -21,5 +23,15 @@ std::string to_string(TrackingStatus status) {
 }
 
 bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
+
+const CameraStep* Step::find(Modality modality) const {
+  const auto it = std::ranges::find(cameras, modality, &CameraStep::modality);
+  return it == cameras.end() ? nullptr : &*it;
+}
+
+const CameraStep* Step::find(std::string_view camera) const {
+  const auto it = std::ranges::find(cameras, camera, &CameraStep::name);
+  return it == cameras.end() ? nullptr : &*it;
+}
 
 }  // namespace edged
