@@ -24,6 +24,7 @@ namespace {
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   const RunConfig config = load_config(options.config);
+  options.source.cameras = camera_names(config.odometry.cameras);
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -13,6 +14,7 @@
 #include "edged/io/open_recording.hpp"
 #include "edged/io/text/imu_text.hpp"
 #include "edged/sim/dimmed_frames.hpp"
+#include "edged/sim/simulated_pair.hpp"
 #include "interrupt.hpp"
 #include "numbers.hpp"
 
@@ -41,6 +43,7 @@ RecordingOptions recording_options(const SourceOptions& options) {
     if (!chosen.geometry)
       throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
+  chosen.cameras = options.cameras;
   chosen.interrupted = [] { return interrupt_signal() != 0; };
   if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
   for (const std::string& text : options.topics) {
@@ -56,9 +59,13 @@ RecordingOptions recording_options(const SourceOptions& options) {
 Recording open_whole(const SourceOptions& options) {
   std::optional<Calibration> calibration = chosen_calibration(options);
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) {
-    auto simulator = std::make_unique<Simulator>(*config);
-    if (!calibration) calibration = simulator->calibration();
-    return {std::move(simulator), std::move(calibration)};
+    const auto opened = [&](auto simulator) -> Recording {
+      if (!calibration) calibration = simulator->calibration();
+      return {std::move(simulator), std::move(calibration)};
+    };
+    const bool both = std::ranges::any_of(options.cameras, [](const std::string& name) { return name.ends_with('2'); });
+    if (both) return opened(std::make_unique<SimulatedPair>(*config));
+    return opened(std::make_unique<Simulator>(*config));
   }
   Recording recording =
       open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));

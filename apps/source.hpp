@@ -20,12 +20,13 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;                  ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;      ///< calibration file; "" where not given
-  std::filesystem::path imu;        ///< file with IMU samples; "" where not given
-  std::string geometry;             ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
-  std::string time_unit;            ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
-  std::vector<std::string> topics;  ///< of bags: ROLE=NAME
+  std::string rig;                        ///< name of a shipped rig; "" where not given
+  std::filesystem::path calib;            ///< calibration file; "" where not given
+  std::filesystem::path imu;              ///< file with IMU samples; "" where not given
+  std::string geometry;                   ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
+  std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
+  std::vector<std::string> topics;        ///< of bags: ROLE=NAME
+  std::vector<std::string> cameras = {};  ///< to read, by name, where the recording has several of a kind
   PieceBounds piece;
   std::optional<double> duration_s;  ///< of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames

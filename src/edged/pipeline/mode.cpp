@@ -15,17 +15,6 @@ namespace {
 
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
 
-/// Between commas, without the blanks around them.
-std::vector<std::string> names_of(const std::string& list) {
-  std::vector<std::string> names;
-  std::istringstream fields(list);
-  for (std::string field; std::getline(fields, field, ',');) {
-    const std::size_t begin = field.find_first_not_of(' '), end = field.find_last_not_of(' ');
-    names.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
-  }
-  return names;
-}
-
 std::string listed(const Rig& rig) {
   std::string list;
   for (const RigCamera& camera : rig.cameras)
@@ -36,8 +25,18 @@ std::string listed(const Rig& rig) {
 
 }  // namespace
 
+std::vector<std::string> camera_names(const std::string& list) {
+  std::vector<std::string> names;
+  std::istringstream fields(list);
+  for (std::string field; std::getline(fields, field, ',');) {
+    const std::size_t begin = field.find_first_not_of(' '), end = field.find_last_not_of(' ');
+    names.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
+  }
+  return names;
+}
+
 Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted) {
-  const std::vector<std::string> names = names_of(wanted);
+  const std::vector<std::string> names = camera_names(wanted);
   for (const std::string& name : names) {
     if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
       throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));

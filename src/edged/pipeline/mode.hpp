@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "edged/options.hpp"
 #include "edged/rig.hpp"
@@ -15,6 +16,9 @@ struct DatasetInfo;
 constexpr bool uses(Mode mode, Modality modality) {
   return mode != (modality == Modality::Events ? Mode::Frames : Mode::Events);
 }
+
+/// Of the option `cameras`: what stands between its commas, without the blanks around.
+std::vector<std::string> camera_names(const std::string& wanted);
 
 /// The cameras of a run: those of events, then those of frames, each as the rig has them. wanted: their names,
 /// separated by commas, of which the mode uses what is of its modalities; empty: the first of each. Throws InputError,

@@ -20,6 +20,6 @@ inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data
 
 /// The folder itself or its mav0, whichever holds cam0 or imu0.
 std::optional<SourcePath> find_mav0(const SourcePath& folder);
-Recording open_euroc(const SourcePath& mav0);
+Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras);
 
 }  // namespace edged

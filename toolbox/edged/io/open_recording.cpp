@@ -95,7 +95,7 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, co
     tell_unread(folder, read);
     return recording;
   }
-  if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0);
+  if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0, options.cameras);
   return std::nullopt;
 }
 

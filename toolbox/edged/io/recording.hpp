@@ -9,6 +9,7 @@
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/calib/sensor_head.hpp"
@@ -30,6 +31,8 @@ struct RecordingOptions {
   std::function<bool()> interrupted = {};
   /// Of bags and AEDAT4: role ("events", "frames", "imu", "truth") to topic or "none".
   std::map<std::string, std::string> topics = {};
+  /// Of EuRoC folders: names of the cameras to read ("cam0", "cam1"); where none is there, "cam0".
+  std::vector<std::string> cameras = {};
 };
 
 }  // namespace edged

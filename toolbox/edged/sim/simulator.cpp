@@ -60,6 +60,10 @@ Timestamp whole_microseconds(double s) {
 /// An even number of microseconds, so that its middle is a whole one.
 Duration exposure_of(double ms) { return whole_microseconds(ms * 1e-3).time_since_epoch() / 2000 * 2000; }
 
+std::uint64_t noise_seed(const SimulatorConfig& config) {
+  return static_cast<std::uint64_t>(config.seed) + (config.mount.suffix.empty() ? 0 : 0x9e3779b97f4a7c15U);
+}
+
 }  // namespace
 
 void SimulatedCameraConfig::visit(ConfigFields& fields) {
@@ -108,8 +112,8 @@ Simulator::Simulator(const SimulatorConfig& config)
     : config_(checked(config)),
       trajectory_(trajectory_of(config_)),
       renderer_(config.camera.model(), scene_of(trajectory_, config_)),
-      event_camera_(config.events, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
-      frame_camera_(config.frames, config.camera.width, config.camera.height, static_cast<std::uint64_t>(config.seed)),
+      event_camera_(config.events, config.camera.width, config.camera.height, noise_seed(config)),
+      frame_camera_(config.frames, config.camera.width, config.camera.height, noise_seed(config)),
       imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),
       time_offset_(duration_from_seconds(config.imu.time_offset_ms * 1e-3)),
       exposure_(exposure_of(config.frames.exposure_ms)),
@@ -130,9 +134,10 @@ std::optional<GroundTruth> Simulator::ground_truth() const {
 }
 
 Calibration Simulator::calibration() const {
-  const RigCamera events{"events", Modality::Events, config_.camera.model(), config_.T_B_C, time_offset_};
+  const RigCamera events{"events" + config_.mount.suffix, Modality::Events, config_.camera.model(), config_.T_B_M(),
+                         time_offset_};
   RigCamera frames = events;
-  frames.name = "frames", frames.modality = Modality::Frames;
+  frames.name = "frames" + config_.mount.suffix, frames.modality = Modality::Frames;
   Calibration calibration;
   calibration.rig = {"simulator", {events, frames}};
   calibration.imu = config_.imu.noise();
@@ -166,7 +171,7 @@ std::optional<Measurement> Simulator::next() {
 }
 
 EventBatch Simulator::take_events(Timestamp before) {
-  EventBatch batch{"events", {}};
+  EventBatch batch{"events" + config_.mount.suffix, {}};
   while (!events_.empty() && events_.front().t < before) {
     batch.events.push_back(events_.front());
     events_.pop_front();
@@ -191,8 +196,8 @@ Timestamp Simulator::exposure_begin() const {
 
 double Simulator::image_speed(Timestamp t) const {
   const Kinematics k = truth(t);
-  const Eigen::Vector3d v_B = k.T_W_B.rotation().conjugate() * k.v_W + k.omega_B.cross(config_.T_B_C.translation());
-  const Eigen::Quaterniond R_C_B = config_.T_B_C.rotation().conjugate();
+  const Eigen::Vector3d v_B = k.T_W_B.rotation().conjugate() * k.v_W + k.omega_B.cross(config_.T_B_M().translation());
+  const Eigen::Quaterniond R_C_B = config_.T_B_M().rotation().conjugate();
   return renderer_.max_image_speed(R_C_B * v_B, R_C_B * k.omega_B);
 }
 
@@ -212,7 +217,7 @@ Timestamp Simulator::next_render_time() const {
 void Simulator::advance() {
   const Timestamp t = t_ ? next_render_time() : Timestamp();
   previous_.swap(radiance_);
-  radiance_ = renderer_.render(truth(t).T_W_B * config_.T_B_C, to_seconds(t)).radiance;
+  radiance_ = renderer_.render(truth(t).T_W_B * config_.T_B_M(), to_seconds(t)).radiance;
   ++renderings_;
   const float light = static_cast<float>(config_.disturbance.light(to_seconds(t)));
   if (light != 1.0F)
@@ -234,7 +239,7 @@ void Simulator::collect_light(Timestamp from, Timestamp to) {
   // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
   frame_camera_.expose(previous_, radiance_, to_seconds(to - from));
   if (to < exposure_begin() + exposure_) return;
-  Frame frame{exposure_middle(), "frames", frame_camera_.read_out()};
+  Frame frame{exposure_middle(), "frames" + config_.mount.suffix, frame_camera_.read_out()};
   if (!disturbed(DisturbanceKind::FramesMissing, frame.t)) frames_.push_back(std::move(frame));
   ++frame_count_;
   exposure_ = exposure_of(frame_camera_.exposure_ms());

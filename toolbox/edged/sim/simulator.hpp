@@ -50,6 +50,14 @@ struct SimulatorConfig {
 
   void visit(ConfigFields& fields);
   static SE3 davis240c_extrinsics();
+
+  /// Of another camera of the same flight through the same scene, which are made for the one at T_B_C.
+  struct Mount {
+    SE3 T_C_M;           ///< where it sits against that
+    std::string suffix;  ///< of its cameras' names; with one its noise is its own
+  };
+  Mount mount;
+  SE3 T_B_M() const { return T_B_C * mount.T_C_M; }
 };
 
 /// One of simulator_presets(). Throws InputError that lists them.
@@ -62,7 +70,8 @@ const std::vector<std::string>& simulator_presets();
 const std::vector<std::string>& flight_presets();
 
 /// Deterministic by config and seed. Renders as next() is called; holds the measurements of one exposure at most.
-/// Stamps start at 0 on the camera's clock; motion.rest_s from there are at rest. Cameras "events" and "frames".
+/// Stamps start at 0 on the camera's clock; motion.rest_s from there are at rest. Cameras "events" and "frames", with
+/// the suffix of its mount.
 class Simulator : public Dataset {
  public:
   /// Throws InputError for impossible values, or a motion file that is missing or too short.

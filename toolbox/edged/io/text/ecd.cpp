@@ -86,7 +86,7 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig) {
     layout.info.event_sensor = size;
     layout.events = EventFile{events, "events", size.width, size.height};
   }
-  if ((folder / "images.txt").is_file()) layout.frames = FrameFile{"frames", ecd_images(folder)};
+  if ((folder / "images.txt").is_file()) layout.frames = {{"frames", ecd_images(folder)}};
   if (const SourcePath imu = folder / "imu.txt"; imu.is_file())
     layout.imu = {imu, "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
   if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file()) {

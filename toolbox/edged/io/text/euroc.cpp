@@ -3,7 +3,11 @@
 // The ASL folders of the EuRoC data set (Burri et al., IJRR 2016), which TUM-VI (Schubert et al., IROS 2018) uses too.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
@@ -46,6 +50,18 @@ std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& re
   return truth;
 }
 
+/// Of those wanted the ones there are, in the order of their names; else the first.
+std::set<std::string> cameras_to_read(const SourcePath& mav0, const std::vector<std::string>& wanted) {
+  const auto is_there = [&](const std::string& camera) {
+    return camera.starts_with("cam") && (mav0 / camera / "data.csv").is_file();
+  };
+  std::set<std::string> cameras;
+  for (const std::string& camera : wanted)
+    if (is_there(camera)) cameras.insert(camera);
+  if (cameras.empty() && is_there("cam0")) cameras.insert("cam0");
+  return cameras;
+}
+
 /// The file with poses of the body. Says so where there is truth of another kind only.
 std::optional<SourcePath> find_truth(const SourcePath& mav0) {
   for (const char* folder : kTruthFolders)
@@ -66,6 +82,18 @@ std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   return std::nullopt;
 }
 
+/// With all that are read.
+Calibration calibration_of(const SourcePath& mav0, const std::set<std::string>& cameras) {
+  Calibration calibration = load_calibration(mav0);
+  std::vector<RigCamera>& known = calibration.rig.cameras;
+  for (const std::string& name : cameras) {
+    const SourcePath sensor = mav0 / name / "sensor.yaml";
+    if (std::ranges::find(known, name, &RigCamera::name) == known.end() && sensor.is_file())
+      known.push_back(load_calibration(sensor).rig.cameras.front());
+  }
+  return calibration;
+}
+
 bool holds_sensors(const SourcePath& folder) {
   return (folder / "cam0" / "data.csv").is_file() || (folder / "imu0" / "data.csv").is_file();
 }
@@ -80,13 +108,14 @@ std::optional<SourcePath> find_mav0(const SourcePath& folder) {
   return std::nullopt;
 }
 
-Recording open_euroc(const SourcePath& mav0) {
+Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras) {
   TextLayout layout;
   layout.info.name = (mav0.name() == "mav0" ? mav0.parent_path() : mav0).name();
   layout.info.format = "euroc";
   layout.info.pose_frame = "body";
   layout.parse_stamp = parse_nanoseconds;
-  if ((mav0 / "cam0" / "data.csv").is_file()) layout.frames = FrameFile{"cam0", euroc_images(mav0 / "cam0")};
+  const std::set<std::string> read = cameras_to_read(mav0, cameras);
+  for (const std::string& camera : read) layout.frames.push_back({camera, euroc_images(mav0 / camera)});
   if (const SourcePath imu = mav0 / "imu0" / "data.csv"; imu.is_file())
     layout.imu = {imu, "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_euroc_imu};
   if (const auto truth = find_truth(mav0))
@@ -94,7 +123,7 @@ Recording open_euroc(const SourcePath& mav0) {
 
   Recording recording;
   if ((mav0 / "cam0" / "sensor.yaml").is_file()) {
-    recording.calibration = load_calibration(mav0);
+    recording.calibration = calibration_of(mav0, read);
   } else {
     recording.calibration = tum_vi_calibration(mav0);
   }

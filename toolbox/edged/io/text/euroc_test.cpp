@@ -98,5 +98,31 @@ TEST(TumVi, PositionsAloneAreNoGroundTruth) {
   EXPECT_FALSE(open_recording(folder.path()).dataset->ground_truth());
 }
 
+TEST(EuRoC, GivesEveryCameraThatIsAskedFor) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  std::filesystem::copy(folder.path() / "mav0/cam0", folder.path() / "mav0/cam1",
+                        std::filesystem::copy_options::recursive);
+  for (const char* camera : {"cam0", "cam1"})
+    folder.write(std::string("mav0/") + camera + "/sensor.yaml",
+                 std::string("sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, ") +
+                     (camera[3] == '0' ? "0" : "0.11") +
+                     ", 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [512, 512]\ncamera_model: pinhole\n"
+                     "intrinsics: [290.0, 290.0, 255.5, 255.5]\ndistortion_model: radial-tangential\n"
+                     "distortion_coefficients: [0.0, 0.0, 0.0, 0.0]\n");
+  const auto read = [&](std::vector<std::string> cameras) {
+    Recording recording = open_recording(folder.path(), nullptr, {.cameras = std::move(cameras)});
+    std::string names = recording.dataset->info().frame_camera + ":";
+    for (const Frame& frame : read_all(*recording.dataset).frames) names += " " + frame.camera;
+    names += ";";
+    for (const RigCamera& camera : recording.calibration->rig.cameras) names += " " + camera.name;
+    return names;
+  };
+  EXPECT_EQ(read({}), "cam0: cam0 cam0; cam0");
+  EXPECT_EQ(read({"cam1", "cam0"}), "cam0: cam0 cam1 cam0 cam1; cam0 cam1");
+  EXPECT_EQ(read({"cam1"}), "cam1: cam1 cam1; cam0 cam1");
+  EXPECT_EQ(read({"elsewhere"}), "cam0: cam0 cam0; cam0");
+}
+
 }  // namespace
 }  // namespace edged

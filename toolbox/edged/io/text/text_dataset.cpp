@@ -54,11 +54,13 @@ void TextDataset::open_streams() {
     info.has_events = opened(events_, "events", e->file);
     info.event_camera = e->camera;
   }
-  if (const auto& f = layout_.frames) {
-    frames_.emplace(f->lines, repairs_);
-    info.has_frames = opened(frames_, "frames", f->lines.file);
-    info.frame_camera = f->camera;
+  for (const FrameFile& f : layout_.frames) {
+    std::optional<StampedLines<FrameEntry>> lines(std::in_place, f.lines, repairs_);
+    if (!opened(lines, "frames", f.lines.file)) continue;
+    info.has_frames = true;
+    frames_.push_back({f.camera, std::move(*lines)});
   }
+  if (!layout_.frames.empty()) info.frame_camera = layout_.frames.front().camera;
   if (const auto& i = layout_.imu) {
     imu_.emplace(*i, repairs_);
     info.has_imu = opened(imu_, "imu", i->file);
@@ -69,26 +71,26 @@ void TextDataset::open_streams() {
 
 void TextDataset::find_ends() {
   DatasetInfo& info = layout_.info;
-  info.begin = std::min({next_stamp(events_), next_stamp(frames_), next_stamp(imu_)});
+  info.begin = std::min({next_stamp(events_), next_frame_stamp(), next_stamp(imu_)});
   const auto extend = [&info](std::optional<Timestamp> t) {
     if (t) info.end = std::max(info.end.value_or(*t), *t);
   };
   const auto first_field = [this](std::string_view line) { return layout_.parse_stamp(FieldReader(line).next()); };
   const auto event_stamp = [this](std::string_view line) { return parse_event_stamp(line, layout_.events->columns); };
   if (events_) extend(last_stamp(layout_.events->file, event_stamp));
-  if (frames_) extend(last_stamp(layout_.frames->lines.file, first_field));
+  for (const FrameFile& f : layout_.frames) extend(last_stamp(f.lines.file, first_field));
   if (imu_) extend(last_stamp(layout_.imu->file, first_field));
 }
 
 std::optional<Measurement> TextDataset::next() {
   while (true) {
-    const NextStream turn = next_stream(next_stamp(imu_), next_stamp(events_), next_stamp(frames_));
+    const NextStream turn = next_stream(next_stamp(imu_), next_stamp(events_), next_frame_stamp());
     if (turn.stream == NextStream::Stream::None) return std::nullopt;
     if (turn.stream == NextStream::Stream::Imu) return imu_->pop();
     if (turn.stream == NextStream::Stream::Events)
       return EventBatch{layout_.events->camera,
                         events_->take_before(std::min(turn.events_end, next_stamp(events_) + kLongestBatch))};
-    if (auto frame = load(frames_->pop())) return std::move(*frame);
+    if (auto frame = load_next_frame()) return std::move(*frame);
   }
 }
 
@@ -96,11 +98,22 @@ void TextDataset::leave_out(Modality unwanted) {
   if (unwanted == Modality::Events) {
     events_.reset();
   } else {
-    frames_.reset();
+    frames_.clear();
   }
 }
 
-std::optional<Frame> TextDataset::load(const FrameEntry& entry) {
+Timestamp TextDataset::next_frame_stamp() const {
+  Timestamp next = Timestamp::max();
+  for (const FrameStream& stream : frames_) next = std::min(next, stream.lines.peek() ? stream.lines.peek()->t : next);
+  return next;
+}
+
+/// Of the camera whose turn it is; of those with one stamp the first.
+std::optional<Frame> TextDataset::load_next_frame() {
+  FrameStream& stream = *std::ranges::find_if(frames_, [t = next_frame_stamp()](const FrameStream& candidate) {
+    return candidate.lines.peek() && candidate.lines.peek()->t == t;
+  });
+  const FrameEntry entry = stream.lines.pop();
   const auto skip = [&](const std::string& kind) {
     repairs_.add("frames: " + kind, entry.image.string() + ": " + kind);
     return std::nullopt;
@@ -108,9 +121,9 @@ std::optional<Frame> TextDataset::load(const FrameEntry& entry) {
   if (!entry.image.is_file()) return skip("image missing");
   cv::Mat image = read_gray_image(entry.image);
   if (image.empty()) return skip("image unreadable");
-  if (image_width_ == 0) image_width_ = image.cols, image_height_ = image.rows;
-  if (image.cols != image_width_ || image.rows != image_height_) return skip("image of another size");
-  return Frame{entry.t, layout_.frames->camera, image};
+  if (stream.size.empty()) stream.size = image.size();
+  if (image.size() != stream.size) return skip("image of another size");
+  return Frame{entry.t, stream.camera, image};
 }
 
 std::optional<GroundTruth> TextDataset::ground_truth() const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/core/dataset.hpp"
 #include "edged/io/text/event_text.hpp"
@@ -40,7 +41,7 @@ struct FrameFile {
 struct TextLayout {
   DatasetInfo info;  ///< name, format and pose_frame
   std::optional<EventFile> events;
-  std::optional<FrameFile> frames;
+  std::vector<FrameFile> frames;  ///< one a camera, each with a name of its own
   std::optional<StampedLines<ImuSample>::Spec> imu;
   std::optional<Timestamp> (*parse_stamp)(std::string_view) = nullptr;  ///< of the first field of imu and frames
   std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;     ///< may be empty
@@ -60,15 +61,20 @@ class TextDataset final : public Dataset {
  private:
   void open_streams();
   void find_ends();
-  std::optional<Frame> load(const FrameEntry& entry);
+  struct FrameStream {
+    std::string camera;
+    StampedLines<FrameEntry> lines;
+    cv::Size size = {};  ///< of the first image
+  };
+  Timestamp next_frame_stamp() const;
+  std::optional<Frame> load_next_frame();
 
   TextLayout layout_;
   Repairs repairs_;
   mutable Repairs ground_truth_repairs_;  ///< of the last reading: not counted twice
   std::optional<EventTextStream> events_;
-  std::optional<StampedLines<FrameEntry>> frames_;
+  std::vector<FrameStream> frames_;
   std::optional<StampedLines<ImuSample>> imu_;
-  int image_width_ = 0, image_height_ = 0;  ///< of the first image
 };
 
 }  // namespace edged

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// A flight seen by two event cameras and two frame cameras, against the same with one of each.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <tuple>
+
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/sim/simulated_pair.hpp"
+#include "end_to_end.hpp"
+
+namespace edged {
+namespace {
+
+/// As good as one camera, up to what chance makes of an error of millimetres.
+constexpr double kAsGood = 1.1;
+
+const Flight& pair_flight() {
+  static const Flight kFlight = [] {
+    SimulatorConfig config;
+    config.duration_s = 8.0;
+    SimulatedPair pair(config);
+    return read_flight(pair, pair.calibration());
+  }();
+  return kFlight;
+}
+
+FlightRun fly(const Flight& flight, Mode mode, const std::string& cameras) {
+  OdometryConfig config;
+  config.cameras = cameras;
+  return run_flight(flight.calibration, flight.measurements, mode, config);
+}
+
+double error_of(const Flight& flight, const FlightRun& run, const std::string& name) {
+  const FlightScore result = score(flight, run);
+  std::cout << name << ": " << describe(result, run.statistics) << '\n';
+  EXPECT_GT(run.statistics.coverage(), 0.8) << name;
+  return result.evaluation.ate_m.rmse;
+}
+
+/// The fewest corners that any of its cameras follows in the end, and the landmarks of the last window.
+std::size_t fewest_tracks(const FlightRun& run) {
+  std::size_t fewest = 1000;
+  for (const CameraStep& camera : run.steps.back().cameras) fewest = std::min(fewest, camera.tracks.size());
+  return fewest;
+}
+
+/// How many of the landmarks of the window, over the whole run, that camera sees.
+std::size_t landmarks_seen(const FlightRun& run, const std::string& camera) {
+  std::size_t seen = 0;
+  for (const Step& step : run.steps)
+    for (const Track& track : step.find(camera)->tracks)
+      seen += std::ranges::find(step.landmarks, track.id, &Landmark::id) != step.landmarks.end();
+  return seen;
+}
+
+TEST(TwoOfAKind, AreNoWorseThanOneAndAllAreUsed) {
+  const Flight& flight = pair_flight();
+  for (const auto& [mode, one, two] : {std::tuple{Mode::Frames, "frames", "frames,frames2"},
+                                       {Mode::Fused, "events,frames", "events,events2,frames"},
+                                       {Mode::Events, "events", "events,events2"}}) {
+    const FlightRun alone = fly(flight, mode, one), both = fly(flight, mode, two);
+    EXPECT_LT(error_of(flight, both, two), kAsGood * error_of(flight, alone, one));
+    EXPECT_GT(fewest_tracks(both), 10U) << two;
+    for (const CameraStep& camera : both.steps.back().cameras)
+      EXPECT_GT(landmarks_seen(both, camera.name), 1000U) << two << ": " << camera.name;
+  }
+}
+
+TEST(TwoOfAKind, GiveTheSameBitsTwice) {
+  const FlightRun first = fly(pair_flight(), Mode::Fused, "events,events2,frames,frames2");
+  const FlightRun second = fly(pair_flight(), Mode::Fused, "frames2,frames,events2,events");
+  ASSERT_EQ(first.steps.size(), second.steps.size());
+  for (std::size_t i = 0; i < first.steps.size(); ++i)
+    ASSERT_EQ(first.steps[i].state.T_W_B.matrix(), second.steps[i].state.T_W_B.matrix()) << "step " << i;
+}
+
+/// Every other frame of each camera: they look in turn.
+TEST(TwoOfAKind, NeedNotBeSynchronised) {
+  Flight in_turn = pair_flight();
+  int frames = 0;
+  std::erase_if(in_turn.measurements, [&](const Measurement& m) {
+    const auto* frame = std::get_if<Frame>(&m);
+    if (frame && frame->camera == "frames") ++frames;
+    return frame && (frame->camera == "frames") != (frames % 2 == 0);
+  });
+  const FlightRun alone = fly(in_turn, Mode::Frames, "frames"), both = fly(in_turn, Mode::Frames, "frames,frames2");
+  EXPECT_GT(both.steps.size(), alone.steps.size() * 3 / 2) << "each frame is a packet";
+  EXPECT_LT(error_of(in_turn, both, "in turn"), kAsGood * error_of(in_turn, alone, "one, every other frame"));
+}
+
+/// The second pair's clock is 40 ms behind.
+TEST(TwoOfAKind, HaveClocksOfTheirOwn) {
+  Flight shifted = pair_flight();
+  constexpr Duration kBehind = std::chrono::milliseconds(40);
+  for (RigCamera& camera : shifted.calibration.rig.cameras)
+    if (camera.name.ends_with('2')) camera.time_offset += kBehind;
+  for (Measurement& m : shifted.measurements) {
+    if (auto* frame = std::get_if<Frame>(&m); frame && frame->camera == "frames2") frame->t -= kBehind;
+    if (auto* batch = std::get_if<EventBatch>(&m); batch && batch->camera == "events2")
+      for (Event& event : batch->events) event.t -= kBehind;
+  }
+  std::ranges::stable_sort(shifted.measurements, {}, [](const Measurement& m) { return *first_stamp(m); });
+  const std::string all = "events,events2,frames,frames2";
+  const FlightRun straight = fly(pair_flight(), Mode::Fused, all), run = fly(shifted, Mode::Fused, all);
+  EXPECT_LT(error_of(shifted, run, "clocks apart"), 2.0 * error_of(pair_flight(), straight, "one clock"));
+  EXPECT_GT(fewest_tracks(run), 10U);
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Two of the simulated cameras beside each other: a rig with two event cameras and two frame cameras.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "edged/sim/simulator.hpp"
+
+namespace edged {
+
+/// "events" and "frames" as of the Simulator, with its IMU and the same bits; "events2" and "frames2" to the right of
+/// them, with noise of their own.
+class SimulatedPair final : public Dataset {
+ public:
+  static constexpr double kUsualBaseline_m = 0.1;
+
+  explicit SimulatedPair(const SimulatorConfig& config, double baseline_m = kUsualBaseline_m);
+
+  const DatasetInfo& info() const override { return left_.info(); }
+  std::optional<Measurement> next() override;
+  void leave_out(Modality unwanted) override;
+  std::optional<GroundTruth> ground_truth() const override { return left_.ground_truth(); }
+
+  Calibration calibration() const;
+
+ private:
+  std::optional<Measurement> take_right();
+
+  Simulator left_, right_;
+  std::optional<Measurement> of_left_, of_right_;  // the next ones
+};
+
+}  // namespace edged
