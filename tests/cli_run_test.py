@@ -190,6 +190,24 @@ class Run(WithFlight):
         self.assert_refused(edged("run", self.flight, "--out", self.folder / "run", "enhance.method=canny",
                                   "expert.enhance.erosion_px=3"), "expert.enhance.erosion_px", "one pixel wide")
 
+    def test_cameras_are_chosen_by_name_and_others_than_there_are_refused_with_a_list(self):
+        listed = "events (events), frames (frames), events2 (events), frames2 (frames)"
+        for wrong, reason in (("events2,cam9", "no 'cam9'"), ("frames,frames2,frames", "twice"), ("events,events2", "names no frame camera")):
+            self.assert_refused(edged("run", "sim:room:1", "--mode", "fused", "--out", self.folder / "run", f"cameras={wrong}"),
+                                reason, listed if "2" in wrong else "")
+        self.assertFalse((self.folder / "run").exists())
+        lines = {}
+        for cameras in ("events,frames", "events,events2,frames,frames2"):
+            out = self.folder / cameras
+            result = edged("run", "sim:room:1", "--to", "2", "--out", out, "--quiet", f"cameras={cameras}")
+            self.assertIn(result.returncode, (0, 4, 5), result.stderr)
+            self.assertIn(f'cameras: "{cameras}"', (out / "config_resolved.yaml").read_text().replace("'", '"'))
+            lines[cameras] = (out / "states.csv").read_text()
+        out = self.folder / "first"
+        edged("run", "sim:room:1", "--to", "2", "--out", out, "--quiet")
+        self.assertEqual((out / "states.csv").read_text(), lines["events,frames"])
+        self.assertNotEqual(*lines.values())
+
     def assert_readable(self, out):
         """What a run wrote until it ended anyhow: complete lines, times that increase. Returns the number of poses."""
         states = (out / "states.csv").read_text()

@@ -51,6 +51,27 @@ def test_no_copy_is_made():
     assert measurement.data.base is measurement
 
 
+def test_the_cameras_of_a_step_outlive_it():
+    cameras = list(edged.run(room(3)))[-1].cameras
+    gc.collect()
+    assert [(name, camera.modality) for name, camera in cameras.items()] == [("events", "events"), ("frames", "frames")]
+    events = cameras["events"]
+    assert events.name == "events" and 0 < events.drawn <= len(events.events) and events.event_rate_hz > 0
+    assert 0 < events.survival <= 1 and events.image.shape == (180, 240)
+    tracks = cameras["frames"].tracks
+    del cameras, events
+    gc.collect()
+    assert len(tracks) > 10 and np.isfinite(tracks["pixel"]).all()
+
+
+def test_the_first_of_a_kind_has_names_of_its_own():
+    for step in edged.run(room(2), "events"):
+        assert list(step.cameras) == ["events"]
+        assert np.array_equal(step.event_tracks["id"], step.cameras["events"].tracks["id"])
+        assert step.event_survival == step.cameras["events"].survival
+        assert len(step.frame_tracks) == 0 and step.frame is None and step.frame_survival is None
+
+
 def test_a_step_says_what_it_is():
     step = list(edged.run(room(3)))[-1]
     assert step.status == edged.Status.GOOD

@@ -183,10 +183,10 @@ TEST(Odometry, GoesOnAfterAStampAnHourAhead) {
       for (const Measurement& damaged : {m, Measurement(EventBatch{"dvs", {{stamp(700), 1, 1, true}}})})
         odometry.add(shifted(damaged, std::chrono::hours(1)));
     }
-    for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
+    std::ranges::move(rest_of(odometry), std::back_inserter(steps));
   }
   odometry.finish();
-  for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
+  std::ranges::move(rest_of(odometry), std::back_inserter(steps));
   expect_same_bits(steps, fed_in_order(all, Mode::Fused));
   EXPECT_EQ(odometry.counters().intake.far_ahead, 2U);
 }
@@ -356,9 +356,7 @@ TEST(OdometryThreads, OneASensorGiveTheBitsOfTheOrderedFeed) {
     }
   });
   Numbers steps;
-  const auto take = [&] {
-    for (std::vector<double>& step : rest_of(odometry)) steps.push_back(std::move(step));
-  };
+  const auto take = [&] { std::ranges::move(rest_of(odometry), std::back_inserter(steps)); };
   for (int i = 0; i < 50; ++i) take(), std::this_thread::yield();
   drivers.clear();
   odometry.finish();

@@ -121,6 +121,7 @@ Step PacketOdometry::describe(Packet packet, std::span<const EventImage> drawn, 
   step.waiting_for = result.waiting_for;
   step.started = result.started;
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
+  step.cameras.reserve(channels_.size());  // OpenCV's images may throw when moved: growing would copy the events
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Channel& channel = channels_[i];
     CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
