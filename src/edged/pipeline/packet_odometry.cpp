@@ -25,10 +25,6 @@ constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 /// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
 constexpr Duration kReckoned = std::chrono::seconds(10);
 
-/// The scene's depth is one for all cameras: as the first event camera sees it, where there is one, as a depth network
-/// looks through one camera only.
-const RigCamera& depth_camera(const Rig& rig) { return rig.cameras.front(); }
-
 /// The packetizer takes the time offsets out; what is left over is up to the estimator.
 Rig without_offsets(Rig rig) {
   for (RigCamera& camera : rig.cameras) camera.time_offset = Duration(0);
@@ -48,7 +44,7 @@ PacketOdometry::PacketOdometry(const Rig& cameras, const ImuNoise& noise, const 
       mapper_(config.map),
       judge_(config.status),
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
-      depth_(config.depth, depth_camera(rig_), config.estimator.depth_factor.enabled, inference) {
+      depth_(fresh_depth()) {
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
       event_views_.emplace_back(camera.model, config_);
@@ -74,7 +70,7 @@ void PacketOdometry::make_channels() {
 void PacketOdometry::begin_time() {
   estimator_ = fresh_estimator();
   make_channels();
-  depth_ = SceneDepth(config_.depth, depth_camera(rig_), config_.estimator.depth_factor.enabled, inference_);
+  depth_ = fresh_depth();
   before_ = hindsight();
   mapper_ = Mapper(config_.map);  // its keyframes are of the time before
   judge_.lose("a clock was set back");

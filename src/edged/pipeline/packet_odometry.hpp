@@ -53,6 +53,11 @@ class PacketOdometry {
 
  private:
   Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
+  /// One depth for all cameras, as the first sees it, of the event cameras where there is one: a depth network looks
+  /// through one camera only.
+  SceneDepth fresh_depth() const {
+    return {config_.depth, rig_.cameras.front(), config_.estimator.depth_factor.enabled, inference_};
+  }
   void make_channels();
   Preintegration predict(const Packet& packet);
   double measure_depth(const Packet& packet);
