@@ -9,6 +9,8 @@
 #include <chrono>
 #include <utility>
 
+#include "edged/pipeline/mode.hpp"
+
 namespace edged::ros1 {
 namespace {
 
