@@ -88,6 +88,9 @@ class PacketOdometry {
 
   OdometryConfig config_;
   Inference inference_;
+  bool gyro_clipped_ = false;    ///< in this packet
+  bool turned_unseen_ = false;   ///< it was until this packet
+  bool gyro_saturated_ = false;  ///< since the last keyframe
   ImuNoise noise_;
   Rig given_rig_;  ///< the cameras of the run
   Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
@@ -102,10 +105,7 @@ class PacketOdometry {
   Hindsight before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
-  BodyMotion body_;              ///< predicted, then optimised
-  bool gyro_clipped_ = false;    ///< in this packet
-  bool turned_unseen_ = false;   ///< it was until this packet
-  bool gyro_saturated_ = false;  ///< since the last keyframe
+  BodyMotion body_;  ///< predicted, then optimised
   SceneDepth depth_;
   std::optional<Timestamp> last_keyframe_, last_frame_;
   std::optional<PoseCovariance> covariance_;
