@@ -18,7 +18,7 @@ constexpr bool uses(Mode mode, Modality modality) {
 }
 
 /// Of the option `cameras`: what stands between its commas, without the blanks around.
-std::vector<std::string> camera_names(const std::string& wanted);
+std::vector<std::string> camera_names(const std::string& list);
 
 /// The cameras of a run: those of events, then those of frames, each as the rig has them. wanted: their names,
 /// separated by commas, of which the mode uses what is of its modalities; empty: the first of each. Throws InputError,
