@@ -3,10 +3,10 @@
 #include "edged/sim/simulated_pair.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/core/stream_order.hpp"
 
 namespace edged {
 namespace {
@@ -16,27 +16,19 @@ SimulatorConfig of_right(SimulatorConfig config, double baseline_m) {
   return config;
 }
 
-/// Of what comes first: by its stamp, then IMU, events, frame.
-std::pair<Timestamp, int> place(const std::optional<Measurement>& measurement) {
-  if (!measurement) return {Timestamp::max(), 3};
-  const int rank = std::holds_alternative<ImuSample>(*measurement)    ? 0
-                   : std::holds_alternative<EventBatch>(*measurement) ? 1
-                                                                      : 2;
-  return {*first_stamp(*measurement), rank};
+/// Its stamp, of a batch that of its first event, where it is one of those.
+template <typename T>
+Timestamp stamp_as(const std::optional<Measurement>& measurement) {
+  return measurement && std::holds_alternative<T>(*measurement) ? *first_stamp(*measurement) : Timestamp::max();
 }
 
-/// The part of `measurement` that comes before the other, where that is not of events; the rest stays.
-Measurement before(std::optional<Measurement>& measurement, const std::optional<Measurement>& other) {
-  const auto [t, rank] = place(other);
-  auto* batch = std::get_if<EventBatch>(&*measurement);
-  const auto comes_later = [&, limit = t, is_frame = rank == 2](const Event& event) {
-    return is_frame ? event.t > limit : event.t >= limit;
-  };
-  if (batch == nullptr || rank == 1 || !comes_later(batch->events.back()))
-    return *std::exchange(measurement, std::nullopt);
-  const auto cut = std::ranges::find_if(batch->events, comes_later);
-  EventBatch first{batch->camera, {batch->events.begin(), cut}};
-  batch->events.erase(batch->events.begin(), cut);
+/// Its events before that stamp; the rest stays.
+Measurement take_events(std::optional<Measurement>& measurement, Timestamp end) {
+  auto& batch = std::get<EventBatch>(*measurement);
+  const auto cut = std::ranges::find_if(batch.events, [end](const Event& event) { return event.t >= end; });
+  if (cut == batch.events.end()) return *std::exchange(measurement, std::nullopt);
+  EventBatch first{batch.camera, {batch.events.begin(), cut}};
+  batch.events.erase(batch.events.begin(), cut);
   return first;
 }
 
@@ -56,9 +48,21 @@ std::optional<Measurement> SimulatedPair::take_right() {
 std::optional<Measurement> SimulatedPair::next() {
   if (!of_left_) of_left_ = left_.next();
   if (!of_right_) of_right_ = take_right();
-  if (!of_left_ && !of_right_) return std::nullopt;
-  const bool is_left = place(of_left_) <= place(of_right_);
-  return is_left ? before(of_left_, of_right_) : before(of_right_, of_left_);
+  const Timestamp left_events = stamp_as<EventBatch>(of_left_), right_events = stamp_as<EventBatch>(of_right_);
+  const Timestamp left_frame = stamp_as<Frame>(of_left_), right_frame = stamp_as<Frame>(of_right_);
+  const NextStream turn = next_stream(stamp_as<ImuSample>(of_left_), std::min(left_events, right_events),
+                                      std::min(left_frame, right_frame));
+  switch (turn.stream) {
+    case NextStream::Stream::Imu:
+      return std::exchange(of_left_, std::nullopt);
+    case NextStream::Stream::Events:
+      return take_events(left_events <= right_events ? of_left_ : of_right_, turn.events_end);
+    case NextStream::Stream::Frame:
+      return std::exchange(left_frame <= right_frame ? of_left_ : of_right_, std::nullopt);
+    case NextStream::Stream::None:
+      break;
+  }
+  return std::nullopt;
 }
 
 void SimulatedPair::leave_out(Modality unwanted) {
