@@ -113,12 +113,8 @@ RunCheck::RunCheck(const DatasetInfo& info, const Calibration& calibration, cons
 }
 
 void RunCheck::add(const Measurement& measurement) {
-  const auto* batch = std::get_if<EventBatch>(&measurement);
-  const auto* frame = std::get_if<Frame>(&measurement);
-  const auto is_its = [&](const Camera& camera) {
-    return camera.given.name == (batch ? batch->camera : frame->camera);
-  };
-  if ((batch || frame) && std::ranges::none_of(cameras_, is_its)) return;
+  const std::string* name = camera_of(measurement);
+  if (name && std::ranges::none_of(cameras_, [&](const Camera& camera) { return camera.given.name == *name; })) return;
   using Detail = Surveyor::Detail;
   surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps);
   const auto first = first_stamp(measurement), last = last_stamp(measurement);

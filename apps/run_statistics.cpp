@@ -37,10 +37,9 @@ void RunStatistics::add_visual(Timestamp first, Timestamp last) {
 
 void RunStatistics::add_visual(const Measurement& measurement, const Rig& used) {
   const std::optional<Timestamp> first = first_stamp(measurement);
-  if (!first || std::holds_alternative<ImuSample>(measurement)) return;
-  const auto* batch = std::get_if<EventBatch>(&measurement);
-  const std::string& name = batch ? batch->camera : std::get<Frame>(measurement).camera;
-  const auto camera = std::ranges::find(used.cameras, name, &RigCamera::name);
+  const std::string* name = camera_of(measurement);
+  if (!first || !name) return;
+  const auto camera = std::ranges::find(used.cameras, *name, &RigCamera::name);
   if (camera != used.cameras.end())
     add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);
 }

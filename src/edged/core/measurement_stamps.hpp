@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When a measurement was made.
+// When a measurement was made, and by which camera.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "edged/measurement.hpp"
 
@@ -28,6 +29,13 @@ inline std::optional<Timestamp> last_stamp(const Measurement& measurement) {
 inline std::optional<Timestamp> first_stamp(const Measurement& measurement) {
   const auto* batch = std::get_if<EventBatch>(&measurement);
   return batch && !batch->events.empty() ? std::optional(batch->events.front().t) : last_stamp(measurement);
+}
+
+/// The name of the camera that gave it; null for an IMU sample.
+inline const std::string* camera_of(const Measurement& measurement) {
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) return &batch->camera;
+  const auto* frame = std::get_if<Frame>(&measurement);
+  return frame ? &frame->camera : nullptr;
 }
 
 }  // namespace edged
