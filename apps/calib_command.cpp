@@ -3,6 +3,7 @@
 #include "calib_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <fstream>

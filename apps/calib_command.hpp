@@ -3,8 +3,9 @@
 // `edged calib`: a calibration of any format shown, judged, and written in ours.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -3,8 +3,9 @@
 // `edged config`: every option with its unit, range, default and effect.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config_source.hpp"
 
+#include <CLI/CLI.hpp>
 namespace edged {
 
 void RunConfig::visit(ConfigFields& fields) {

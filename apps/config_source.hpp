@@ -3,11 +3,11 @@
 // Options of a run as the command line gives them: a file, then single values on top of it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "cli_fwd.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/options.hpp"
 

@@ -3,8 +3,9 @@
 // `edged convert`: a recording in another format.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -3,6 +3,7 @@
 #include "depth_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <ctime>

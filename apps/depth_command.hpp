@@ -3,8 +3,9 @@
 // `edged depth`: what a depth network is, what it costs here, and where others come from.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

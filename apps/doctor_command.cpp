@@ -3,6 +3,7 @@
 #include "doctor_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -3,8 +3,9 @@
 // `edged doctor`: what is wrong with a recording, and the remedy.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

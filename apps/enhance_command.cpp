@@ -4,6 +4,7 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -282,7 +283,8 @@ int run_enhance(const EnhanceOptions& options) {
   const std::string lacking = lacks(recording);
   const Moment moment =
       lacking.empty() ? run_up_to(options, std::move(recording), config) : plain_moment(options, recording, config);
-  if (!lacking.empty()) spdlog::warn("without poses the event frame is drawn {}: {}", moment.drawn_how, lacking);
+  if (!lacking.empty())
+    spdlog::warn(fmt::format("without poses the event frame is drawn {}: {}", moment.drawn_how, lacking));
   make_picture_folder(options.out);
   const std::vector<SheetRow> rows = all_stages(moment, config.enhance);
   int number = 0;

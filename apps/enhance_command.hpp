@@ -3,8 +3,9 @@
 // `edged enhance`: the event frame of one moment through every step of Algorithm 1, as pictures.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -3,6 +3,7 @@
 #include "eval_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>

@@ -3,8 +3,9 @@
 // `edged eval`: a trajectory file against a ground-truth file.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation_options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <map>
 
 #include "numbers.hpp"

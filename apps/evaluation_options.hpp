@@ -3,10 +3,10 @@
 // How a trajectory is held against ground truth, as a user says it on the command line.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli_fwd.hpp"
 #include "edged/eval/metrics.hpp"
 
 namespace edged {

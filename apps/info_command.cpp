@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "info_command.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
@@ -36,7 +38,7 @@ Recording open_of_any_size(SourceOptions source) {
     return open_uncalibrated(source);
   } catch (const UnknownSensorSize& unknown) {
     source.geometry = "2048x2048";
-    spdlog::warn("{}, by the pixels below; here it is read as {}", unknown.what(), source.geometry);
+    spdlog::warn(fmt::format("{}, by the pixels below; here it is read as {}", unknown.what(), source.geometry));
     return open_uncalibrated(source);
   }
 }

@@ -3,8 +3,9 @@
 // `edged info`: what a recording holds.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

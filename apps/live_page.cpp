@@ -3,6 +3,7 @@
 #include "live_page.hpp"
 
 #include <httplib.h>
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
@@ -237,7 +238,8 @@ void LivePage::Server::part_from_viewers() {
     if (!(watched || reports_on_the_way_ > 0) || !heard || now > begin + kLongestFarewell) break;
     changed_.wait_for(lock, std::chrono::milliseconds(20));
   }
-  spdlog::info("live page: {} at once at most, {} updates left out for who was too slow", most_viewers_, left_out_);
+  spdlog::info(
+      fmt::format("live page: {} at once at most, {} updates left out for who was too slow", most_viewers_, left_out_));
 }
 
 LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)

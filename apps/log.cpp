@@ -76,7 +76,7 @@ HeldWarnings::HeldWarnings() : sink_(std::make_shared<Sink>()), before_(spdlog::
 
 HeldWarnings::~HeldWarnings() {
   spdlog::default_logger()->sinks() = before_;
-  for (const std::string& line : sink_->take()) spdlog::warn("{}", line);
+  for (const std::string& line : sink_->take()) spdlog::warn(line);
 }
 
 std::vector<std::string> HeldWarnings::take() { return sink_->take(); }

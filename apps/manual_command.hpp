@@ -3,8 +3,9 @@
 // `edged manual`, hidden: the man page and the completion of bash, both from the command line as it is declared.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -3,6 +3,7 @@
 #include "map_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <Eigen/Geometry>
 #include <filesystem>

@@ -3,8 +3,9 @@
 // `edged map`: what is in a map, its points as a file, two made one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -3,6 +3,7 @@
 #include "program.hpp"
 
 #include <malloc.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cerrno>

@@ -3,8 +3,9 @@
 // What every main does: reads the command line, and turns exceptions into one line and an exit code.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

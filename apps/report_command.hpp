@@ -3,8 +3,9 @@
 // `edged report`: run folders as a page for a browser.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -134,9 +135,10 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
   write_file(folder_ / "calibration.yaml", to_yaml(source_.calibration));
   attach_log_file(folder_ / "run.log");
   if (folder_ != wanted)
-    spdlog::warn("{}: holds an earlier run; this one goes to {} (--force replaces)", wanted.string(), folder_.string());
-  spdlog::info("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_));
-  spdlog::info("{}", describe(source_.calibration));
+    spdlog::warn(fmt::format("{}: holds an earlier run; this one goes to {} (--force replaces)", wanted.string(),
+                             folder_.string()));
+  spdlog::info(fmt::format("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(mode_)));
+  spdlog::info(describe(source_.calibration));
   if (options.mcap)
     mcap_.emplace(folder_ / "results.mcap", odometry_.rig(),
                   RunFacts{{"version", kVersion},
@@ -160,7 +162,7 @@ std::vector<std::string> Run::headed(const std::string& known_when) const {
 void Run::check(const Measurement& measurement) {
   const auto timer = program_timings_.measure_often("check");
   check_.add(measurement);
-  for (const Finding& finding : check_.news()) spdlog::error("{}: {}", finding.text, finding.remedy);
+  for (const Finding& finding : check_.news()) spdlog::error(fmt::format("{}: {}", finding.text, finding.remedy));
 }
 
 void Run::observe(const Step& step) {
@@ -190,13 +192,13 @@ void Run::observe(const Step& step) {
 /// Before the statistics know the step.
 void Run::log_changes(const Step& step) const {
   const double t_s = to_seconds(step.t);
-  if (!step.started.empty()) spdlog::info("{:.3f} s: started {}", t_s, step.started);
-  if (step.found_again) spdlog::info("{:.3f} s: found again in the map", t_s);
+  if (!step.started.empty()) spdlog::info(fmt::format("{:.3f} s: started {}", t_s, step.started));
+  if (step.found_again) spdlog::info(fmt::format("{:.3f} s: found again in the map", t_s));
   if (step.status == statistics_.last_status()) return;
   if (step.status == TrackingStatus::Lost) {
-    spdlog::warn("lost at {:.3f} s: {}; starting again", t_s, step.lost_because);
+    spdlog::warn(fmt::format("lost at {:.3f} s: {}; starting again", t_s, step.lost_because));
   }
-  spdlog::info("{:.3f} s: {}", t_s, to_string(step.status));
+  spdlog::info(fmt::format("{:.3f} s: {}", t_s, to_string(step.status)));
 }
 
 void Run::show_status(const Step& step) {
@@ -264,7 +266,7 @@ RunSummary Run::go() {
         });
   } catch (const std::exception& e) {
     // What came before it stays, in complete files.
-    spdlog::info("broken off: {}", e.what());  // main tells the user
+    spdlog::info(fmt::format("broken off: {}", e.what()));  // main tells the user
     broken_off_ = true;
     summarize();
     throw;
@@ -317,9 +319,11 @@ RunSummary Run::summarize() {
   write_overview(summary, path);
   if (mcap_) finish_mcap(summary, known, path);
   album_.write(folder_, source_.calibration, odometry_.rig(), truth);
-  for (const auto& [kind, count] : summary.repairs) spdlog::info("repaired: {} x {}", count, kind);
-  for (const Finding& finding : summary.verdict.findings) spdlog::info("found: {}: {}", finding.text, finding.remedy);
-  spdlog::info("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes());
+  for (const auto& [kind, count] : summary.repairs) spdlog::info(fmt::format("repaired: {} x {}", count, kind));
+  for (const Finding& finding : summary.verdict.findings)
+    spdlog::info(fmt::format("found: {}: {}", finding.text, finding.remedy));
+  spdlog::info(
+      fmt::format("status {}, {} poses, {} keyframes", summary.status, summary.poses, summary.statistics.keyframes()));
   write_run_report(folder_);  // the log is part of it
   if (page_) page_->finish(progress(), to_json(summary), folder_);
   if (!archive_.empty()) zip_folder(archive_, folder_);  // may fail, on a full disk

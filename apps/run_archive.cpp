@@ -3,6 +3,7 @@
 #include "run_archive.hpp"
 
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdlib>
 

@@ -3,10 +3,10 @@
 // The run folder as one file, for sending: --archive of `edged run`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
+#include "cli_fwd.hpp"
 #include "run_folder.hpp"
 
 namespace edged {

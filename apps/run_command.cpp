@@ -3,6 +3,7 @@
 #include "run_command.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>

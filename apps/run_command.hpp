@@ -3,8 +3,9 @@
 // `edged run`: a recording in, a run folder out.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -7,6 +7,7 @@
 #include <spdlog/fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cerrno>

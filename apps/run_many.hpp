@@ -3,10 +3,11 @@
 // Several recordings in one call of `edged run`: each is run by a process of its own.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_map.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <utility>
 #include <vector>
@@ -44,15 +46,16 @@ std::optional<MapSummary> RunMap::finish(const Odometry& odometry) {
   MapSummary summary{options_.load.string(), {}, {}};
   if (found_) summary.found_s = to_seconds(*found_ - *first_pose_);
   if (!options_.load.empty() && !found_)
-    spdlog::warn("--map {}: not found again; the poses are in a frame of their own", options_.load.string());
+    spdlog::warn(
+        fmt::format("--map {}: not found again; the poses are in a frame of their own", options_.load.string()));
   if (options_.save.empty()) return summary;
   const std::optional<std::string> map = odometry.save_map();
   if (map) {
     write_file(options_.save, *map);
     summary.saved = options_.save.string();
   } else {
-    spdlog::warn("--save-map {}: not written, as this run has not found its place in that of --map",
-                 options_.save.string());
+    spdlog::warn(fmt::format("--save-map {}: not written, as this run has not found its place in that of --map",
+                             options_.save.string()));
   }
   return summary;
 }

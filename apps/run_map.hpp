@@ -3,11 +3,11 @@
 // Maps that outlive a run: --map and --save-map of `edged run`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "cli_fwd.hpp"
 #include "edged/odometry.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"

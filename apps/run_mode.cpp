@@ -12,7 +12,7 @@ void match_cameras(Source& source, Mode mode) {
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     if (!uses(mode, modality)) continue;
     const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);
-    if (!assumed.empty()) spdlog::warn("{}", assumed);
+    if (!assumed.empty()) spdlog::warn(assumed);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_summary.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -112,11 +113,11 @@ void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector
       try {
         summary.mpe_percent[name] = evaluate(association, protocol(name), {}, {}).mpe_percent;
       } catch (const InputError& e) {
-        spdlog::info("protocol {} does not apply: {}", name, e.what());
+        spdlog::info(fmt::format("protocol {} does not apply: {}", name, e.what()));
       }
     }
   } catch (const InputError& e) {
-    spdlog::warn("no comparison with the ground truth: {}", e.what());
+    spdlog::warn(fmt::format("no comparison with the ground truth: {}", e.what()));
   }
 }
 

@@ -3,6 +3,7 @@
 #include "serve_address.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
 
 #include <charconv>
 

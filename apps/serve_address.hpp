@@ -3,9 +3,10 @@
 // --serve: where the live page of a run is to be had.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

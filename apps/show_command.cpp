@@ -4,6 +4,7 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -159,7 +160,7 @@ int show_recording(const ShowOptions& options) {
   const cv::Size sensor = recording_event_sensor(recording);
   const bool page = options.out.extension() == ".html";
   const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
-  if (shown.pictures == 0) spdlog::warn("{}: not one event came", dataset.info().name);
+  if (shown.pictures == 0) spdlog::warn(fmt::format("{}: not one event came", dataset.info().name));
   print_shown(options, shown, dataset.repairs());
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

@@ -3,8 +3,9 @@
 // `edged simulate`: makes a recording with ground truth.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "cli_fwd.hpp"
 
 namespace edged {
 

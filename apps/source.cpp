@@ -3,6 +3,7 @@
 #include "source.hpp"
 
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <utility>

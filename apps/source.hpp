@@ -4,13 +4,13 @@
 // fits it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli_fwd.hpp"
 #include "edged/core/dataset.hpp"
 #include "edged/core/recording_piece.hpp"
 #include "edged/io/recording.hpp"

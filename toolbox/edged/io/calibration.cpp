@@ -51,7 +51,7 @@ Calibration load_calibration(const SourcePath& path, const CalibrationOptions& o
   }
   Calibration calibration = to_calibration(read, options, file);
   for (std::string& warning : implausibilities(calibration, file)) calibration.warnings.push_back(std::move(warning));
-  for (const std::string& warning : calibration.warnings) spdlog::warn("{}", warning);
+  for (const std::string& warning : calibration.warnings) spdlog::warn(warning);
   return calibration;
 }
 

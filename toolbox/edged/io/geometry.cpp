@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/io/geometry.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <charconv>
@@ -32,16 +33,17 @@ void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig
   constexpr double kTolerance = 0.02;
   const RigCamera* camera = rig.find(modality);
   if (!camera || std::abs(focal_px / camera->model.mean_focal() - 1.0) <= kTolerance) return;
-  spdlog::warn("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file, focal_px,
-               rig.name, camera->model.mean_focal());
+  spdlog::warn(fmt::format("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file,
+                           focal_px, rig.name, camera->model.mean_focal()));
 }
 
 cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig) {
   if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
     const cv::Size size(camera->model.width(), camera->model.height());
     if (said && *said != size)
-      spdlog::warn("{}: the sensor has {} x {} px, but the event camera of rig {} has {} x {} px: is it the right one?",
-                   file.string(), said->width, said->height, rig->name, size.width, size.height);
+      spdlog::warn(fmt::format(
+          "{}: the sensor has {} x {} px, but the event camera of rig {} has {} x {} px: is it the right one?",
+          file.string(), said->width, said->height, rig->name, size.width, size.height));
     return size;
   }
   if (said) return *said;

@@ -76,7 +76,7 @@ std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::s
     return others.contains(name) || !is_text_file(name) || !holds_imu(folder / name);
   });
   if (found.size() > 1)
-    spdlog::warn("{}: several files hold IMU samples, none is read: give one to --imu", folder.string());
+    spdlog::warn(fmt::format("{}: several files hold IMU samples, none is read: give one to --imu", folder.string()));
   return found.size() == 1 ? std::optional(folder / found.front()) : std::nullopt;
 }
 
@@ -100,8 +100,8 @@ void tell_unread(const SourcePath& folder, const std::set<std::string>& read) {
   }
   if (pictures > 0) names.push_back(fmt::format("{} pictures", pictures));
   if (!names.empty())
-    spdlog::warn("{}: not read: {}{}", folder.string(), fmt::join(names, ", "),
-                 calibrations ? " (a calibration only where --calib names it)" : "");
+    spdlog::warn(fmt::format("{}: not read: {}{}", folder.string(), fmt::join(names, ", "),
+                             calibrations ? " (a calibration only where --calib names it)" : ""));
 }
 
 }  // namespace edged

@@ -3,6 +3,7 @@
 // Which format a folder or a file is.
 #include "edged/io/open_recording.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <set>
@@ -44,7 +45,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   try {
     if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = load_calibration(own);
   } catch (const InputError& e) {
-    spdlog::warn("{}; opened without this calibration", e.what());
+    spdlog::warn(fmt::format("{}; opened without this calibration", e.what()));
   }
   if (!rig && calibration) rig = &calibration->rig;
   Recording recording = open_main_file(folder / file, rig, options);
@@ -54,7 +55,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
       recording.dataset = with_imu_file(std::move(recording.dataset), *imu);
       read.insert(imu->name());
     } catch (const InputError& e) {
-      spdlog::warn("{}", e.what());
+      spdlog::warn(e.what());
       recording = open_main_file(folder / file, rig, options);
     }
   }

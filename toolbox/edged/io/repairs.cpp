@@ -3,6 +3,7 @@
 // Counting of damage.
 #include "edged/io/repairs.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include "edged/core/check.hpp"
@@ -14,7 +15,7 @@ constexpr std::size_t kMaxBadShare = 100;  // one in a hundred
 }  // namespace
 
 void Repairs::add(const std::string& kind, const std::string& detail) {
-  if (++counts_[kind] == 1) spdlog::warn("{} (further cases of \"{}\" are only counted)", detail, kind);
+  if (++counts_[kind] == 1) spdlog::warn(fmt::format("{} (further cases of \"{}\" are only counted)", detail, kind));
 }
 
 void LineDamage::bad(std::size_t line, const std::string& kind, const std::string& detail) {

@@ -83,7 +83,8 @@ Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandl
       damaged(line->number, "the stamp is not after the one above: sort the file by time");
     }
   }
-  if (repeated > 0) spdlog::warn("{}: {} repeated stamps, the first pose of each is kept", file.string(), repeated);
+  if (repeated > 0)
+    spdlog::warn(fmt::format("{}: {} repeated stamps, the first pose of each is kept", file.string(), repeated));
   return trajectory;
 }
 

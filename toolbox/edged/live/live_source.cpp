@@ -18,7 +18,7 @@ LiveSource::LiveSource(Dataset& dataset, const QueueConfig& config, std::functio
 
 std::optional<Measurement> LiveSource::next() {
   std::optional<Measurement> measurement = reader_.next();
-  if (const auto line = report_.update(shed(), ShedReport::Clock::now())) spdlog::warn("{}", *line);
+  if (const auto line = report_.update(shed(), ShedReport::Clock::now())) spdlog::warn(*line);
   return measurement;
 }
 

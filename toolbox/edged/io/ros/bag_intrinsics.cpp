@@ -3,6 +3,7 @@
 // Which CameraInfo is that of which camera.
 #include "edged/io/ros/bag_intrinsics.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const Topi
     try {
       model->second = read_camera_info(WireReader(source.wire(), message->data));
     } catch (const Damage& damage) {
-      spdlog::warn("{}: intrinsics not used: {}", topics[message->topic].name, damage.what());
+      spdlog::warn(fmt::format("{}: intrinsics not used: {}", topics[message->topic].name, damage.what()));
       models.erase(model);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The ASL folders of the EuRoC data set (Burri et al., IJRR 2016), which TUM-VI (Schubert et al., IROS 2018) uses too.
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ std::optional<SourcePath> find_truth(const SourcePath& mav0) {
     if (const SourcePath file = mav0 / folder / "data.csv"; file.is_file()) return file;
   for (const char* folder : kRawTruthFolders)
     if ((mav0 / folder / "data.csv").is_file())
-      spdlog::warn("{}: holds no poses of the body and is not read as ground truth", (mav0 / folder).string());
+      spdlog::warn(
+          fmt::format("{}: holds no poses of the body and is not read as ground truth", (mav0 / folder).string()));
   return std::nullopt;
 }
 
@@ -78,7 +80,7 @@ std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   return (dso / "camchain.yaml").is_file() ? std::optional(load_calibration(dso, {.otherwise = Sees::Frames}))
                                            : std::nullopt;
 } catch (const InputError& error) {
-  spdlog::warn("{}; opened without this calibration", error.what());
+  spdlog::warn(fmt::format("{}; opened without this calibration", error.what()));
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/io/text/imu_text.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -112,7 +113,7 @@ std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const
   const ImuTextForm form = find_imu_form(file);
   spdlog::log(form.guessed ? spdlog::level::warn : spdlog::level::info, "{}: {}", file.string(), form.said);
   if (recording->info().has_imu)
-    spdlog::warn("{}: its own IMU is left out for {}", recording->info().name, file.string());
+    spdlog::warn(fmt::format("{}: its own IMU is left out for {}", recording->info().name, file.string()));
   return std::make_unique<RecordingWithImu>(std::move(recording), file, form);
 }
 
