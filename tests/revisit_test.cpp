@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <span>
 #include <vector>
@@ -134,6 +136,60 @@ TEST(Revisits, FindThePlaceAgainAfterTheLensWasCovered) {
     EXPECT_LT(without, 0.15) << "the IMU alone for 4 s";  // 0.42 to 0.76 where the body is held to stay in place
     EXPECT_LT(with, without);
     EXPECT_LT(with, mode == Mode::Events ? 0.08 : 0.03);
+  }
+}
+
+constexpr double kLeave_s = 12.0, kWay_s = 5.0, kWay_m = 4.0;  // from one room into one that looks the same
+
+/// A camera that looks square to the way between two rooms and sways alike in both (TUM, 100 Hz).
+std::filesystem::path write_motion_through_twins() {
+  const std::filesystem::path file = testing::TempDir() + "twins.tum";
+  std::ofstream out(file);
+  const Eigen::Quaterniond sideways(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));  // along +y, upright
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.01 * i, share = std::clamp((t - kLeave_s) / kWay_s, 0.0, 1.0);
+    const double way = kWay_m * share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
+    const Eigen::Vector3d p(way + 0.35 * std::sin(1.3 * t), 0.2 * std::sin(1.7 * t + 1.0), 0.15 * std::sin(2.1 * t));
+    const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.25 * std::sin(0.9 * t + 2.0), Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(0.12 * std::sin(1.5 * t), Eigen::Vector3d::UnitX()));
+    const Eigen::Vector4d q = (turned * sideways).coeffs();
+    out << fmt::format("{:.2f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", t, p.x(), p.y(), p.z(), q[0], q[1],
+                       q[2], q[3]);
+  }
+  return file;
+}
+
+/// Points that were found and are of keyframes taken more than 2 m away, by the truth.
+std::size_t found_elsewhere(const Flight& flight, const FlightRun& run) {
+  const Trajectory& truth = flight.truth->trajectory;
+  const auto true_place = [&](Timestamp t) {
+    return std::ranges::lower_bound(truth, t, {}, &StampedPose::t)->T.translation();
+  };
+  std::size_t count = 0;
+  for (const Step& step : run.steps) {
+    count += std::ranges::count_if(step.found, [&](const FoundPoint& point) {
+      return (true_place(point.keyframe) - true_place(step.t)).norm() > 2.0;
+    });
+  }
+  return count;
+}
+
+TEST(Revisits, DoNotTakeOneOfTwoEqualRoomsForTheOther) {
+  SimulatorConfig config = simulator_preset("room");
+  config.duration_s = 30.0;
+  config.motion.file = write_motion_through_twins();
+  config.scene.twin_m = kWay_m;
+  for (const bool covered : {false, true}) {
+    if (covered) config.disturbance = {DisturbanceKind::LensCovered, kLeave_s, kWay_s, 0.0};
+    const Flight flight = simulate_flight(config);
+    for (const Mode mode : kAllModes) {
+      const FlightRun run = run_with(flight, mode, true);
+      const auto found = std::ranges::count_if(run.steps, [](const Step& step) { return !step.found.empty(); });
+      std::cout << mode_name(mode) << (covered ? ", lens covered on the way" : "") << ": found in " << found << " of "
+                << run.steps.size() << " packets, ATE " << 1e3 * score(flight, run).evaluation.ate_m.rmse << " mm\n";
+      EXPECT_EQ(found_elsewhere(flight, run), 0U);
+      EXPECT_GT(found, 10);
+    }
   }
 }
 

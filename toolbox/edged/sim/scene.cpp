@@ -12,7 +12,7 @@ namespace edged {
 namespace {
 
 constexpr int kTextures = 6;
-constexpr int kTextureSize = 1024;
+constexpr int kTextureSize = 1024;           // of the walls: 4 m
 const Eigen::Vector3d kHall(6.0, 6.0, 3.0);  // [m]
 
 Eigen::Quaterniond random_rotation(Random& random) {
@@ -47,6 +47,14 @@ void add_cuboid(Scene& scene, const Cuboid& cuboid, double light, Random& random
       face.brightness = static_cast<float>(light * random.uniform(0.6, 1.0));
       scene.faces.push_back(face);
     }
+  }
+}
+
+/// The faces from `first` on once more, moved.
+void add_moved(Scene& scene, std::size_t first, const Eigen::Vector3d& by_W) {
+  for (std::size_t i = first, end = scene.faces.size(); i < end; ++i) {
+    scene.faces.push_back(Face(scene.faces[i]));
+    scene.faces.back().centre_W += by_W;
   }
 }
 
@@ -201,13 +209,14 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   low -= margin, high += margin;
   const Cuboid room{SE3(Eigen::Quaterniond::Identity(), 0.5 * (low + high)), 0.5 * (high - low), true};
   add_cuboid(scene, room, config.light, random);
+  const Eigen::Vector3d to_twin = config.twin_m * Eigen::Vector3d::UnitX();
   int placed = 0;
   // A room too full for another box keeps the ones it has.
   for (int tries = 0; placed < config.objects && tries < 200 * config.objects; ++tries) {
     Cuboid box;
     for (int i = 0; i < 3; ++i) box.half[i] = random.uniform(0.12, 0.4);
     Eigen::Vector3d p;
-    for (int i = 0; i < 3; ++i) p[i] = random.uniform(low[i] + 0.3, high[i] - 0.3);
+    for (int i = 0; i < 3; ++i) p[i] = random.uniform(low[i] + 0.3, high[i] - 0.3 - to_twin[i]);
     const bool standing = random.uniform() < 0.6;
     if (standing) p.z() = low.z() + box.half.z();
     const double yaw = random.uniform(0.0, std::numbers::pi);
@@ -215,8 +224,11 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
     const Eigen::Quaterniond upright(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
     box.T_W_O = SE3(standing ? upright : tumbled, p);
     if (half_blank && p.x() - box.half.norm() < room.T_W_O.translation().x()) continue;
-    if (!keeps_clear(box, config.clearance_m, path_W_C)) continue;
+    const Cuboid twin{SE3(box.T_W_O.rotation(), p + to_twin), box.half};
+    if (!keeps_clear(box, config.clearance_m, path_W_C) || !keeps_clear(twin, config.clearance_m, path_W_C)) continue;
+    const std::size_t first = scene.faces.size();
     add_cuboid(scene, box, config.light, random);
+    if (config.twin_m > 0.0) add_moved(scene, first, to_twin);
     ++placed;
   }
   if (half_blank) paint_half(scene, room, config.light, random);
@@ -317,6 +329,8 @@ void SceneConfig::visit(ConfigFields& fields) {
       {.effect =
            "a room with boxes, one rich wall, a white wall with dark shapes, or a furnished hall of 6 x 6 x 3 m"});
   fields.add("objects", objects, {"", 0, 200, "boxes in the room"});
+  fields.add("twin_m", twin_m,
+             {"m", 0, 100, "boxes once more this far along x; 4, as the walls repeat: two equal rooms; 0: none"});
   fields.add("clearance_m", clearance_m, {"m", 0.05, 10, "distance of the boxes from the camera's path"});
   fields.add("wall_m", wall_m,
              {"m", 0.2, 100, "distance of the room's walls from the camera's path; floor and ceiling 3/4"});

@@ -62,6 +62,7 @@ enum class SceneKind { Boxes, Poster, Shapes, Hall };
 struct SceneConfig {
   SceneKind kind = SceneKind::Boxes;
   int objects = 16;
+  double twin_m = 0.0;
   double clearance_m = 0.45;
   double wall_m = 1.6;
   double poster_distance_m = 1.3;
