@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to know a place again, by the number of keyframes that it may be.
+// What it costs to know a place again, by the number of keyframes that it may be, and to know the whole path in the
+// end, by its length.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <fstream>
 #include <random>
+#include <string>
 
+#include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 
 namespace edged {
@@ -64,6 +69,64 @@ void BM_RecogniseAPlace(benchmark::State& state) {
   state.counters["descriptors"] = static_cast<double>(map.keyframes().size()) * kPointsPerKeyframe;
 }
 BENCHMARK(BM_RecogniseAPlace)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+constexpr double kLook_s = 0.25, kPose_s = 0.05;
+constexpr int kKeyframes = 100, kLooksPerKeyframe = 12, kKeyframesInView = 8, kSightsOfOne = 8;
+
+/// A camera that sways before a wall for so long, an odometry whose drift the map has held, and what was found.
+FlightRecord record_of(double duration_s) {
+  const auto true_pose = [](double t) {
+    return SE3(so3::exp({0.1 * std::sin(0.7 * t), 0.2 * std::sin(t), 0.0}),
+               {std::sin(0.3 * t), std::sin(0.4 * t), 0.0});
+  };
+  FlightRecord record{MapFilterConfig{}};
+  std::vector<double> made_at;
+  record.restart({Timestamp{}, true_pose(0.0)}, SE3(), 0.01, 0.01);
+  for (int i = 1; kPose_s * i < duration_s; ++i) {
+    const double t = kPose_s * i;
+    const StampedPose T_O_B{timestamp_from_seconds(t), true_pose(t)};
+    record.add(T_O_B);
+    const int looks = static_cast<int>(std::lround(kLook_s / kPose_s));
+    if (i % looks != 0) continue;
+    if (i % (looks * kLooksPerKeyframe) == 0 && made_at.size() < kKeyframes) {
+      record.add_keyframe(T_O_B);
+      made_at.push_back(t);
+    }
+    if (made_at.size() < kKeyframesInView) continue;
+    std::vector<MapSight> sights;
+    for (std::size_t n = 0; n < kKeyframesInView; ++n) {
+      const std::size_t keyframe = (static_cast<std::size_t>(i / looks) + n) % made_at.size();
+      for (int k = 0; k < kSightsOfOne; ++k) {
+        const Eigen::Vector3d p_M(k % 3 - 1.0, k % 4 - 1.5, 3.0 + 0.3 * k);
+        const Eigen::Vector3d p_K = true_pose(made_at[keyframe]).inverse() * p_M;
+        sights.push_back({keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * p_M).hnormalized(), 0.01});
+      }
+    }
+    record.add_sights(T_O_B, SE3(), sights, SE3());
+  }
+  return record;
+}
+
+/// Of this process [MB].
+double memory_mb(const std::string& which) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kilobytes = 0.0;
+    if (word == which + ":" && status >> kilobytes) return kilobytes / 1024.0;
+  }
+  return NAN;
+}
+
+/// range(0): minutes.
+void BM_KnowThePathInTheEnd(benchmark::State& state) {
+  const double before_mb = memory_mb("VmRSS");
+  const FlightRecord record = record_of(60.0 * static_cast<double>(state.range(0)));
+  state.counters["record_MB"] = memory_mb("VmRSS") - before_mb;
+  std::ofstream("/proc/self/clear_refs") << 5;  // what the most is counted from
+  for (auto _ : state) benchmark::DoNotOptimize(record.path());
+  state.counters["most_MB"] = memory_mb("VmHWM") - before_mb;
+}
+BENCHMARK(BM_KnowThePathInTheEnd)->Arg(6)->Arg(20)->Arg(60)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
 }  // namespace edged

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What it is worth to know where one has been: flights that come by the same places again and again.
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <array>
 #include <cmath>

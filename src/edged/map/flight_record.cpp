@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "edged/core/angles.hpp"
 #include "edged/map/pose_graph.hpp"
@@ -15,6 +16,9 @@ namespace {
 constexpr double kDriftInHindsight = 3.0;
 constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
+// Looks that are fitted with the keyframes: each hangs together with the one before and with most keyframes, and time
+// and memory grow faster than their number.
+constexpr std::size_t kMostTogether = 500;
 
 /// Of where the odometry starts, against where it ended.
 Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
@@ -29,15 +33,10 @@ Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
 /// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
 class FlightRecord::Fit {
  public:
-  explicit Fit(const FlightRecord& record) : config_(record.config_), keyframes_(record.keyframes_) {
-    config_.drift_m *= kDriftInHindsight;
-    config_.drift_yaw_deg *= kDriftInHindsight;
-    config_.drift_tilt_deg *= kDriftInHindsight;
-    for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
-    for (const Session& session : record.sessions_) add_session(session);
-    for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
-    if (record.found_again()) graph_.solve();
-  }
+  /// All keyframes, and one look of so many.
+  Fit(const FlightRecord& record, std::size_t of) : Fit(record, of, nullptr) {}
+  /// All looks, the keyframes where that has found them: a chain, of which time and memory are linear.
+  Fit(const FlightRecord& record, const Fit& together) : Fit(record, 1, &together) {}
 
   const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
   std::vector<Moved> T_M_O(std::size_t session) const {
@@ -48,8 +47,19 @@ class FlightRecord::Fit {
   }
 
  private:
+  Fit(const FlightRecord& record, std::size_t of, const Fit* together)
+      : config_(record.config_), of_(of), together_(together), keyframes_(record.keyframes_) {
+    config_.drift_m *= kDriftInHindsight;
+    config_.drift_yaw_deg *= kDriftInHindsight;
+    config_.drift_tilt_deg *= kDriftInHindsight;
+    for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
+    for (const Session& session : record.sessions_) add_session(session);
+    for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
+    if (record.found_again()) graph_.solve();
+  }
+
   void add_loaded(std::size_t k, std::span<const SE3> T_M_K) {
-    keyframes_[k] = graph_.add_pose(T_M_K[k]);
+    keyframes_[k] = together_ ? graph_.add_known_pose(together_->keyframe(k)) : graph_.add_pose(T_M_K[k]);
     if (k > 0) graph_.add_step(k - 1, k, T_M_K[k - 1].inverse() * T_M_K[k], kRigid * kRigid * Matrix6d::Identity());
   }
 
@@ -57,11 +67,15 @@ class FlightRecord::Fit {
     Nodes nodes;
     for (const StampedPose* told : instants(session))
       nodes[told->t].T_O_B = between(session.settled, told->t) * told->T;
-    for (const Keyframe& keyframe : session.keyframes) nodes[keyframe.T_O_K.t].T_O_B = keyframe.T_O_K.T;
+    for (const Keyframe& keyframe : session.keyframes) {
+      Node& node = nodes[keyframe.T_O_K.t];
+      node.T_O_B = keyframe.T_O_K.T;
+      if (together_) node.known = &together_->keyframe(keyframe.number);
+    }
     for (auto node = nodes.begin(); node != nodes.end(); ++node) {
       const auto& [t, at] = *node;
-      const SE3 T_M_B = newest(session.T_M_O, t) * at.T_O_B;
-      const std::size_t number = node->second.number = graph_.add_pose(T_M_B);
+      const SE3 T_M_B = at.known ? *at.known : newest(session.T_M_O, t) * at.T_O_B;
+      const std::size_t number = node->second.number = at.known ? graph_.add_known_pose(T_M_B) : graph_.add_pose(T_M_B);
       if (node != nodes.begin()) {
         const auto& [t_before, before] = *std::prev(node);
         graph_.add_step(number - 1, number, before.T_O_B.inverse() * at.T_O_B,
@@ -75,14 +89,15 @@ class FlightRecord::Fit {
     nodes_.push_back(std::move(nodes));
   }
 
-  static std::vector<const StampedPose*> instants(const Session& session) {
+  std::vector<const StampedPose*> instants(const Session& session) const {
     std::vector<const StampedPose*> told = {&session.start};
-    for (const View& view : session.views) told.push_back(&view.T_O_B);
+    for (std::size_t i = 0; i < session.views.size(); i += of_) told.push_back(&session.views[i].T_O_B);
     return told;
   }
 
   void add_sights(const Session& session, const Nodes& nodes) {
-    for (const View& view : session.views) {
+    for (std::size_t i = 0; i < session.views.size(); i += of_) {
+      const View& view = session.views[i];
       std::vector<MapSight> sights;
       for (const Sight& s : view.sights)
         sights.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
@@ -92,6 +107,8 @@ class FlightRecord::Fit {
   }
 
   MapFilterConfig config_;
+  std::size_t of_;
+  const Fit* together_;
   PoseGraph graph_;
   std::vector<std::size_t> keyframes_;  ///< their numbers in the graph
   std::vector<Nodes> nodes_;            ///< by session
@@ -161,7 +178,12 @@ void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::s
 }
 
 FlightRecord::Path FlightRecord::path() const {
-  const Fit fit(*this);
+  std::size_t looks = 0;
+  for (const Session& session : sessions_) looks += session.views.size();
+  const std::size_t of = looks / kMostTogether + 1;
+  const Fit together(*this, of);
+  const std::optional<Fit> chain = of > 1 ? std::optional<Fit>(std::in_place, *this, together) : std::nullopt;
+  const Fit& fit = chain ? *chain : together;
   const bool as_told = !found_again();
   Path path;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {

@@ -17,7 +17,7 @@
 namespace edged {
 
 /// Calls come in order of time, `load` or `restart` first. Frames: O of the odometry, a new one each start; M of the
-/// map. Half a megabyte a minute.
+/// map. Half a megabyte a minute; path() takes seven times that while it works.
 class FlightRecord {
  public:
   explicit FlightRecord(const MapFilterConfig& config) : config_(config) {}
@@ -85,6 +85,7 @@ class FlightRecord {
   struct Node {
     std::size_t number;
     SE3 T_O_B;
+    const SE3* known = nullptr;  ///< T_M_B, of a keyframe
   };
   using Nodes = std::map<Timestamp, Node>;
   class Fit;

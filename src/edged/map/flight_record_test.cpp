@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace edged {
@@ -93,6 +94,29 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
   const Trajectory poses = record_.path().poses;
   EXPECT_LT(error(poses.back()), 0.005);
   for (const StampedPose& pose : poses) EXPECT_LT(error(pose), 0.01);
+}
+
+TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes) {
+  constexpr double kFirst_s = 1.0, kStep_s = 0.5, kLong_s = 180.0;  // 1700 looks
+  restart(0.0, SE3());
+  std::vector<double> made_at;
+  double t = 0.0;
+  for (; t < kLong_s; t += kTick_s) {
+    fly(t, t + kTick_s, t < kFirst_s ? 0.0 : 0.001);
+    const double now = t + kTick_s;
+    if (now < kOnceRound_s && now > kFirst_s + kStep_s * static_cast<double>(made_at.size()) - 1e-6) {
+      record_.add_keyframe({instant(now), T_O_B_});
+      made_at.push_back(now);
+    } else if (now > kOnceRound_s) {
+      const std::size_t keyframe = static_cast<std::size_t>(10.0 * now) % made_at.size();
+      T_M_O_ = true_pose(now) * T_O_B_.inverse();
+      look(now, made_at[keyframe], keyframe);
+    }
+  }
+  ASSERT_GT(error(std::ranges::max(told_, {}, error)), 0.05) << "it drifts until a place is found again";
+  const FlightRecord::Path path = record_.path();
+  ASSERT_EQ(path.poses.size(), told_.size());
+  for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
 TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {

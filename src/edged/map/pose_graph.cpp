@@ -20,31 +20,35 @@ constexpr double kHeld = 1e18;     // information on the first pose
 
 }  // namespace
 
-/// H dx = -g, of which only blocks that are not zero are kept: of each pair of poses that one for which a >= b.
+/// H dx = -g of the unknown poses, of which only blocks that are not zero are kept: of each pair of poses that one for
+/// which a >= b.
 class PoseGraph::Equations {
  public:
-  explicit Equations(std::size_t poses) : g_(Eigen::VectorXd::Zero(6 * static_cast<Eigen::Index>(poses))) {
-    block(0, 0) = kHeld * Matrix6d::Identity();
+  explicit Equations(const PoseGraph& graph) : rows_(graph.rows_), g_(Eigen::VectorXd::Zero(graph.unknowns_)) {
+    if (rows_[0] != kKnown) block(rows_[0], rows_[0]) = kHeld * Matrix6d::Identity();
   }
 
-  void add(std::size_t a, std::size_t b, const Matrix6d& aa, const Matrix6d& ab, const Matrix6d& bb) {
-    block(a, a) += aa;
-    block(b, b) += bb;
+  void add(std::size_t pose_a, std::size_t pose_b, const Matrix6d& aa, const Matrix6d& ab, const Matrix6d& bb) {
+    const Eigen::Index a = rows_[pose_a], b = rows_[pose_b];
+    if (a != kKnown) block(a, a) += aa;
+    if (b != kKnown) block(b, b) += bb;
+    if (a == kKnown || b == kKnown) return;
     if (a > b) {
       block(a, b) += ab;
     } else {
       block(b, a) += ab.transpose();
     }
   }
-  void add(std::size_t a, const Vector6d& g) { g_.segment<6>(6 * static_cast<Eigen::Index>(a)) += g; }
+  void add(std::size_t pose, const Vector6d& g) {
+    if (rows_[pose] != kKnown) g_.segment<6>(rows_[pose]) += g;
+  }
 
   std::optional<Eigen::VectorXd> solved() const {
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [at, H] : blocks_) {
       for (int column = 0; column < 6; ++column) {
         for (int row = at.first == at.second ? column : 0; row < 6; ++row)
-          entries.emplace_back(6 * static_cast<int>(at.second) + row, 6 * static_cast<int>(at.first) + column,
-                               H(row, column));
+          entries.emplace_back(at.second + row, at.first + column, H(row, column));
       }
     }
     Eigen::SparseMatrix<double> H(g_.size(), g_.size());
@@ -55,15 +59,25 @@ class PoseGraph::Equations {
   }
 
  private:
-  Matrix6d& block(std::size_t a, std::size_t b) { return blocks_.try_emplace({b, a}, Matrix6d::Zero()).first->second; }
+  Matrix6d& block(Eigen::Index a, Eigen::Index b) {
+    return blocks_.try_emplace({b, a}, Matrix6d::Zero()).first->second;
+  }
 
-  std::map<std::pair<std::size_t, std::size_t>, Matrix6d> blocks_;  ///< by column, then row
+  const std::vector<Eigen::Index>& rows_;
+  std::map<std::pair<Eigen::Index, Eigen::Index>, Matrix6d> blocks_;  ///< by column, then row
   Eigen::VectorXd g_;
 };
 
-std::size_t PoseGraph::add_pose(const SE3& T_M_B) {
+std::size_t PoseGraph::add_known_pose(const SE3& T_M_B) {
   T_M_B_.push_back(T_M_B);
+  rows_.push_back(kKnown);
   return T_M_B_.size() - 1;
+}
+
+std::size_t PoseGraph::add_pose(const SE3& T_M_B) {
+  const std::size_t pose = add_known_pose(T_M_B);
+  rows_[pose] = std::exchange(unknowns_, unknowns_ + 6);
+  return pose;
 }
 
 void PoseGraph::add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance) {
@@ -99,14 +113,16 @@ void PoseGraph::take(const View& view, bool trusting, Equations& equations) cons
 }
 
 void PoseGraph::solve() {
+  if (unknowns_ == 0) return;
   for (int i = 0; i < kIterations; ++i) {
-    Equations equations(T_M_B_.size());
+    Equations equations(*this);
     for (const Step& step : steps_) take(step, equations);
     for (const View& view : views_) take(view, i < kTrusting, equations);
     const std::optional<Eigen::VectorXd> errors = equations.solved();
     if (!errors || !errors->allFinite()) return;
-    for (std::size_t k = 0; k < T_M_B_.size(); ++k)
-      T_M_B_[k] = corrected(T_M_B_[k], errors->segment<6>(6 * static_cast<Eigen::Index>(k)));
+    for (std::size_t k = 0; k < T_M_B_.size(); ++k) {
+      if (rows_[k] != kKnown) T_M_B_[k] = corrected(T_M_B_[k], errors->segment<6>(rows_[k]));
+    }
     if (i >= kTrusting && errors->lpNorm<Eigen::Infinity>() < kSettled) return;
   }
 }

@@ -18,6 +18,8 @@ class PoseGraph {
  public:
   /// A first guess; returns its number. The first one stays where it is.
   std::size_t add_pose(const SE3& T_M_B);
+  /// As that, and it stays where it is: no unknown.
+  std::size_t add_known_pose(const SE3& T_M_B);
   /// B was seen to lie at T_A_B from A; the covariance is that of B's error then.
   void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);
   /// What was found in the image of a body, of keyframes by their numbers.
@@ -39,11 +41,14 @@ class PoseGraph {
     SE3 T_B_C;
     std::vector<MapSight> sights;
   };
+  static constexpr Eigen::Index kKnown = -1;
   class Equations;
   void take(const Step& step, Equations& equations) const;
   void take(const View& view, bool trusting, Equations& equations) const;
 
   std::vector<SE3> T_M_B_;
+  std::vector<Eigen::Index> rows_;  ///< where the unknowns of each pose begin; kKnown: none
+  Eigen::Index unknowns_ = 0;
   std::vector<Step> steps_;
   std::vector<View> views_;
 };
