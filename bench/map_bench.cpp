@@ -11,6 +11,7 @@
 
 #include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
+#include "edged/map/map_filter.hpp"
 
 namespace edged {
 namespace {
@@ -69,6 +70,27 @@ void BM_RecogniseAPlace(benchmark::State& state) {
   state.counters["descriptors"] = static_cast<double>(map.keyframes().size()) * kPointsPerKeyframe;
 }
 BENCHMARK(BM_RecogniseAPlace)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+/// range(0): keyframes, of which eight are seen.
+void BM_TakeUpWhatWasFound(benchmark::State& state) {
+  constexpr int kSeen = 8, kSightsOfOne = 8;
+  MapFilter filter{MapFilterConfig{}};
+  filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
+  for (int k = 0; k < state.range(0); ++k) {
+    const Timestamp t = timestamp_from_seconds(0.3 * k);
+    filter.predict(SE3(), t);
+    filter.add_keyframe(SE3(), t);
+  }
+  std::vector<MapSight> sights;
+  for (std::size_t keyframe = 0; keyframe < kSeen; ++keyframe) {
+    for (int i = 0; i < kSightsOfOne; ++i) {
+      const Eigen::Vector3d p(i % 3 - 1.0, i % 4 - 1.5, 3.0 + 0.3 * i);
+      sights.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(filter.update(sights, sights.size(), SE3()));
+}
+BENCHMARK(BM_TakeUpWhatWasFound)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
 
 constexpr double kLook_s = 0.25, kPose_s = 0.05;
 constexpr int kKeyframes = 100, kLooksPerKeyframe = 12, kKeyframesInView = 8, kSightsOfOne = 8;

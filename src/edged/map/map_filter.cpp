@@ -36,10 +36,12 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
 
 void MapFilter::predict(const SE3& T_O_B, Timestamp t, double drift) {
   const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_B);
-  P_.topRows<6>() = F * P_.topRows<6>().eval();
-  P_.leftCols<6>() = P_.leftCols<6>().eval() * F.transpose();
+  const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = P_.leftCols<6>() * F.transpose();
+  P_.leftCols<6>() = moved;
+  P_.topRows<6>() = moved.transpose();
   T_O_B_ = T_O_B;
-  P_.topLeftCorner<6, 6>() += drift * drift * drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
+  P_.topLeftCorner<6, 6>() =
+      F * moved.topRows<6>() + drift * drift * drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
   t_ = t;
 }
 
@@ -159,9 +161,18 @@ bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, c
   error(moved) = -P_m * (inverse * g);
   if (!(misfit(sights, rows, error) < config_.max_misfit)) return false;
   correct(error);
-  P_(moved, moved) -= P_m * (inverse * H) * P_m.transpose();
-  P_ = 0.5 * (P_ + P_.transpose().eval());
+  shrink(moved, P_m, inverse * H);
   return true;
+}
+
+/// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that.
+void MapFilter::shrink(std::span<const Eigen::Index> m, const MatrixXd& P_m, const MatrixXd& A) {
+  const auto n = static_cast<Eigen::Index>(m.size());
+  MatrixXd less(n, n);
+  less.triangularView<Eigen::Lower>() = (P_m * A).eval() * P_m.transpose();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = j; i < n; ++i) P_(m[j], m[i]) = P_(m[i], m[j]) -= less(i, j);
+  }
 }
 
 }  // namespace edged

@@ -58,6 +58,7 @@ class MapFilter {
   Information gather(std::span<const MapSight> sights, std::span<const SightRow> rows) const;
   double misfit(std::span<const MapSight> sights, std::span<const SightRow> rows, const Eigen::VectorXd& error) const;
   void correct(const Eigen::VectorXd& error);
+  void shrink(std::span<const Eigen::Index> m, const Eigen::MatrixXd& P_m, const Eigen::MatrixXd& A);
 
   MapFilterConfig config_;
   SE3 T_M_O_, T_O_B_;
