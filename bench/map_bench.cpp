@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to know a place again, by the number of keyframes that it may be, and to know the whole path in the
-// end, by its length.
+// What it costs to know a place again and to take up what was found of it, by the number of keyframes, and to know the
+// whole path in the end, by its length.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <fstream>
 #include <random>
-#include <string>
 
 #include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
+#include "memory_use.hpp"
 
 namespace edged {
 namespace {
@@ -71,9 +70,12 @@ void BM_RecogniseAPlace(benchmark::State& state) {
 }
 BENCHMARK(BM_RecogniseAPlace)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
 
+constexpr int kKeyframesInView = 8, kSightsOfOne = 8;
+
+Eigen::Vector3d point_ahead(int i) { return {i % 3 - 1.0, i % 4 - 1.5, 3.0 + 0.3 * i}; }
+
 /// range(0): keyframes, of which eight are seen.
 void BM_TakeUpWhatWasFound(benchmark::State& state) {
-  constexpr int kSeen = 8, kSightsOfOne = 8;
   MapFilter filter{MapFilterConfig{}};
   filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
   for (int k = 0; k < state.range(0); ++k) {
@@ -82,9 +84,9 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
     filter.add_keyframe(SE3(), t);
   }
   std::vector<MapSight> sights;
-  for (std::size_t keyframe = 0; keyframe < kSeen; ++keyframe) {
+  for (std::size_t keyframe = 0; keyframe < kKeyframesInView; ++keyframe) {
     for (int i = 0; i < kSightsOfOne; ++i) {
-      const Eigen::Vector3d p(i % 3 - 1.0, i % 4 - 1.5, 3.0 + 0.3 * i);
+      const Eigen::Vector3d p = point_ahead(i);
       sights.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
     }
   }
@@ -93,7 +95,7 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
 BENCHMARK(BM_TakeUpWhatWasFound)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
 
 constexpr double kLook_s = 0.25, kPose_s = 0.05;
-constexpr int kKeyframes = 100, kLooksPerKeyframe = 12, kKeyframesInView = 8, kSightsOfOne = 8;
+constexpr int kKeyframes = 100, kLooksPerKeyframe = 12;
 
 /// A camera that sways before a wall for so long, an odometry whose drift the map has held, and what was found.
 FlightRecord record_of(double duration_s) {
@@ -119,9 +121,8 @@ FlightRecord record_of(double duration_s) {
     for (std::size_t n = 0; n < kKeyframesInView; ++n) {
       const std::size_t keyframe = (static_cast<std::size_t>(i / looks) + n) % made_at.size();
       for (int k = 0; k < kSightsOfOne; ++k) {
-        const Eigen::Vector3d p_M(k % 3 - 1.0, k % 4 - 1.5, 3.0 + 0.3 * k);
-        const Eigen::Vector3d p_K = true_pose(made_at[keyframe]).inverse() * p_M;
-        sights.push_back({keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * p_M).hnormalized(), 0.01});
+        const Eigen::Vector3d p_K = true_pose(made_at[keyframe]).inverse() * point_ahead(k);
+        sights.push_back({keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * point_ahead(k)).hnormalized(), 0.01});
       }
     }
     record.add_sights(T_O_B, SE3(), sights, SE3());
@@ -129,24 +130,14 @@ FlightRecord record_of(double duration_s) {
   return record;
 }
 
-/// Of this process [MB].
-double memory_mb(const std::string& which) {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    double kilobytes = 0.0;
-    if (word == which + ":" && status >> kilobytes) return kilobytes / 1024.0;
-  }
-  return NAN;
-}
-
 /// range(0): minutes.
 void BM_KnowThePathInTheEnd(benchmark::State& state) {
-  const double before_mb = memory_mb("VmRSS");
+  const double before_mb = resident_mb();
   const FlightRecord record = record_of(60.0 * static_cast<double>(state.range(0)));
-  state.counters["record_MB"] = memory_mb("VmRSS") - before_mb;
-  std::ofstream("/proc/self/clear_refs") << 5;  // what the most is counted from
+  state.counters["record_MB"] = resident_mb() - before_mb;
+  forget_most_resident();
   for (auto _ : state) benchmark::DoNotOptimize(record.path());
-  state.counters["most_MB"] = memory_mb("VmHWM") - before_mb;
+  state.counters["most_MB"] = most_resident_mb() - before_mb;
 }
 BENCHMARK(BM_KnowThePathInTheEnd)->Arg(6)->Arg(20)->Arg(60)->Unit(benchmark::kSecond)->Iterations(1);
 

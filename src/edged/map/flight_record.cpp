@@ -33,21 +33,9 @@ Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
 /// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
 class FlightRecord::Fit {
  public:
-  /// All keyframes, and one look of so many.
-  Fit(const FlightRecord& record, std::size_t of) : Fit(record, of, nullptr) {}
-  /// All looks, the keyframes where that has found them: a chain, of which time and memory are linear.
-  Fit(const FlightRecord& record, const Fit& together) : Fit(record, 1, &together) {}
-
-  const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
-  std::vector<Moved> T_M_O(std::size_t session) const {
-    std::vector<Moved> found;
-    for (const auto& [t, node] : nodes_[session])
-      found.push_back({t, graph_.poses()[node.number] * node.T_O_B.inverse()});
-    return found;
-  }
-
- private:
-  Fit(const FlightRecord& record, std::size_t of, const Fit* together)
+  /// One look of so many. together: keyframes stay where that has found them, which leaves a chain, of which time and
+  /// memory are linear.
+  Fit(const FlightRecord& record, std::size_t of, const Fit* together = nullptr)
       : config_(record.config_), of_(of), together_(together), keyframes_(record.keyframes_) {
     config_.drift_m *= kDriftInHindsight;
     config_.drift_yaw_deg *= kDriftInHindsight;
@@ -58,6 +46,15 @@ class FlightRecord::Fit {
     if (record.found_again()) graph_.solve();
   }
 
+  const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
+  std::vector<Moved> T_M_O(std::size_t session) const {
+    std::vector<Moved> found;
+    for (const auto& [t, node] : nodes_[session])
+      found.push_back({t, graph_.poses()[node.number] * node.T_O_B.inverse()});
+    return found;
+  }
+
+ private:
   void add_loaded(std::size_t k, std::span<const SE3> T_M_K) {
     keyframes_[k] = together_ ? graph_.add_known_pose(together_->keyframe(k)) : graph_.add_pose(T_M_K[k]);
     if (k > 0) graph_.add_step(k - 1, k, T_M_K[k - 1].inverse() * T_M_K[k], kRigid * kRigid * Matrix6d::Identity());
@@ -182,7 +179,7 @@ FlightRecord::Path FlightRecord::path() const {
   for (const Session& session : sessions_) looks += session.views.size();
   const std::size_t of = looks / kMostTogether + 1;
   const Fit together(*this, of);
-  const std::optional<Fit> chain = of > 1 ? std::optional<Fit>(std::in_place, *this, together) : std::nullopt;
+  const std::optional<Fit> chain = of > 1 ? std::optional<Fit>(std::in_place, *this, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
   const bool as_told = !found_again();
   Path path;

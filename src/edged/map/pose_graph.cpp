@@ -16,7 +16,6 @@ constexpr double kFarSigmas = 2.0;  // Cauchy's scale
 constexpr int kIterations = 12;
 constexpr int kTrusting = 3;       // of them that believe all sights: after a long drift, right ones are far off, too
 constexpr double kSettled = 1e-6;  // largest step of an iteration, metres and radians
-constexpr double kHeld = 1e18;     // information on the first pose
 
 }  // namespace
 
@@ -24,9 +23,7 @@ constexpr double kHeld = 1e18;     // information on the first pose
 /// which a >= b.
 class PoseGraph::Equations {
  public:
-  explicit Equations(const PoseGraph& graph) : rows_(graph.rows_), g_(Eigen::VectorXd::Zero(graph.unknowns_)) {
-    if (rows_[0] != kKnown) block(rows_[0], rows_[0]) = kHeld * Matrix6d::Identity();
-  }
+  explicit Equations(const PoseGraph& graph) : rows_(graph.rows_), g_(Eigen::VectorXd::Zero(graph.unknowns_)) {}
 
   void add(std::size_t pose_a, std::size_t pose_b, const Matrix6d& aa, const Matrix6d& ab, const Matrix6d& bb) {
     const Eigen::Index a = rows_[pose_a], b = rows_[pose_b];
@@ -76,7 +73,7 @@ std::size_t PoseGraph::add_known_pose(const SE3& T_M_B) {
 
 std::size_t PoseGraph::add_pose(const SE3& T_M_B) {
   const std::size_t pose = add_known_pose(T_M_B);
-  rows_[pose] = std::exchange(unknowns_, unknowns_ + 6);
+  if (pose > 0) rows_[pose] = std::exchange(unknowns_, unknowns_ + 6);
   return pose;
 }
 

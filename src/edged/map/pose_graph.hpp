@@ -18,7 +18,7 @@ class PoseGraph {
  public:
   /// A first guess; returns its number. The first one stays where it is.
   std::size_t add_pose(const SE3& T_M_B);
-  /// As that, and it stays where it is: no unknown.
+  /// A pose that stays where it is.
   std::size_t add_known_pose(const SE3& T_M_B);
   /// B was seen to lie at T_A_B from A; the covariance is that of B's error then.
   void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);

@@ -209,6 +209,7 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   low -= margin, high += margin;
   const Cuboid room{SE3(Eigen::Quaterniond::Identity(), 0.5 * (low + high)), 0.5 * (high - low), true};
   add_cuboid(scene, room, config.light, random);
+  const bool twins = config.twin_m > 0.0;
   const Eigen::Vector3d to_twin = config.twin_m * Eigen::Vector3d::UnitX();
   int placed = 0;
   // A room too full for another box keeps the ones it has.
@@ -224,11 +225,12 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
     const Eigen::Quaterniond upright(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
     box.T_W_O = SE3(standing ? upright : tumbled, p);
     if (half_blank && p.x() - box.half.norm() < room.T_W_O.translation().x()) continue;
+    if (!keeps_clear(box, config.clearance_m, path_W_C)) continue;
     const Cuboid twin{SE3(box.T_W_O.rotation(), p + to_twin), box.half};
-    if (!keeps_clear(box, config.clearance_m, path_W_C) || !keeps_clear(twin, config.clearance_m, path_W_C)) continue;
+    if (twins && !keeps_clear(twin, config.clearance_m, path_W_C)) continue;
     const std::size_t first = scene.faces.size();
     add_cuboid(scene, box, config.light, random);
-    if (config.twin_m > 0.0) add_moved(scene, first, to_twin);
+    if (twins) add_moved(scene, first, to_twin);
     ++placed;
   }
   if (half_blank) paint_half(scene, room, config.light, random);
