@@ -17,7 +17,7 @@
 namespace edged {
 
 /// Calls come in order of time, `load` or `restart` first. Frames: O of the odometry, a new one each start; M of the
-/// map. Half a megabyte a minute; path() takes seven times that while it works.
+/// map. Half a megabyte a minute; path() takes six times that while it works.
 class FlightRecord {
  public:
   explicit FlightRecord(const MapFilterConfig& config) : config_(config) {}
