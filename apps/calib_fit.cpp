@@ -57,11 +57,10 @@ bool is_about(const Finding& finding, const CalibrationFound& c) {
 CameraFit judge_camera(const CalibrationFound& c, const std::vector<Finding>& findings, const std::string& missing) {
   const auto said = std::ranges::find_if(findings, [&c](const Finding& f) { return is_about(f, c); });
   const Offset rotation = rotation_of(c), clock = clock_of(c);
-  const bool estimated = c.rotation_sigma_deg && c.time_sigma_ms;
-  if (estimated && (rotation.off() || clock.off())) return {c, Fit::DoesNotFit, contradiction(c, rotation, clock)};
+  if (is_off(c)) return {c, Fit::DoesNotFit, contradiction(c, rotation, clock)};
   if (said != findings.end())
     return {c, Fit::DoesNotFit, fmt::format("{}; {}", said->text.substr(said->text.find(": ") + 2), said->remedy)};
-  if (!estimated)
+  if (!c.estimated())
     return {c, Fit::CannotBeTold,
             missing.empty() ? "there was no estimate" : "no estimate, as it waited for " + missing};
   if (rotation.unknown() || clock.unknown())
@@ -74,6 +73,10 @@ const char* name_of(Fit fit) {
 }
 
 }  // namespace
+
+bool is_off(const CalibrationFound& found) {
+  return found.estimated() && (rotation_of(found).off() || clock_of(found).off());
+}
 
 CalibrationFit judge_fit(const std::vector<CalibrationFound>& found, std::vector<Finding> findings,
                          const std::string& missing) {

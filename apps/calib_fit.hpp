@@ -28,6 +28,9 @@ struct CalibrationFit {
   std::string why;
 };
 
+/// Whether the run found its rotation or its clock to be another than the one given.
+bool is_off(const CalibrationFound& found);
+
 /// found: without sigmas where there is no estimate. findings: those of `camera NAME: ...` count against that camera,
 /// other errors against all. missing: what an estimate waited for last, may be empty.
 CalibrationFit judge_fit(const std::vector<CalibrationFound>& found, std::vector<Finding> findings,

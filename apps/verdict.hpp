@@ -23,6 +23,8 @@ struct CalibrationFound {
   bool beyond = false;  ///< farther off than estimator.calibration.* says it may be: not corrected, but wrong
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of what was found; nothing where there is no estimate
   bool inverse = false;                                     ///< the inverse of the given rotation is what was found
+
+  bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }
 };
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config);
