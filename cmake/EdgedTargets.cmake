@@ -88,6 +88,11 @@ function(edged_export TARGET NAME)
   endif()
 endfunction()
 
+# All test programs without a label: what CI runs under the sanitizers.
+if(EDGED_TESTS)
+  add_custom_target(edged_short_tests)
+endif()
+
 # edged_test(NAME SOURCES ... DEPENDS ... TIMEOUT seconds LABELS label)
 # ctest runs each test of the program by itself; under sanitizers, which take long to start, the program as a whole
 # (GTEST_FILTER of the presets leaves out of it).
@@ -97,6 +102,9 @@ function(edged_test NAME)
     set(ARG_TIMEOUT 600)
   endif()
   add_executable(${NAME} ${ARG_SOURCES})
+  if(NOT ARG_LABELS)
+    add_dependencies(edged_short_tests ${NAME})
+  endif()
   target_link_libraries(${NAME} PRIVATE edged_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_precompile_headers(${NAME} REUSE_FROM edged_precompiled_tests)
   set_target_properties(${NAME} PROPERTIES POSITION_INDEPENDENT_CODE OFF)  # as the headers were compiled

@@ -74,6 +74,7 @@ TEST(Revisits, HoldTheDriftOfFramesInFastMotion) {
     config.seed = seed;
     config.duration_s = kDuration_s;
     config.events.threshold_on = config.events.threshold_off = 9.0;  // none: they would fill the memory
+    config.max_motion_px = 1.5;                                      // enough for frames
     flights.push_back(simulate_flight(config));
   }
   const Worth frames = worth_of_the_map(flights, Mode::Frames);
