@@ -43,4 +43,7 @@ struct FinalTrajectory {
   std::vector<MappedKeyframe> keyframes;  ///< those that the map still has
 };
 
+using Hindsight [[deprecated("use FinalTrajectory")]] = FinalTrajectory;
+using FoundPoint [[deprecated("use MapMatch")]] = MapMatch;
+
 }  // namespace edged

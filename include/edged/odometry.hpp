@@ -58,6 +58,7 @@ class Odometry {
   void load_map(std::string_view bytes);
   /// A map was loaded, and no place of it has been recognised yet.
   bool awaiting_relocalization() const;
+  [[deprecated("use awaiting_relocalization()")]] bool elsewhere() const { return awaiting_relocalization(); }
   /// What has been seen so far, for load_map. Nothing while awaiting_relocalization().
   std::optional<std::string> save_map() const;
 
@@ -70,6 +71,7 @@ class Odometry {
   /// were seen again, before and after. Without the map, or where nothing was seen again, the poses are those of the
   /// steps. Not causal. Takes seconds for an hour of flight; what it needs takes half a megabyte a minute.
   FinalTrajectory final_trajectory() const;
+  [[deprecated("use final_trajectory()")]] FinalTrajectory hindsight() const { return final_trajectory(); }
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;

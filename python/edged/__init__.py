@@ -12,6 +12,7 @@ Stamps are whole nanoseconds, of each sensor's own clock as recorded; lengths ar
 z up; B the body, which is the IMU: T_W_B maps points of B to W. Quaternions are x, y, z, w.
 """
 import json as _json
+import warnings as _warnings
 
 import numpy as _numpy
 
@@ -28,6 +29,30 @@ __all__ = [
 
 for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording, RecordingInfo, State, Status, Step):
     _class.__module__ = __name__
+
+
+def _deprecated(owner, old, new):
+    """`owner.old` still works for one version, with a warning that names `new`."""
+    def get(self):
+        _warnings.warn(f"{owner.__name__}.{old} is deprecated: use {new}", DeprecationWarning, stacklevel=2)
+        return getattr(self, new)
+    setattr(owner, old, property(get))
+
+
+for _owner, _old, _new in ((CameraStep, "survival", "survival_rate"), (CameraStep, "drawn", "rendered"),  # deprecated names
+                           (Step, "event_survival", "event_track_survival_rate"),  # deprecated
+                           (Step, "frame_survival", "frame_track_survival_rate"),  # deprecated
+                           (Step, "drawn", "rendered"), (Step, "found_again", "relocalized"),  # deprecated
+                           (Odometry, "elsewhere", "awaiting_relocalization"),  # deprecated
+                           (Odometry, "hindsight", "final_trajectory")):  # deprecated
+    _deprecated(_owner, _old, _new)
+
+
+def __getattr__(name):
+    if name == "Hindsight":  # deprecated
+        _warnings.warn("edged.Hindsight is deprecated: use FinalTrajectory", DeprecationWarning, stacklevel=2)  # deprecated
+        return FinalTrajectory
+    raise AttributeError(f"module 'edged' has no attribute {name!r}")
 
 
 def _rows(dtype, **columns):
