@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the pages promise: docs/demands.md holds, commands on any page have flags that there are, messages in docs/faq.md are
-those of the source. Usage: EDGED=path/to/edged docs_test.py"""
+"""What the pages promise: docs/demands.md holds, commands on any page have flags that exist, messages in docs/faq.md are
+those of the source, each design decision has a page with links that exist, ARCHITECTURE.md stays a map.
+Usage: EDGED=path/to/edged docs_test.py. Decisions, Architecture and Messages never start it."""
 import functools
 import pathlib
 import re
@@ -14,6 +15,7 @@ import unittest
 from program import WithFolder, edged
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+DECISIONS = ROOT / "docs/decisions"
 
 
 def demands(*args):
@@ -91,7 +93,7 @@ class Commands(unittest.TestCase):
     def test_commands_on_all_pages_have_flags_and_options_that_there_are(self):
         known = set(re.findall(r"^  ([a-z]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
         count = 0
-        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted(DECISIONS.glob("*.md"))]:
             for line in commands_of(page):
                 with self.subTest(page=page.name, line=line):
                     words = shlex.split(line)
@@ -124,6 +126,43 @@ class Messages(unittest.TestCase):
             with self.subTest(heading=heading):
                 parts = [re.escape(part) for part in heading.split("...")]
                 self.assertTrue(re.search(r"[^\n]*".join(parts), everything))
+
+
+def missing_links(page):
+    targets = re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text())
+    return [target for target in targets if "://" not in target and not (page.parent / target).exists()]
+
+
+class Decisions(unittest.TestCase):
+    PAGES = sorted(DECISIONS.glob("[0-9]*.md"))
+
+    def test_each_states_context_decision_evidence_and_consequences_in_short(self):
+        self.assertGreater(len(self.PAGES), 24)
+        for number, page in enumerate(self.PAGES, 1):
+            with self.subTest(page=page.name):
+                text = page.read_text()
+                self.assertTrue(page.name.startswith(f"{number:03}-"), "numbers have no holes")
+                self.assertRegex(text, rf"^# {number:03}\. \S")
+                self.assertEqual(re.findall(r"^## (.*)$", text, re.MULTILINE),
+                                 ["Context", "Decision", "Evidence", "Consequences"])
+                self.assertLessEqual(len(text.splitlines()), 40)
+
+    def test_the_index_has_each_page_once_by_its_title(self):
+        rows = re.findall(r"^\| (\d+) \| \[(.*)\]\((.*)\) \| \S.* \|$", (DECISIONS / "README.md").read_text(), re.MULTILINE)
+        self.assertEqual(rows, [(page.name[:3], page.read_text().splitlines()[0].split(". ", 1)[1], page.name)
+                                for page in self.PAGES])
+
+    def test_links_lead_to_files_that_exist(self):
+        for page in [*DECISIONS.glob("*.md"), ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md"]:
+            with self.subTest(page=page.name):
+                self.assertEqual(missing_links(page), [])
+
+
+class Architecture(unittest.TestCase):
+    def test_is_a_map_of_150_lines_without_commits(self):
+        text = (ROOT / "ARCHITECTURE.md").read_text()
+        self.assertLessEqual(len(text.splitlines()), 150)
+        self.assertNotRegex(text, r"\b(?=[a-f]*\d)[0-9a-f]{7,40}\b")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ std::string mode_name(Mode mode);
 /// The mode of that name. Throws InputError that lists them.
 Mode parse_mode(const std::string& name);
 
-/// When a packet is cut (ARCHITECTURE.md, section 4).
+/// When a packet is cut (docs/decisions/010-packet-rule.md).
 struct PacketizerConfig {
   double events_per_pixel = 0.35;      ///< a packet is cut after this many new events per pixel
   double window_per_pixel = 0.35;      ///< events a packet carries back in time, per pixel
