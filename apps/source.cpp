@@ -154,8 +154,8 @@ Source open_source(const SourceOptions& options) { return calibrated(options, op
 Source calibrated(const SourceOptions& options, Recording recording) {
   if (!recording.calibration)
     throw InputError::format(
-        "{}: brings no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE",
-        options.recording, rig_list());
+        "{}: has no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE", options.recording,
+        rig_list());
   if (!recording.calibration->has_extrinsics)
     throw InputError::format(
         "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "

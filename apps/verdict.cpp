@@ -55,14 +55,13 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
                                c.camera, c.rotation_deg, *c.rotation_sigma_deg),
                    kTurnRound});
   else if (c.rotation_sigma_deg && c.rotation_deg > std::max(kLeast_deg, kSigmas * *c.rotation_sigma_deg))
-    out.push_back(
-        {severity,
-         fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the calibration",
-                     c.camera, c.rotation_deg, *c.rotation_sigma_deg),
-         done + "; calibrate camera and IMU anew"});
+    out.push_back({severity,
+                   fmt::format("camera {}: its rotation to the IMU is {:.2f} deg +- {:.2f} deg off the calibration",
+                               c.camera, c.rotation_deg, *c.rotation_sigma_deg),
+                   done + "; calibrate camera and IMU anew"});
   if (c.time_sigma_ms && std::abs(shift_ms) > std::max(kLeast_ms, kSigmas * *c.time_sigma_ms))
     out.push_back({severity,
-                   fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was found, {:+.2f} ms is given",
+                   fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was estimated, {:+.2f} ms is given",
                                c.camera, c.time_offset_ms, *c.time_sigma_ms, c.given_offset_ms),
                    fmt::format("{}; set time_offset of this camera to {:.4f}", done, 1e-3 * c.time_offset_ms)});
 }

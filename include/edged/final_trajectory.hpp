@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is known of path and map: of a point the moment it is found again, of all of them in the end.
+// The final trajectory and the map: poses and map points estimated from all measurements, and single map matches.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace edged {
 
-/// A point of the map that was found again in an image.
+/// An observation of a map point in an image.
 struct MapMatch {
   Timestamp
       keyframe;  ///< when the keyframe was made that it belongs to, IMU clock: how far this observation reaches back
@@ -32,7 +32,7 @@ struct MappedKeyframe {
   Timestamp t;  ///< IMU clock
   SE3 T_W_B;
   std::string camera;   ///< whose image it was
-  int times_found = 0;  ///< in how many images points of it were found again
+  int times_found = 0;  ///< in how many later images its points were observed
   Timestamp found_at;   ///< the last time; t where they never were
   std::vector<Point> points;
 };

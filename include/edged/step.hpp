@@ -54,7 +54,7 @@ struct CameraStep {
   std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
 };
 
-/// Images share their pixels with those of the odometry: they are to be looked at, not drawn on.
+/// Images share their pixels with those of the odometry: read them, do not write into them.
 struct Step {
   Timestamp t;  ///< the packet's instant, IMU clock
   TrackingStatus status = TrackingStatus::Initializing;

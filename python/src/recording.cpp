@@ -94,7 +94,7 @@ py::object ground_truth(PyRecording& self) {
 Calibration matched_calibration(const PyRecording& self, Mode mode) {
   const DatasetInfo& info = self.dataset->info();
   if (!self.calibration)
-    throw InputError::format("{}: brings no calibration of cameras and IMU; open it with rig=NAME, one of known_rigs()",
+    throw InputError::format("{}: has no calibration of cameras and IMU; open it with rig=NAME, one of known_rigs()",
                              info.name);
   Calibration calibration = *self.calibration;
   if (!calibration.has_extrinsics)

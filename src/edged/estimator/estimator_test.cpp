@@ -163,7 +163,7 @@ TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
 TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
   const RunResult result = run({.speed = 0.0}, 5.0);
   EXPECT_FALSE(result.initialized);
-  EXPECT_THAT(result.waiting_for, testing::HasSubstr("motion that tells the scale"));
+  EXPECT_THAT(result.waiting_for, testing::HasSubstr("motion that determines the scale"));
 }
 
 EstimatorConfig self_calibrating() {

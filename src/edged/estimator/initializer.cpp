@@ -63,8 +63,8 @@ double turned_rad(const std::vector<ImuSample>& imu) {
 }
 
 std::string scale_text(double sigma, double most) {
-  return fmt::format("motion that tells the scale: known to {:.0f} %, {:.0f} % wanted", 100.0 * std::min(sigma, 9.99),
-                     100.0 * most);
+  return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % wanted",
+                     100.0 * std::min(sigma, 9.99), 100.0 * most);
 }
 
 /// Standard deviation of the newest state's tilt, of the worst direction [rad].

@@ -128,7 +128,7 @@ TEST(Initializer, WaitsForMotionThatTellsTheScale) {
   // Much parallax, but next to no acceleration: the accelerometer bias would explain any scale.
   std::vector<std::string> waited_for;
   EXPECT_FALSE(start({.tempo = 0.15}, 2.0, 4.0, &waited_for));
-  EXPECT_THAT(waited_for.back(), testing::HasSubstr("motion that tells the scale: known to"));
+  EXPECT_THAT(waited_for.back(), testing::HasSubstr("motion that determines the scale: known to"));
   EXPECT_THAT(waited_for.back(), testing::HasSubstr("% wanted"));
 }
 

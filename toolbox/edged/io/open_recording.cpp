@@ -138,7 +138,7 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   if (is_aedat4(head)) return open_aedat4(file, rig, options);
   if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
   throw InputError::format(
-      "{}: is no file that is known by its content; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5, zip "
+      "{}: unknown file format; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5, zip "
       "and text with an event in each line (`t x y p`, or columns named in the first line; also as .gz). Of a "
       "recording in several "
       "files give the folder (unpack an archive other than zip first, and what is no text out of .gz)",

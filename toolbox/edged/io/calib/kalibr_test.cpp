@@ -92,7 +92,7 @@ TEST_F(Kalibr, ModelsWithoutSupportAreRefusedByName) {
 TEST_F(Kalibr, WhatACameraSeesIsAskedForWhereNothingTells) {
   const std::string mute =
       edited(edited(kChain, "  rostopic: /davis/left/image_raw\n", ""), "  rostopic: /davis/right/image_raw\n", "");
-  EXPECT_THAT(complaint(mute), HasSubstr("camera cam0: nothing in its names tells"));
+  EXPECT_THAT(complaint(mute), HasSubstr("camera cam0: its names do not show"));
   EXPECT_THAT(complaint(mute, {.sees = {{"cam7", Sees::Events}}}), HasSubstr("has no camera cam7; it has: cam0, cam1"));
   EXPECT_THAT(camera_names(load(mute, {.sees = {{"cam0", Sees::Events}, {"cam1", Sees::Both}}})),
               ElementsAre("cam0:events", "events:events", "frames:frames"));

@@ -68,7 +68,7 @@ Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePat
   const auto guess = guess_sees(lens.words, lens.model.width(), lens.model.height());
   if (!guess && !options.otherwise)
     throw InputError::format(
-        "{0}: camera {1}: nothing in its names tells whether it sees events or frames: say it with `edged calib {0} "
+        "{0}: camera {1}: its names do not show whether it is an event or a frame camera: say it with `edged calib {0} "
         "--camera {1}=events --out rig.yaml` (or =frames, or =both for a DAVIS, one lens for the two)",
         path.string(), lens.name);
   return guess ? *guess : *options.otherwise;

@@ -143,7 +143,7 @@ TEST(EventCsv, OtherTextsAreNotTakenForEvents) {
   TempFolder folder;
   for (const char* text : {"0.0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0 1\n", "0.1 a b c\n", "t,x,y,p\n", "# nothing\n", "",
                            "1 2 3\n", "0.1 1.5 2.5 0.3\n0.2 1.5 2.5 0.3\n", "a,b,c,d\n1,2,3,4\n"})
-    EXPECT_THAT(input_error([&] { open_csv(folder.write("a.txt", text)); }), HasSubstr("known by its content")) << text;
+    EXPECT_THAT(input_error([&] { open_csv(folder.write("a.txt", text)); }), HasSubstr("unknown file format")) << text;
 }
 
 TEST(EventCsv, CutAnywhereItGivesTheWholeLinesBefore) {

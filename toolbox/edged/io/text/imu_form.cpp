@@ -203,7 +203,7 @@ Found by_gravity(const SourcePath& file, const Sample& sample) {
   const bool second = gravity_unit(median(sample.norms(kSecond))).has_value();
   if (first == second)
     throw InputError::format(
-        "{}: no first line names its columns, and gravity does not tell which are the accelerometer's; write one such "
+        "{}: no first line names the columns, and gravity does not identify those of the accelerometer; write one such "
         "as "
         "`{}`",
         file.string(), kWanted);

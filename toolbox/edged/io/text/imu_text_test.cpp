@@ -85,7 +85,7 @@ TEST(ImuText, WhatNoNameTellsIsFoundFromTheContentAndSaidToBeAGuess) {
 
 TEST(ImuText, WhatIsNotCertainIsRefusedWithALineToWrite) {
   const TempFolder folder;
-  EXPECT_THAT(refusal_of(folder, imu_lines("", 1, 0.8, 1)), HasSubstr("gravity does not tell"));
+  EXPECT_THAT(refusal_of(folder, imu_lines("", 1, 0.8, 1)), HasSubstr("gravity does not identify"));
   EXPECT_THAT(refusal_of(folder, imu_lines("t,gx,gy,gz,ax,ay,az", 1, 1, 42)),
               HasSubstr("accelerometer is not certain"));
   EXPECT_THAT(refusal_of(folder, imu_lines("t,gx,gy,gz,ax,ay,temperature", 1, 1, 9.8)), HasSubstr("each axis"));
