@@ -91,7 +91,7 @@ class Commands(unittest.TestCase):
     def test_commands_on_all_pages_have_flags_and_options_that_there_are(self):
         known = set(re.findall(r"^  ([a-z]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
         count = 0
-        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "bench/log").glob("*.md"))]:
             for line in commands_of(page):
                 with self.subTest(page=page.name, line=line):
                     words = shlex.split(line)
