@@ -8,6 +8,7 @@ import importlib.machinery
 import importlib.util
 import math
 import pathlib
+import re
 import shutil
 import statistics
 import subprocess
@@ -165,41 +166,70 @@ class Bench(unittest.TestCase):
             with self.assertRaises(figures.MarkerError):
                 figures.replaced(broken, name, "new")
 
-    def test_figures_has_a_place_for_every_part(self):
+    def test_figures_has_a_place_for_every_part_that_the_page_shows(self):
         figures = script("figures")
         results = (harness.ROOT / figures.RESULTS).read_text()
-        for name in figures.PARTS:
-            self.assertIn("new content", figures.replaced(results, name, "new content"))
-        figures.replaced((harness.ROOT / figures.README).read_text(), "mirrors", "new content")
+        for name, part in figures.PARTS.items():
+            if part.columns:
+                self.assertIn("new content", figures.replaced(results, name, "new content"))
+        self.assertEqual(results.count("<!-- figures:"), sum(bool(part.columns) for part in figures.PARTS.values()))
+        self.assertLess(len(results.encode()), 15_000)
 
-    def test_figures_takes_a_report_over_as_a_section(self):
-        report = "# Title\n\nwords\n\n## Every run\n\n| long |\n\n## Not as expected\n\n- one\n"
+    def test_the_page_shows_what_the_full_tables_hold(self):
         figures = script("figures")
-        self.assertEqual(figures.section(report, "Every run"), "words\n\n### Not as expected\n\n- one")
-        self.assertIn("| long |", figures.section(report, ""))
+        results, tables = (harness.ROOT / figures.RESULTS).read_text(), harness.ROOT / figures.TABLES
+        for name, part in figures.PARTS.items():
+            if not part.columns or not (tables / f"{name}.md").exists():
+                continue
+            report = (tables / f"{name}.md").read_text()
+            with self.subTest(part=name):
+                self.assertEqual(figures.replaced(results, name, figures.shown(part, report)), results)
+                for column in part.columns:
+                    self.assertRegex(report, rf"(?m)^\|.* {re.escape(column)} ")
 
-    def test_figures_tells_the_readme_what_fused_reached_on_the_mirrors(self):
-        rows = ["| recording | mode | range | ATE [mm] |", "| --- | --- | --- | ---: |", "| mirror_poster | fused |  | 5.8 |",
-                "| mirror_poster | events |  | 19.9 |", "| mirror_boxes | fused | - | *failed* |",
-                "| euroc_mh01 | frames | | 6.6 |"]
-        text = script("figures").readme_text("# T\n\nedged 0.1.0 (abc, changed), 1 May 2026, `x`: y\n\n" + "\n".join(rows))
-        for words in ("(edged 0.1.0 (abc, changed))", "poster 5.8 mm", "boxes failed", "rad/s not measured", "with frames: 6.6 mm"):
-            self.assertIn(words, text)
-
-    def test_figures_puts_table_and_picture_into_the_documents(self):
+    def test_figures_shows_of_a_report_what_measured_it_and_some_columns(self):
         figures = script("figures")
-        out, cache = self.folder / "out", self.folder / "cache"
-        for folder in (out / "docs", cache / "ablation"):
-            folder.mkdir(parents=True)
+        report = ("# Title\n\nedged 1 (abc), 1 May 2026, `bench/x --jobs 2`: words\non words.\n\n"
+                  "| name | mode   | ATE | worst | ATE |\n| ---  | ---    | ---: | ---: | ---: |\n"
+                  "| a    | fused  | 1   | 2     | 3   |\n| a    | events | 4   | 5     | 6   |\n"
+                  "| all  | fused  | 7   | 8     | 9   |\n\nMean: 1.\n\n## Every run\n\n| long |\n\n## Not as expected\n\n- one\n")
+        part = figures.Part((), (), ("name", "mode", "ATE"), without=("Every run",))
+        head = "edged 1 (abc), 1 May 2026, `bench/x --jobs 2`\n\n"
+        rest = "\n\nMean: 1.\n\n### Not as expected\n\n- one"
+        self.assertEqual(figures.shown(part, report), head + "| name | mode | ATE |\n| --- | --- | ---: |\n| a | fused | 1 |\n"
+                         "| a | events | 4 |\n| all | fused | 7 |" + rest)
+        part = figures.Part((), (), ("name", "ATE"), row="(?!all)", names=1, without=("Every run",))
+        self.assertEqual(figures.shown(part, report), head + "| name | fused ATE | events ATE |\n| --- | ---: | ---: |\n"
+                         "| a | 1 | 4 |" + rest)
+
+    def measured_by_figures(self, name, **made):
+        """The folder into which it wrote; made: the benchmark's report, table and picture in the cache."""
+        figures = script("figures")
+        out, cache, part = self.folder / "out", self.folder / "cache", figures.PARTS[name]
+        (out / "docs").mkdir(parents=True)
         (out / figures.RESULTS).write_text((harness.ROOT / figures.RESULTS).read_text())
-        (cache / "ablation/table.md").write_text("# Ablation\n\n## Mirrors\n\n| new |\n")
-        (cache / figures.PARTS["ablation-filters"].picture[0]).write_text("picture")
-        options = types.SimpleNamespace(out=out, edged=pathlib.Path(__file__), quick=False, jobs=1, caveats="")
-        with unittest.mock.patch.object(figures, "run", return_value="") as run:
-            figures.measure(options, "ablation-filters", {"EDGED_CACHE": str(cache)})
-        self.assertIn("enhancement", run.call_args.args[0])
-        self.assertIn("<!-- figures: ablation-filters -->\n\n### Mirrors\n\n| new |\n\n<!-- end: ablation-filters -->",
-                      (out / figures.RESULTS).read_text())
+        for file, key in ((part.table, "table"), (part.picture and part.picture[0], "picture")):
+            if file:
+                (cache / file).parent.mkdir(parents=True, exist_ok=True)
+                (cache / file).write_text(made[key])
+        options = types.SimpleNamespace(out=out, edged=pathlib.Path(__file__), quick=False, jobs=1, caveats="*Not committed.*\n\n")
+        with unittest.mock.patch.object(figures, "run", return_value=made.get("report", "")) as run:
+            figures.measure(options, name, {"EDGED_CACHE": str(cache)})
+        return figures, out, run.call_args.args[0]
+
+    def test_figures_puts_a_table_into_the_page_and_all_of_it_into_the_log(self):
+        report = "# T\n\nedged 1 (abc), 1 May 2026, `x`: y\n\n| format | read | written |\n| --- | ---: | ---: |\n| bag | 1 | 2 |\n"
+        figures, out, command = self.measured_by_figures("reading", report=report)
+        self.assertEqual(command, ("bench/reading",))
+        self.assertEqual((out / figures.TABLES / "reading.md").read_text(), report.replace("edged", "*Not committed.*\n\nedged"))
+        self.assertIn("<!-- figures: reading -->\n\n*Not committed.*\n\nedged 1 (abc), 1 May 2026, `x`\n\n| format | written |\n"
+                      "| --- | ---: |\n| bag | 2 |\n\n<!-- end: reading -->", (out / figures.RESULTS).read_text())
+
+    def test_figures_puts_the_ablation_into_the_log_with_its_picture(self):
+        figures, out, command = self.measured_by_figures("ablation-filters", table="# Ablation\n\n| new |\n", picture="picture")
+        self.assertIn("enhancement", command)
+        self.assertEqual((out / figures.TABLES / "ablation-filters.md").read_text(), "# Ablation\n\n*Not committed.*\n\n| new |\n")
+        self.assertEqual((out / figures.RESULTS).read_text(), (harness.ROOT / figures.RESULTS).read_text())
         self.assertEqual((out / "docs/images/ablation_filters.png").read_text(), "picture")
 
     def test_figures_refuses_a_program_that_is_not_what_is_committed(self):
