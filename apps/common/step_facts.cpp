@@ -8,22 +8,22 @@ namespace edged {
 
 KindNumbers numbers_of(const Step& step, Modality modality) {
   KindNumbers numbers;
-  double survival = 0.0;
+  double survival_rate = 0.0;
   int cameras = 0;
   for (const CameraStep& camera : step.cameras) {
     if (camera.modality != modality) continue;
     numbers.tracks += camera.tracks.size();
     numbers.event_rate_hz += camera.event_rate_hz;
-    survival += camera.survival;
+    survival += camera.survival_rate;
     ++cameras;
   }
-  if (cameras > 0) numbers.survival = survival / cameras;
+  if (cameras > 0) numbers.survival_rate = survival / cameras;
   return numbers;
 }
 
 std::optional<double> map_reach_s(const Step& step) {
-  const auto oldest = std::ranges::min_element(step.found, {}, &FoundPoint::keyframe);
-  return oldest == step.found.end() ? std::nullopt : std::optional(to_seconds(step.t - oldest->keyframe));
+  const auto oldest = std::ranges::min_element(step.map_matches, {}, &MapMatch::keyframe);
+  return oldest == step.map_matches.end() ? std::nullopt : std::optional(to_seconds(step.t - oldest->keyframe));
 }
 
 std::string reason_of(const Step& step) {
@@ -33,14 +33,14 @@ std::string reason_of(const Step& step) {
     case TrackingStatus::Lost:
       return step.lost_because;
     default:
-      if (step.found_again) return "found again in the map";
+      if (step.relocalized) return "found again in the map";
       return step.started.empty() ? "" : "started " + step.started;
   }
 }
 
 void StatusChanges::add(const Step& step) {
-  if (changes_.empty() || changes_.back().status != step.status || step.found_again) {
-    changes_.push_back({step.t, step.status, reason_of(step), step.found_again});
+  if (changes_.empty() || changes_.back().status != step.status || step.relocalized) {
+    changes_.push_back({step.t, step.status, reason_of(step), step.relocalized});
   } else if (const std::string reason = reason_of(step); !reason.empty() && !is_tracking(step.status)) {
     changes_.back().reason = reason;  // what was missing last says most
   }

@@ -13,9 +13,9 @@
 namespace edged {
 
 struct KindNumbers {
-  std::size_t tracks = 0;          ///< of all cameras
-  std::optional<double> survival;  ///< the mean; nothing where the run has no such camera
-  double event_rate_hz = 0.0;      ///< of all cameras
+  std::size_t tracks = 0;               ///< of all cameras
+  std::optional<double> survival_rate;  ///< the mean; nothing where the run has no such camera
+  double event_rate_hz = 0.0;           ///< of all cameras
 };
 
 KindNumbers numbers_of(const Step& step, Modality modality);
@@ -30,7 +30,7 @@ struct StatusChange {
   Timestamp t;
   TrackingStatus status;
   std::string reason;        ///< what was missing last, while it lasts; "" where there is nothing to say
-  bool found_again = false;  ///< in the map; the status may have been this before
+  bool relocalized = false;  ///< in the map; the status may have been this before
 };
 
 /// Why the status is what it is: what a start waits for, what ended the estimate, how it started.

@@ -96,35 +96,35 @@ Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows)
   return body;
 }
 
-std::vector<ClaimedPose> claims_of(const StatesTable& states) {
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states) {
   const auto covariance =
       numbers_of<12>(states, {"p_xx_m2", "p_xy_m2", "p_xz_m2", "p_yy_m2", "p_yz_m2", "p_zz_m2", "r_xx_rad2",
                               "r_xy_rad2", "r_xz_rad2", "r_yy_rad2", "r_yz_rad2", "r_zz_rad2"});
-  const std::vector<double>* found_again = states.find("found_again");
-  Claims claims;
+  const std::vector<double>* relocalized = states.find("relocalized");
+  CovarianceSamples samples;
   for_each_pose(states, [&](std::size_t row, const SE3& T_W_B) {
     Step step;
     step.t = states.t[row];
     step.status = states.status[row];
     step.state.T_W_B = T_W_B;
-    step.found_again = found_again && (*found_again)[row] == 1.0;
+    step.relocalized = relocalized && (*relocalized)[row] == 1.0;
     if (const auto P = covariance(row)) step.covariance = {symmetric(P->data()), symmetric(P->data() + 6)};
-    claims.add(step);
+    samples.add(step);
   });
-  return claims.all();
+  return samples.all();
 }
 
-void Claims::add(const Step& step) {
+void CovarianceSamples::add(const Step& step) {
   const bool good = step.status == TrackingStatus::Good;
   // Packets after the first of a loss only skip a number.
-  if (step.status == TrackingStatus::Lost || step.found_again) ++start_;
+  if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
   if (!step.covariance || !is_tracking(step.status)) return;
   const auto& [position, rotation] = *step.covariance;
-  const auto old = [&](const ClaimedPose& last) {
+  const auto old = [&](const PoseCovarianceSample& last) {
     return last.start == start_ && last.good && last.position == position;
   };
-  if (good && !claims_.empty() && old(claims_.back())) return;
-  claims_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
+  if (good && !samples_.empty() && old(samples_.back())) return;
+  samples_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
 }
 
 void read_pace(const std::filesystem::path& folder, StatesTable& states) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "edged/eval/consistency.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/final_trajectory.hpp"
 #include "edged/odometry.hpp"
 #include "edged/state.hpp"
 #include "edged/step.hpp"
@@ -34,18 +34,18 @@ StatesTable read_states(const std::filesystem::path& folder);
 Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows = nullptr);
 
 /// Those of the poses whose covariance was worked out anew.
-std::vector<ClaimedPose> claims_of(const StatesTable& states);
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states);
 
 /// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start,
 /// and so does being found again.
-class Claims {
+class CovarianceSamples {
  public:
   /// Every step, in time order.
   void add(const Step& step);
-  const std::vector<ClaimedPose>& all() const { return claims_; }
+  const std::vector<PoseCovarianceSample>& all() const { return samples_; }
 
  private:
-  std::vector<ClaimedPose> claims_;
+  std::vector<PoseCovarianceSample> samples_;
   int start_ = 0;
 };
 

@@ -7,8 +7,8 @@
 namespace edged {
 namespace {
 
-TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
-  Claims gathered;
+TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
+  CovarianceSamples gathered;
   Step step, lost;
   const auto add_at = [&](double t_s, Step& added) {
     added.t = timestamp_from_seconds(t_s);
@@ -25,9 +25,9 @@ TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
   add_at(6, step);
   step.status = TrackingStatus::Degraded;
   add_at(7, step);
-  step.found_again = true;
+  step.relocalized = true;
   add_at(8, step);
-  const std::vector<ClaimedPose>& claims = gathered.all();
+  const std::vector<PoseCovarianceSample>& claims = gathered.all();
   ASSERT_EQ(claims.size(), 5u);
   const std::vector<double> stamps{2, 4, 6, 7, 8};
   for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, timestamp_from_seconds(stamps[i]));

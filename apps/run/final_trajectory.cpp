@@ -29,8 +29,8 @@ class FinalTrajectoryFiles : public RunObserver {
  public:
   explicit FinalTrajectoryFiles(const RunContext& run) : run_(run) {}
   void on_end(const RunEnd& end) override {
-    write_hindsight(run_.folder, run_.frame, end.known,
-                    run_.heading("final: each by all that was found again before and after"));
+    write_final_trajectory(run_.folder, run_.frame, end.known,
+                           run_.heading("final: each by all that was found again before and after"));
   }
 
  private:
@@ -60,8 +60,8 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
          vertices;
 }
 
-void write_hindsight(const std::filesystem::path& folder, const OutputFrame& frame, const Hindsight& known,
-                     const std::vector<std::string>& comments) {
+void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
+                            const std::vector<std::string>& comments) {
   TrajectoryWriter tum(folder / "trajectory_final.tum", TrajectoryFormat::Tum, comments);
   for (const StampedPose& pose : known.poses) tum.add(frame(pose));
   tum.flush();

@@ -160,8 +160,8 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   for (const auto& observer : observers_) observer->on_summary(end);
   end.summary.status = broken_off ? "broken off" : run_status(run_.statistics, end.summary.verdict);
   {
-    const auto timer = run_.timings.measure("hindsight");
-    end.known = run_.odometry.hindsight();
+    const auto timer = run_.timings.measure("final_trajectory");
+    end.known = run_.odometry.final_trajectory();
   }
   compare_with_truth(end);
   end.summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
@@ -176,7 +176,7 @@ void Run::compare_with_truth(RunEnd& end) const {
   const Rig& rig = run_.source.calibration.rig;
   const StatesTable states = read_states(run_.folder);
   const Trajectory body = in_one_frame(body_poses(states));
-  if (end.truth && !body.empty()) evaluate_run(end.summary, body, claims_of(states), rig, *end.truth);
+  if (end.truth && !body.empty()) evaluate_run(end.summary, body, covariance_samples_of(states), rig, *end.truth);
   if (end.summary.evaluation) evaluate_final(end.summary, in_one_frame(end.known.poses), rig, *end.truth);
   end.path = lay_onto_truth(body, {}, rig, run_.frame.name(), end.truth, {});
 }

@@ -49,7 +49,7 @@ class RunMap : public RunObserver {
   void on_step(const Step& step) override {
     if (!is_tracking(step.status)) return;
     if (!first_pose_) first_pose_ = step.t;
-    if (!options_.load.empty() && !found_ && !run_.odometry.elsewhere()) found_ = step.t;
+    if (!options_.load.empty() && !found_ && !run_.odometry.awaiting_relocalization()) found_ = step.t;
   }
 
   /// Writes the map that is to be kept.

@@ -49,7 +49,7 @@ struct RunEnd {
   RunSummary summary;
   std::optional<GroundTruth> truth;
   std::optional<Timestamp> in_map_since;  ///< poses before are not in the frame of the map that was given
-  Hindsight known;
+  FinalTrajectory known;
   ReportPath path;  ///< as it was known at the time, laid onto the truth
 };
 
