@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "config_command.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <CLI/CLI.hpp>
 
@@ -12,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "config_source.hpp"
+#include "commands.hpp"
+#include "common/config_source.hpp"
 #include "edged/core/check.hpp"
-#include "exit_code.hpp"
-#include "suggestion.hpp"
+#include "program.hpp"
 
 namespace edged {
 namespace {

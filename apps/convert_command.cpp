@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "convert_command.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -12,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/source.hpp"
+#include "common/status_line.hpp"
 #include "edged/io/write_recording.hpp"
-#include "exit_code.hpp"
-#include "interrupt.hpp"
-#include "json_text.hpp"
-#include "source.hpp"
-#include "status_line.hpp"
 
 namespace edged {
 namespace {

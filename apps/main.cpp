@@ -6,22 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "calib_command.hpp"
-#include "config_command.hpp"
-#include "convert_command.hpp"
-#include "depth_command.hpp"
-#include "doctor_command.hpp"
-#include "enhance_command.hpp"
-#include "eval_command.hpp"
-#include "info_command.hpp"
-#include "manual_command.hpp"
-#include "map_command.hpp"
+#include "commands.hpp"
 #include "program.hpp"
-#include "report_command.hpp"
-#include "run_command.hpp"
-#include "show_command.hpp"
-#include "simulate_command.hpp"
-#include "version.hpp"
 
 namespace {
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "manual_command.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <CLI/CLI.hpp>
 
@@ -10,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "config_source.hpp"
+#include "commands.hpp"
+#include "common/config_source.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/sim/simulator.hpp"
-#include "exit_code.hpp"
-#include "version.hpp"
+#include "program.hpp"
 
 namespace edged {
 namespace {

@@ -3,6 +3,7 @@
 #include "program.hpp"
 
 #include <malloc.h>
+#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -16,12 +17,11 @@
 #include <system_error>
 #include <vector>
 
+#include "commands.hpp"
+#include "common/json_text.hpp"
+#include "common/log.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/config.hpp"
-#include "exit_code.hpp"
-#include "json_text.hpp"
-#include "log.hpp"
-#include "suggestion.hpp"
 
 namespace edged {
 namespace {
@@ -121,6 +121,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return tell(app, {kExitInput, "input", text_of(e)}, json);
   } catch (const std::system_error& e) {
     return tell(app, {kExitInput, "input", fmt::format("the system refuses: {}", e.what())}, json);
+  } catch (const spdlog::spdlog_ex& e) {
+    return tell(app, {kExitInput, "input", fmt::format("{}; is the disk full?", e.what())}, json);
   } catch (const std::exception& e) {
     return tell(app, {kExitBug, "bug", fmt::format("a bug, please report it with this line: {}", e.what())}, json);
   }

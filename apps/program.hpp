@@ -1,16 +1,30 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What every main does: reads the command line, and turns exceptions into one line and an exit code.
+// Which program this is, and what every main does: reads the command line, and turns exceptions into one line and an
+// exit code.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <string>
 
-#include "cli_fwd.hpp"
+#include "common/cli_fwd.hpp"
 
 namespace edged {
 
-/// Parses the command line, calls run, and returns the exit code (exit_code.hpp). run: may be chosen by the command
+/// Version of the project and state of the source tree at build time, e.g. "0.1.0 (1a2b3c4, changed)".
+extern const char* const kVersion;
+
+/// Parses the command line, calls run, and returns the exit code (commands.hpp). run: may be chosen by the command
 /// line.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
+
+/// Most edits of a letter by which a word is still taken for a mistyped one.
+inline std::size_t typing_errors(const std::string& word) { return std::max<std::size_t>(2, word.size() / 4); }
+
+/// "" where nothing is near.
+inline std::string did_you_mean(const std::string& nearest) {
+  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
 
 }  // namespace edged

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate_command.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <CLI/CLI.hpp>
 
@@ -12,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
+#include "common/interrupt.hpp"
+#include "common/status_line.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/write_recording.hpp"
 #include "edged/sim/simulator.hpp"
-#include "exit_code.hpp"
-#include "interrupt.hpp"
-#include "status_line.hpp"
 
 namespace edged {
 namespace {

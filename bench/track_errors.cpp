@@ -9,14 +9,13 @@
 #include <fstream>
 #include <map>
 
-#include "config_source.hpp"
+#include "commands.hpp"
+#include "common/config_source.hpp"
+#include "common/source.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/odometry.hpp"
-#include "exit_code.hpp"
 #include "program.hpp"
-#include "run_mode.hpp"
-#include "source.hpp"
 #include "track_truth.hpp"
 
 namespace edged {

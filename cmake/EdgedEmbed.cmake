@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-# Text files as C++: cmake -DFILES="a.css;b.js" -DHEADER=a.hpp -DOUTPUT=a.cpp -P EdgedEmbed.cmake
-# defines `const char* const kReportCss` for report.css in namespace edged, as the header declares them.
-set(CONTENT "#include \"${HEADER}\"\n\nnamespace edged {\n")
+# Text files as a header of C++: cmake -DFILES="a.css;b.js" -DOUTPUT=a.hpp -P EdgedEmbed.cmake
+# defines `const char* const kReportCss` for report.css in namespace edged. For one source to include.
+set(CONTENT "#pragma once\n\nnamespace edged {\n")
 foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
   string(REGEX MATCHALL "[A-Za-z0-9]+" words ${name})

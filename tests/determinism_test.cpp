@@ -8,8 +8,8 @@
 #include <opencv2/core/utility.hpp>
 #include <random>
 
+#include "common/step_facts.hpp"
 #include "end_to_end.hpp"
-#include "kind_numbers.hpp"
 
 namespace edged {
 namespace {

@@ -9,10 +9,10 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "covariance_samples.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "report/states_table.hpp"
 
 namespace edged {
 namespace {

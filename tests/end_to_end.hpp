@@ -14,7 +14,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/odometry.hpp"
 #include "edged/sim/simulator.hpp"
-#include "run_statistics.hpp"
+#include "run/run_statistics.hpp"
 
 namespace edged {
 

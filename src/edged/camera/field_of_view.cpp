@@ -27,4 +27,8 @@ FieldOfView field_of_view(const CameraModel& camera) {
                    angle_between_pixels(camera, {0.0, bottom}, {right, 0.0}))};
 }
 
+bool is_same_lens(const RigCamera& a, const RigCamera& b) {
+  return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
+}
+
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How wide a camera sees.
+// How wide a camera sees, and which cameras see through one lens.
 #pragma once
 
 #include "edged/rig.hpp"
@@ -16,5 +16,8 @@ struct FieldOfView {
 };
 
 FieldOfView field_of_view(const CameraModel& camera);
+
+/// Of a DAVIS, whose lens gives events and frames.
+bool is_same_lens(const RigCamera& a, const RigCamera& b);
 
 }  // namespace edged

@@ -122,10 +122,6 @@ CameraModel read_model(const YamlReader& camera, const std::string& distortion_k
                                  distortion == "none" ? std::vector<double>{} : camera.at(coefficients_key).numbers()});
 }
 
-bool is_same_lens(const RigCamera& a, const RigCamera& b) {
-  return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
-}
-
 std::optional<Sees> parse_sees(std::string_view text) {
   if (text == "events") return Sees::Events;
   if (text == "frames") return Sees::Frames;

@@ -24,9 +24,6 @@ struct Calibration {
   std::vector<std::string> warnings;  ///< what looks wrong, each one line
 };
 
-/// Of a DAVIS, whose lens gives events and frames.
-bool is_same_lens(const RigCamera& a, const RigCamera& b);
-
 /// What the pixels behind a lens give: those of a DAVIS give both.
 enum class Sees { Events, Frames, Both };
 

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calib_check.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/source.hpp"
+#include "common/status_line.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/odometry.hpp"
+#include "edged/pipeline/mode.hpp"
+#include "edged/survey/calibration_fit.hpp"
+#include "edged/survey/run_check.hpp"
+#include "inspect/survey.hpp"
+#include "run/run_statistics.hpp"
+#include "run/verdict.hpp"
+
+namespace edged {
+namespace {
+
+/// Each camera is asked by itself: events count as if no frames were beside, and have packets of their own, which a
+/// run leaves out to save time.
+OdometryConfig asking_each_camera() {
+  OdometryConfig config;
+  config.packets.min_interval_s = 0.015;
+  config.estimator.event_noise_inflation = 1.0;
+  return config;
+}
+
+/// A run: everything that `edged run` does but for its files.
+class CheckRun {
+ public:
+  /// begin: the cameras as the run takes them to be at first.
+  CheckRun(Source& source, const Rig& begin, Mode mode, bool quiet)
+      : source_(source),
+        check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics),
+        odometry_(begin, source.calibration.imu, mode, config_, {kInOrder}),
+        status_(quiet),
+        rig_(odometry_.rig()),
+        found_(compare()) {}
+
+  void go() {
+    InterruptibleDataset recording(*source_.dataset);
+    drive(
+        odometry_, [&] { return next(recording); }, [&](const Step& step) { return observe(step); });
+    status_.clear();
+  }
+
+  CalibrationFit fit() {
+    return judge_fit(found_, check_.findings(*source_.dataset, source_.dataset->ground_truth()),
+                     statistics_.waiting_for());
+  }
+  /// As found: by all that came before the estimate was last good.
+  const Rig& rig() const { return rig_; }
+
+ private:
+  std::optional<Measurement> next(Dataset& recording) {
+    std::optional<Measurement> measurement = recording.next();
+    if (measurement) check_.add(*measurement);
+    return measurement;
+  }
+
+  /// What a loss leaves behind is no estimate, so the last good one is kept.
+  bool observe(const Step& step) {
+    constexpr Duration kEvery = std::chrono::milliseconds(500);
+    statistics_.add(step);
+    if (step.status == TrackingStatus::Good && (!compared_ || step.t - *compared_ >= kEvery)) {
+      compared_ = step.t;
+      rig_ = odometry_.rig();
+      found_ = compare();
+    }
+    if (status_.due()) status_.show(progress_text(step.t, source_.dataset->info(), "checked"));
+    return interrupt_signal() == 0;
+  }
+
+  std::vector<CalibrationFound> compare() {
+    return compare_calibrations(source_.calibration.rig, odometry_, config_.estimator.calibration);
+  }
+
+  Source& source_;
+  OdometryConfig config_ = asking_each_camera();
+  RunCheck check_;
+  Odometry odometry_;
+  StatusLine status_;
+  RunStatistics statistics_;
+  std::optional<Timestamp> compared_;
+  Rig rig_;
+  std::vector<CalibrationFound> found_;
+};
+
+struct Checked {
+  CalibrationFit fit;
+  Rig found;
+};
+
+Checked check_from(const Rig& begin, Source& source, Mode mode, bool quiet) {
+  CheckRun run(source, begin, mode, quiet);
+  run.go();
+  return {run.fit(), run.rig()};
+}
+
+bool estimated(const CalibrationFit& fit) {
+  return std::ranges::all_of(fit.cameras, [](const CameraFit& camera) { return camera.found.estimated(); });
+}
+
+/// Where the run found cameras to be off, again from there: what it saw while it had them wrong, and cannot take back,
+/// holds what it finds by up to 1.6 ms.
+Checked check(const CalibCheckOptions& options, Source& source, Mode mode) {
+  Checked first = check_from(source.calibration.rig, source, mode, options.quiet);
+  const bool off = std::ranges::any_of(first.fit.cameras, [](const CameraFit& camera) { return is_off(camera.found); });
+  if (!off || interrupt_signal() != 0 || is_live(options.source)) return first;
+  source.dataset = open_uncalibrated(options.source).dataset;
+  Checked second = check_from(first.found, source, mode, options.quiet);
+  return estimated(second.fit) ? second : first;
+}
+
+int exit_code_of(Fit fit) {
+  return fit == Fit::Fits ? kExitOk : fit == Fit::DoesNotFit ? kExitNotTrusted : kExitNeverGood;
+}
+
+}  // namespace
+
+int check_calibration(CalibCheckOptions options) {
+  catch_interrupts();
+  if (!options.source.piece.to_s && !options.source.duration_s) options.source.duration_s = kCheckedSeconds;
+  Source source = open_source(options.source);
+  const Mode mode = choose_mode(options.mode, source.dataset->info());
+  match_cameras(source, mode);
+  const auto [fit, found] = check(options, source, mode);
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit));
+  if (!options.out.empty()) write_file(options.out, to_yaml(with_found(source.calibration, found)));
+  return exit_code_of(fit.fit);
+}
+
+}  // namespace edged

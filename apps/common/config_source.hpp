@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Options of a run as the command line gives them: a file, then single values on top of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/cli_fwd.hpp"
+#include "edged/live/measurement_queue.hpp"
+#include "edged/options.hpp"
+
+namespace edged {
+
+/// Every option of a run.
+struct RunConfig {
+  OdometryConfig odometry;
+  QueueConfig live;  ///< what may wait in a live run
+  void visit(ConfigFields& fields);
+};
+
+struct ConfigSource {
+  std::filesystem::path file;
+  std::vector<std::string> assignments;  ///< "key=value"
+};
+
+/// Adds --config and --set.
+void add_config_options(CLI::App& command, ConfigSource& source);
+
+/// Throws InputError that names the file and line, or the key.
+RunConfig load_config(const ConfigSource& source);
+
+/// As yaml.
+std::string options_text(RunConfig config);
+
+}  // namespace edged

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the pictures of this program share: colours and lettering, small pictures of tracks, pages of many.
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "edged/frontend/track.hpp"
+
+namespace edged {
+
+inline const cv::Scalar kPaper(255, 255, 255), kInk(60, 50, 40);  // blue, green, red
+
+inline void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, double size = 0.45,
+                     const cv::Scalar& ink = kInk) {
+  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, ink, 1, cv::LINE_AA);
+}
+
+/// JPEG, not wider than widest_px. Each corner with where it was one image ago; the image is not written on.
+std::vector<unsigned char> track_picture(const cv::Mat& image, const std::vector<Track>& tracks, int widest_px);
+
+struct SheetCell {
+  std::string caption;
+  cv::Mat image;  ///< CV_8UC1; empty: the cell stays blank
+};
+
+using SheetRow = std::vector<SheetCell>;
+
+/// CV_8UC3, with the title's lines on top. Every image is scaled to the width of its cell.
+cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows);
+
+}  // namespace edged

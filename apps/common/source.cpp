@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "common/source.hpp"
+
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/interrupt.hpp"
+#include "common/numbers.hpp"
+#include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/camera_names.hpp"
+#include "edged/io/geometry.hpp"
+#include "edged/io/open_recording.hpp"
+#include "edged/io/text/imu_text.hpp"
+#include "edged/sim/dimmed_frames.hpp"
+#include "edged/sim/simulated_pair.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::string_view kSimulatorPrefix = "sim:";
+
+/// What the user chose, if anything.
+std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
+  if (!options.calib.empty()) return load_calibration(options.calib);
+  if (!options.rig.empty()) return load_rig(options.rig);
+  return std::nullopt;
+}
+
+std::string rig_list() {
+  std::string list;
+  for (const std::string& name : known_rigs()) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+RecordingOptions recording_options(const SourceOptions& options) {
+  RecordingOptions chosen;
+  if (!options.geometry.empty()) {
+    chosen.geometry = parse_geometry(options.geometry);
+    if (!chosen.geometry)
+      throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
+  }
+  chosen.cameras = options.cameras;
+  chosen.interrupted = [] { return interrupt_signal() != 0; };
+  if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
+  for (const std::string& text : options.topics) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw InputError::format("--topic {}: write ROLE=NAME, such as events=/dvs/events", text);
+    chosen.topics[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return chosen;
+}
+
+/// With the calibration that was chosen, or which the recording brings, if any.
+Recording open_whole(const SourceOptions& options) {
+  std::optional<Calibration> calibration = chosen_calibration(options);
+  if (const std::optional<SimulatorConfig> config = simulator_config(options)) {
+    const auto opened = [&](auto simulator) -> Recording {
+      if (!calibration) calibration = simulator->calibration();
+      return {std::move(simulator), std::move(calibration)};
+    };
+    const bool both = std::ranges::any_of(options.cameras, [](const std::string& name) { return name.ends_with('2'); });
+    if (both) return opened(std::make_unique<SimulatedPair>(*config));
+    return opened(std::make_unique<Simulator>(*config));
+  }
+  Recording recording =
+      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
+  if (calibration) recording.calibration = std::move(calibration);
+  return recording;
+}
+
+}  // namespace
+
+std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
+  if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
+  const std::string text = options.recording.substr(kSimulatorPrefix.size());
+  const std::size_t colon = text.find(':');
+  SimulatorConfig config = simulator_preset(text.substr(0, colon));
+  if (colon != std::string::npos) ConfigFields::of(config).set("seed", text.substr(colon + 1));
+  return config;
+}
+
+void add_reading_options(CLI::App& command, SourceOptions& options) {
+  CLI::Option* rig = command.add_option("--rig", options.rig, "Calibration that ships with the program, by name");
+  command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
+  command.add_option("--geometry", options.geometry,
+                     "WIDTHxHEIGHT [px] of the event sensor, for files that do not hold it");
+  command
+      .add_option("--time-unit", options.time_unit, "Unit of the stamps in a plain event file [found from its content]")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
+  command
+      .add_option("--topic", options.topics,
+                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu or truth; NAME none leaves "
+                  "it out; may be repeated "
+                  "[the only topic of a fitting type]")
+      ->allow_extra_args(false);
+  command
+      .add_option("--from,--start", options.piece.from_s, "Leave out what comes before [s since the recording's begin]")
+      ->check(non_negative_number());
+  CLI::Option* to = command.add_option("--to", options.piece.to_s,
+                                       "Leave out what comes from then on [s since the recording's begin]");
+  to->check(non_negative_number());
+  command.add_option("--duration", options.duration_s, "Leave out what comes so many seconds after --from")
+      ->check(positive_number())
+      ->excludes(to);
+  command
+      .add_option("--dim-frames", options.dim_frames,
+                  "Frames as their camera would give them in so much less light: 0.06 leaves some 20 grey levels")
+      ->check(CLI::Range(1e-3, 1.0));
+}
+
+void add_source_options(CLI::App& command, SourceOptions& options) {
+  command
+      .add_option("RECORDING", options.recording,
+                  "Folder or file (format found by content), tcp://HOST:PORT[,PORT...] of a DV server, or "
+                  "sim:PRESET[:SEED]")
+      ->required();
+  command.add_option("--imu", options.imu,
+                     "IMU samples from a csv or txt on the recording's clock, instead of its own; columns and units by "
+                     "the names in its first line, else found");
+  add_reading_options(command, options);
+}
+
+Recording open_uncalibrated(const SourceOptions& options) {
+  Recording recording = open_whole(options);
+  if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  PieceBounds piece = options.piece;
+  if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;
+  if (piece.from_s > 0.0 || piece.to_s)
+    recording.dataset = std::make_unique<RecordingPiece>(std::move(recording.dataset), piece);
+  if (options.dim_frames)
+    recording.dataset = std::make_unique<DimmedFrames>(std::move(recording.dataset), *options.dim_frames);
+  return recording;
+}
+
+bool is_live(const SourceOptions& options) { return options.recording.starts_with(kTcpPrefix); }
+
+cv::Size recording_event_sensor(const Recording& recording) {
+  const DatasetInfo& info = recording.dataset->info();
+  if (!info.event_sensor.empty()) return info.event_sensor;
+  const RigCamera* camera = recording.calibration ? recording.calibration->rig.find(Modality::Events) : nullptr;
+  if (!camera)
+    throw InputError::format("{}: does not tell the size of its event sensor; give --geometry WIDTHxHEIGHT", info.name);
+  return {camera->model.width(), camera->model.height()};
+}
+
+Source open_source(const SourceOptions& options) { return calibrated(options, open_uncalibrated(options)); }
+
+Source calibrated(const SourceOptions& options, Recording recording) {
+  if (!recording.calibration)
+    throw InputError::format(
+        "{}: has no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE", options.recording,
+        rig_list());
+  if (!recording.calibration->has_extrinsics)
+    throw InputError::format(
+        "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
+        "or "
+        "--calib FILE",
+        options.calib.empty() ? options.recording : options.calib.string());
+  if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
+  std::optional<int> seed;
+  if (const std::optional<SimulatorConfig> config = simulator_config(options)) seed = config->seed;
+  return {std::move(recording.dataset), std::move(*recording.calibration), seed};
+}
+
+void match_cameras(Source& source, Mode mode) {
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    if (!uses(mode, modality)) continue;
+    const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);
+    if (!assumed.empty()) spdlog::warn(assumed);
+  }
+}
+
+}  // namespace edged

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "common/status_line.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string_view>
+
+namespace edged {
+namespace {
+
+constexpr auto kTerminalPeriod = std::chrono::milliseconds(100);
+constexpr auto kPlainPeriod = std::chrono::seconds(5);
+constexpr const char* kWipe = "\r\x1b[K";
+
+std::size_t terminal_columns() {
+  winsize size = {};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+StatusLine::StatusLine(bool quiet)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
+
+StatusLine::~StatusLine() { clear(); }
+
+bool StatusLine::due() const {
+  if (quiet_) return false;
+  const auto since = std::chrono::steady_clock::now() - last_;
+  return terminal_ ? since >= kTerminalPeriod : since >= kPlainPeriod;
+}
+
+void StatusLine::show(const std::string& text) {
+  if (quiet_) return;
+  last_ = std::chrono::steady_clock::now();
+  if (terminal_) {
+    std::fputs((kWipe + fit_columns(text, terminal_columns() - 1)).c_str(), stderr);
+  } else {
+    std::fputs((text + "\n").c_str(), stderr);
+  }
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void StatusLine::clear() {
+  if (shown_ && terminal_) {
+    std::fputs(kWipe, stderr);
+    std::fflush(stderr);
+  }
+  shown_ = false;
+}
+
+void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
+  const std::string_view text(message.payload.data(), message.payload.size());
+  const char* wipe = isatty(STDERR_FILENO) == 1 ? kWipe : "";
+  const auto level = spdlog::level::to_string_view(message.level);
+  fmt::print(stderr, "{}edged: {}: {}\n", wipe, std::string_view(level.data(), level.size()), text);
+}
+
+void StderrSink::flush_() { std::fflush(stderr); }
+
+std::string si_number(double value) {
+  if (value >= 1e9) return fmt::format("{:.2f} G", value * 1e-9);
+  if (value >= 1e6) return fmt::format("{:.2f} M", value * 1e-6);
+  if (value >= 1e3) return fmt::format("{:.1f} k", value * 1e-3);
+  return fmt::format("{:.0f} ", value);
+}
+
+std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what) {
+  const Timestamp begin = info.begin.value_or(Timestamp());
+  const std::string whole = info.end ? fmt::format(" / {:.1f}", to_seconds(*info.end - begin)) : "";
+  return fmt::format("{:.1f}{} s {}", to_seconds(t - begin), whole, what);
+}
+
+std::string wrapped(const std::string& line, std::size_t indent) {
+  std::string text, rest = line;
+  while (rest.size() > kColumns) {
+    std::size_t at = rest.rfind(' ', kColumns);
+    if (at == std::string::npos || at <= indent) at = rest.find(' ', std::max(kColumns, indent));
+    if (at == std::string::npos) break;
+    const std::size_t end = rest.find_last_not_of(' ', at);
+    text += rest.substr(0, end + 1) + '\n';
+    rest = std::string(indent, ' ') + rest.substr(at + 1);
+  }
+  return text + rest;
+}
+
+std::string fit_columns(const std::string& text, std::size_t columns) {
+  const std::string line = text.substr(0, text.find('\n'));
+  return line.size() <= columns ? line : line.substr(0, columns);
+}
+
+}  // namespace edged

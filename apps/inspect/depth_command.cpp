@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "edged/core/resources.hpp"
+#include "edged/core/statistics.hpp"
+#include "edged/depth/depth_config.hpp"
+#include "edged/depth/network.hpp"
+#include "edged/events/voxel_grid.hpp"
+
+namespace edged {
+namespace {
+
+struct DepthOptions {
+  std::string model = NetworkDepthConfig().model;
+  bool json = false;
+};
+
+/// Median over windows of a DAVIS240C's central region [ms of the processor, which other programs do not lengthen].
+double inference_ms(DepthNetwork& network) {
+  const cv::Size image(240, 180);
+  const cv::Rect seen =
+      grown_region(central_region(image, DepthConfig().region_share), NetworkDepthConfig().margin_px, image);
+  cv::Mat grid(std::vector<int>{1, network.model().bins, seen.height, seen.width}, CV_32FC1);
+  cv::RNG random(1);
+  random.fill(grid, cv::RNG::NORMAL, 0.0, 1.0);
+  std::vector<double> times;
+  for (int i = 0; i < 21; ++i) {
+    const std::clock_t begin = std::clock();
+    network.infer(grid);
+    times.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  return median(std::move(times));
+}
+
+void print_text(const DepthModel& m, const std::filesystem::path& file, double ms) {
+  const auto size = static_cast<double>(std::filesystem::file_size(file));
+  fmt::print("{}: {} ({:.2f} MB)\n", m.name, file.string(), 1e-6 * size);
+  if (!m.note.empty()) fmt::print("  {}\n", m.note);
+  fmt::print("  input   {} bins over {:.0f} ms of events{}, {}\n", m.bins, 1e3 * m.window_s,
+             m.shrink > 1 ? fmt::format(", at 1/{} of the resolution", m.shrink) : "",
+             m.states.empty() ? "no memory" : "recurrent");
+  fmt::print("  output  {:.2f} .. {:.0f} m, depth = {} exp(-{} (1 - y))", m.d_max_m * std::exp(-m.alpha), m.d_max_m,
+             m.d_max_m, m.alpha);
+  if (m.focal_px > 0.0) fmt::print(", times the focal length / {:.1f} px", m.focal_px);
+  fmt::print("\n  error   {:.2f} (rms of ln depth, as its makers measured it)\n", m.sigma_ln);
+  fmt::print("  time    {:.1f} ms of one core a window of a DAVIS240C\n", ms);
+  fmt::print("Others: edged depth fetch\n");
+}
+
+int run_depth(const DepthOptions& options) {
+  const std::filesystem::path file = find_depth_model(options.model);
+  DepthNetwork network(file);
+  const DepthModel& m = network.model();
+  const double ms = inference_ms(network);
+  if (!options.json) {
+    print_text(m, file, ms);
+    return kExitOk;
+  }
+  const nlohmann::ordered_json json = {{"name", m.name},         {"file", file.string()},     {"note", m.note},
+                                       {"bins", m.bins},         {"window_s", m.window_s},    {"shrink", m.shrink},
+                                       {"d_max_m", m.d_max_m},   {"alpha", m.alpha},          {"focal_px", m.focal_px},
+                                       {"sigma_ln", m.sigma_ln}, {"states", m.states.size()}, {"inference_ms", ms}};
+  fmt::print("{}\n", json.dump(2));
+  return kExitOk;
+}
+
+/// Nothing is fetched: the published weights come under their authors' terms, so that the user gets them.
+int explain_fetch() {
+  const std::vector<std::filesystem::path> folders = resource_folders("depth");
+  const std::filesystem::path target = (folders.empty() ? "." : folders.front()) / "e2depth.onnx";
+  fmt::print(
+      "The published e2depth network cannot ship with this program: its weights come under their authors' terms.\n"
+      "  1. Get E2DEPTH_si_grad_loss_mixed.pth.tar from the page of github.com/uzh-rpg/rpg_e2depth.\n"
+      "  2. tools/depth/convert_checkpoint.py E2DEPTH_si_grad_loss_mixed.pth.tar --out {}\n"
+      "     (Debian: python3-numpy, python3-onnx; nothing in the checkpoint is executed)\n"
+      "  3. edged depth e2depth\n"
+      "     edged run RECORDING --set depth.source=fused --set depth.network.model=e2depth\n"
+      "Its depths begin at 2 m and its scale is loose: use it fused, where landmarks give the scale.\n"
+      "Training a network of your own: tools/depth/train.py, docs/depth_model.md.\n"
+      "It is {}.\n",
+      target.string(), std::filesystem::exists(target) ? "there" : "not there yet");
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_depth_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<DepthOptions>();
+  CLI::App* depth = app.add_subcommand("depth", "Show a depth network and its cost here");
+  depth->add_option("MODEL", options->model, "Name of one that is installed, or the path of an .onnx file")
+      ->capture_default_str();
+  depth->add_flag("--json", options->json, "Print json instead of text");
+  depth->footer(
+      "Examples:\n"
+      "  edged depth\n"
+      "  edged depth small_recurrent --json\n"
+      "  edged depth fetch");
+  CLI::App* fetch = depth->add_subcommand("fetch", "Say where the published e2depth weights come from and go");
+  depth->callback([options, fetch, &chosen] {
+    chosen = [options, fetching = fetch->parsed()] { return fetching ? explain_fetch() : run_depth(*options); };
+  });
+}
+
+}  // namespace edged

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/log.hpp"
+#include "edged/survey/diagnosis.hpp"
+#include "inspect/survey.hpp"
+
+namespace edged {
+namespace {
+
+struct DoctorOptions {
+  SourceOptions source;
+  bool quiet = false, json = false;
+};
+
+/// The first camera of each kind, as the odometry uses them.
+std::vector<RigCamera> cameras_to_check(const Recording& recording) {
+  std::vector<RigCamera> cameras;
+  if (!recording.calibration) return cameras;
+  const DatasetInfo& info = recording.dataset->info();
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    const bool recorded = modality == Modality::Events ? info.has_events : info.has_frames;
+    const RigCamera* camera = recording.calibration->rig.find(modality);
+    if (recorded && info.has_imu && camera) cameras.push_back(*camera);
+  }
+  return cameras;
+}
+
+/// Everything that was said while reading counts as a finding, too: nothing is printed that the summary does not hold.
+void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
+  for (std::string& line : lines) findings.push_back({Severity::Warning, std::move(line), ""});
+}
+
+int run_doctor(const DoctorOptions& options) {
+  catch_interrupts();
+  HeldWarnings held;
+  const Recording recording = open_uncalibrated(options.source);
+  std::vector<VisualTurns> visual;
+  GyroIntegral gyro;
+  const std::vector<RigCamera> cameras = cameras_to_check(recording);
+  for (const RigCamera& camera : cameras) visual.emplace_back(camera);
+  const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
+    if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample);
+    for (VisualTurns& turns : visual) turns.add(measurement);
+  });
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+
+  std::vector<CameraCheck> checks;
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    checks.push_back({cameras[i], recording.calibration->has_extrinsics,
+                      compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
+  std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
+  add_log(held.take(), findings);
+  if (read.damage)
+    findings.push_back({Severity::Error, *read.damage, "what is above tells of the recording up to there"});
+  fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n" : to_text(findings));
+  const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
+  return ill ? kExitInput : kExitOk;
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<DoctorOptions>();
+  CLI::App* doctor = app.add_subcommand(
+      "doctor", "What is wrong with a recording or its calibration, and what to do about it (exit code 3 for errors)");
+  add_source_options(*doctor, options->source);
+  doctor->add_flag("--quiet", options->quiet, "No status line");
+  doctor->add_flag("--json", options->json, "Print json instead of text");
+  doctor->footer("Example:\n  edged doctor flight.bag --calib camchain-imucam.yaml");
+  doctor->callback([options, &chosen] { chosen = [options] { return run_doctor(*options); }; });
+}
+
+}  // namespace edged

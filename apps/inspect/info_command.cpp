@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "edged/core/check.hpp"
+#include "edged/io/geometry.hpp"
+#include "inspect/survey.hpp"
+
+namespace edged {
+namespace {
+
+struct InfoOptions {
+  SourceOptions source;
+  bool quiet = false, json = false;
+};
+
+std::string calibration_text(const Recording& recording) {
+  if (!recording.calibration) return "none: give --rig or --calib";
+  std::string cameras;
+  for (const RigCamera& camera : recording.calibration->rig.cameras) cameras += " " + camera.name;
+  return (recording.calibration->has_extrinsics ? "cameras and IMU:" : "intrinsics only:") + cameras;
+}
+
+/// A size that is not known is among what one asks for here: the pixels that fired tell it.
+Recording open_of_any_size(SourceOptions source) {
+  try {
+    return open_uncalibrated(source);
+  } catch (const UnknownSensorSize& unknown) {
+    source.geometry = "2048x2048";
+    spdlog::warn(fmt::format("{}, by the pixels below; here it is read as {}", unknown.what(), source.geometry));
+    return open_uncalibrated(source);
+  }
+}
+
+int run_info(const InfoOptions& options) {
+  catch_interrupts();
+  const Recording recording = open_of_any_size(options.source);
+  const auto [survey, damage] = survey_recording(*recording.dataset, options.quiet, {});
+  if (options.json)
+    fmt::print("{}\n", json_text(to_json(survey)));
+  else
+    fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
+  if (damage) throw InputError(*damage);
+  if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts reach as far as was read");
+  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* info = app.add_subcommand("info", "What a recording holds: streams, rates, gaps, hot pixels, IMU noise");
+  add_source_options(*info, options->source);
+  info->add_flag("--quiet", options->quiet, "No status line");
+  info->add_flag("--json", options->json, "Print json instead of text");
+  info->footer("Example:\n  edged info flight.bag");
+  info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
+}
+
+}  // namespace edged

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/json_text.hpp"
+#include "edged/core/angles.hpp"
+#include "edged/core/check.hpp"
+#include "edged/map/map_merge.hpp"
+#include "run/final_trajectory.hpp"
+#include "run/run_map.hpp"
+
+namespace edged {
+namespace {
+
+struct MapCommandOptions {
+  std::filesystem::path file, other, out;
+  bool json = false;
+};
+
+std::vector<MappedKeyframe> mapped(const SavedMap& map) {
+  std::vector<MappedKeyframe> all;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) all.push_back(mapped(map.keyframes[k], map.T_M_K[k]));
+  return all;
+}
+
+nlohmann::ordered_json describe(const SavedMap& map) {
+  Eigen::AlignedBox3d box;
+  std::map<std::string, std::size_t> keyframes;
+  std::size_t points = 0;
+  for (const MappedKeyframe& keyframe : mapped(map)) {
+    ++keyframes[keyframe.camera];
+    points += keyframe.points.size();
+    for (const MappedKeyframe::Point& point : keyframe.points) box.extend(point.p_W);
+  }
+  nlohmann::ordered_json cameras = nlohmann::ordered_json::array();
+  for (const auto& [name, width, height, focal] : map.cameras)
+    cameras.push_back(
+        {{"name", name}, {"width", width}, {"height", height}, {"focal_px", focal}, {"keyframes", keyframes[name]}});
+  const Eigen::Vector3d size = points > 0 ? Eigen::Vector3d(box.sizes()) : Eigen::Vector3d(0, 0, 0);
+  return {{"cameras", cameras},
+          {"keyframes", map.keyframes.size()},
+          {"points", points},
+          {"size_m", {size.x(), size.y(), size.z()}}};
+}
+
+int run_info(const MapCommandOptions& options) {
+  const nlohmann::ordered_json about = describe(read_map(options.file));
+  if (options.json) {
+    fmt::print("{}\n", json_text(about));
+    return kExitOk;
+  }
+  fmt::print("{}: {} keyframes, {} points over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
+             about["keyframes"].get<int>(), about["points"].get<int>(), about["size_m"][0].get<double>(),
+             about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
+             std::filesystem::file_size(options.file) / 1024);
+  for (const auto& camera : about["cameras"])
+    fmt::print("  {:<12} {} keyframes; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
+               camera["keyframes"].get<int>(), camera["width"].get<int>(), camera["height"].get<int>(),
+               camera["focal_px"].get<double>());
+  return kExitOk;
+}
+
+int run_show(const MapCommandOptions& options) {
+  const SavedMap map = read_map(options.file);
+  check_folder_of(options.out);
+  write_file(options.out, map_ply(mapped(map)));
+  if (options.json)
+    fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
+  else
+    fmt::print("{}: {} keyframes' points; any viewer of point clouds shows them\n", options.out.string(),
+               map.keyframes.size());
+  return kExitOk;
+}
+
+int run_merge(const MapCommandOptions& options) {
+  const SavedMap map = read_map(options.file), other = read_map(options.other);
+  check_folder_of(options.out);
+  const std::optional<SE3> T_A_B = find_map_in(map, other);
+  if (!T_A_B)
+    throw InputError::format(
+        "{}: not known again in {}; run a recording of the one in the other instead: edged run RECORDING --map {} "
+        "--save-map BOTH",
+        options.other.string(), options.file.string(), options.file.string());
+  const SavedMap both = merged(map, other, *T_A_B);
+  write_file(options.out, to_bytes(both));
+  const Eigen::Vector3d p = T_A_B->translation();
+  if (options.json) {
+    fmt::print("{}\n", json_text({{"out", options.out.string()},
+                                  {"keyframes", both.keyframes.size()},
+                                  {"other_at_m", {p.x(), p.y(), p.z()}},
+                                  {"other_turned_deg", so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian}}));
+    return kExitOk;
+  }
+  fmt::print("{}: {} keyframes; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
+             both.keyframes.size(), options.other.string(), p.x(), p.y(), p.z(), options.file.string(),
+             so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<MapCommandOptions>();
+  CLI::App* map = app.add_subcommand("map", "Maps that runs have kept: what is in them, two made one");
+  map->require_subcommand(1);
+  CLI::App* info = map->add_subcommand("info", "Cameras, keyframes, points and size of a map");
+  CLI::App* show = map->add_subcommand("show", "Its points as a ply file, which viewers of point clouds read");
+  CLI::App* merge = map->add_subcommand("merge", "Two maps of one place in the frame of the first");
+  for (CLI::App* each : {info, show, merge})
+    each->add_option("MAP", options->file, "File that `edged run --save-map` wrote")->required();
+  for (CLI::App* each : {info, show, merge}) each->add_flag("--json", options->json, "Print json instead of text");
+  show->add_option("--out", options->out, "File to write [map.ply]");
+  merge->add_option("OTHER", options->other, "Another of the same place")->required();
+  merge->add_option("--out", options->out, "File to write")->required();
+  map->footer(
+      "Examples:\n"
+      "  edged run monday.bag --save-map lab.map\n"
+      "  edged run tuesday.bag --map lab.map --save-map lab.map   # in monday's frame, once it knows where it is\n"
+      "  edged map show lab.map --out lab.ply");
+  info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
+  show->callback([options, &chosen] {
+    if (options->out.empty()) options->out = "map.ply";
+    chosen = [options] { return run_show(*options); };
+  });
+  merge->callback([options, &chosen] { chosen = [options] { return run_merge(*options); }; });
+}
+
+}  // namespace edged

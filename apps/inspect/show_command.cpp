@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/numbers.hpp"
+#include "common/source.hpp"
+#include "common/status_line.hpp"
+#include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "inspect/event_pictures.hpp"
+#include "inspect/player_data.hpp"
+#include "program.hpp"
+#include "report/report_page.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kWidestInPage_px = 400;
+
+struct ShowOptions {
+  SourceOptions source;
+  std::filesystem::path out;
+  double window_s = 0.02;
+  std::size_t events = 0;
+  PictureStyle style = PictureStyle::Polarity;
+  double max_mb = 4.5;
+  std::size_t max_pictures = 10000;
+  bool quiet = false, json = false;
+};
+
+/// What has been shown, for the one who asked.
+struct Shown {
+  std::size_t pictures = 0, frames = 0, every = 1;
+  std::optional<double> stopped_after_s;  ///< since the first picture, where there would have been more
+};
+
+/// Reads it through, or until `on_picture` has enough.
+class Reader {
+ public:
+  Reader(const ShowOptions& options, Dataset& dataset, cv::Size sensor, int binning)
+      : dataset_(dataset),
+        status_(options.quiet),
+        pictures_(sensor, binning, {duration_from_seconds(options.window_s), options.events}) {}
+
+  void go(const std::function<void(const Frame&)>& on_frame,
+          const std::function<bool(const EventPicture&)>& on_picture) {
+    bool more = true;
+    const auto show = [&](const EventPicture& picture) { more = more && on_picture(picture); };
+    InterruptibleDataset recording(dataset_);
+    while (more) {
+      const std::optional<Measurement> measurement = recording.next();
+      if (!measurement) break;
+      if (const auto* batch = std::get_if<EventBatch>(&*measurement)) pictures_.add(batch->events, show);
+      if (const auto* frame = std::get_if<Frame>(&*measurement)) on_frame(*frame);
+      if (const auto t = last_stamp(*measurement); t && status_.due())
+        status_.show(progress_text(*t, dataset_.info(), "shown"));
+    }
+    pictures_.finish(show);
+    status_.clear();
+  }
+
+ private:
+  Dataset& dataset_;
+  StatusLine status_;
+  EventPictures pictures_;
+};
+
+/// events_000001.png, ... at full size, each new frame as frame_000001.png, ..., and pictures.csv about them.
+Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sensor) {
+  make_picture_folder(options.out);
+  std::string table = "file,begin_ns,end_ns,events,frame\n", frame_file;
+  std::optional<Frame> newest;
+  Timestamp begin;
+  Shown shown;
+  Reader(options, dataset, sensor, 1)
+      .go([&](const Frame& frame) { newest = frame; },
+          [&](const EventPicture& picture) {
+            if (shown.pictures == 0) begin = picture.begin;
+            if (shown.pictures == options.max_pictures) {
+              shown.stopped_after_s = to_seconds(picture.begin - begin);
+              return false;
+            }
+            if (newest) {
+              frame_file = fmt::format("frame_{:06d}.png", ++shown.frames);
+              write_picture(options.out / frame_file, newest->image);
+              newest.reset();
+            }
+            const std::string file = fmt::format("events_{:06d}.png", ++shown.pictures);
+            write_picture(options.out / file, draw_event_picture(picture, options.style));
+            table += fmt::format("{},{},{},{},{}\n", file, to_ns(picture.begin), to_ns(picture.end), picture.events,
+                                 frame_file);
+            return true;
+          });
+  write_file(options.out / "pictures.csv", table);
+  return shown;
+}
+
+/// One page that plays them.
+Shown write_page(const ShowOptions& options, Dataset& dataset, cv::Size sensor) {
+  const int binning = (sensor.width + kWidestInPage_px - 1) / kWidestInPage_px;
+  PlayerData player(static_cast<std::size_t>(1e6 * options.max_mb));
+  Reader(options, dataset, sensor, binning)
+      .go([&](const Frame& frame) { player.add(frame); },
+          [&](const EventPicture& picture) {
+            player.add(picture);
+            return true;
+          });
+  nlohmann::ordered_json data = {{"version", kVersion},
+                                 {"recording", dataset.info().name},
+                                 {"format", dataset.info().format},
+                                 {"sensor", {sensor.width, sensor.height}},
+                                 {"binning", binning},
+                                 {"window_s", options.window_s},
+                                 {"events_each", options.events},
+                                 {"style", options.style == PictureStyle::Counts ? "counts" : "polarity"}};
+  data.update(player.to_json());
+  write_file(options.out, player_page(data));
+  return {player.pictures(), data["frames"].size(), player.every(), {}};
+}
+
+void print_shown(const ShowOptions& options, const Shown& shown, const std::map<std::string, std::size_t>& repairs) {
+  if (options.json) {
+    const nlohmann::ordered_json json = {
+        {"out", options.out.string()}, {"pictures", shown.pictures},         {"frames", shown.frames},
+        {"every", shown.every},        {"complete", !shown.stopped_after_s}, {"repairs", repairs}};
+    fmt::print("{}\n", json_text(json));
+    return;
+  }
+  fmt::print("{}: {} pictures of events, {} frames\n", options.out.string(), shown.pictures, shown.frames);
+  if (shown.every > 1)
+    fmt::print("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
+               shown.every, options.max_mb);
+  if (shown.stopped_after_s)
+    fmt::print("stopped there; --max-pictures allows more, --start {:.3f} goes on\n",
+               options.source.piece.from_s + *shown.stopped_after_s);
+}
+
+int show_recording(const ShowOptions& options) {
+  catch_interrupts();
+  const Recording recording = open_uncalibrated(options.source);
+  Dataset& dataset = *recording.dataset;
+  if (!dataset.info().has_events)
+    throw InputError::format("{}: has no events to show; take another recording", dataset.info().name);
+  const cv::Size sensor = recording_event_sensor(recording);
+  const bool page = options.out.extension() == ".html";
+  const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
+  if (shown.pictures == 0) spdlog::warn(fmt::format("{}: not one event came", dataset.info().name));
+  print_shown(options, shown, dataset.repairs());
+  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+}
+
+}  // namespace
+
+void add_show_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<ShowOptions>();
+  CLI::App* show =
+      app.add_subcommand("show", "Show a recording's events, beside its frames: a page that plays them, or pictures");
+  add_source_options(*show, options->source);
+  show->add_option("--out", options->out, "NAME.html: a page for a browser; else a folder for a PNG a picture")
+      ->required();
+  CLI::Option* window = show->add_option("--window", options->window_s, "Length of a picture [s]");
+  window->check(positive_number())->check(CLI::Range(1e-6, 3600.0))->capture_default_str();
+  show->add_option("--events", options->events, "So many events a picture, however long they take")
+      ->check(CLI::PositiveNumber)
+      ->excludes(window);
+  const std::map<std::string, PictureStyle> styles = {{"polarity", PictureStyle::Polarity},
+                                                      {"counts", PictureStyle::Counts}};
+  show->add_option("--style", options->style,
+                   "polarity: blue brighter, red darker; counts: grey (the page changes it) [polarity]")
+      ->transform(CLI::Transformer(styles));
+  show->add_option("--max-mb", options->max_mb, "Size of the page's pictures [MB]; beyond, every second picture goes")
+      ->check(CLI::Range(0.1, 200.0))
+      ->capture_default_str();
+  show->add_option("--max-pictures", options->max_pictures, "In a folder; it stops there")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  show->add_flag("--quiet", options->quiet, "No status line");
+  show->add_flag("--json", options->json, "Print what was made as json");
+  show->footer(
+      "Needs neither IMU nor calibration. Examples:\n"
+      "  edged show flight.raw --out flight.html\n"
+      "  edged show flight.bag --start 20 --duration 5 --window 0.005 --out piece.html\n"
+      "  edged show events.txt --geometry 240x180 --events 20000 --style counts --out pictures");
+  show->callback([options, &chosen] { chosen = [options] { return show_recording(*options); }; });
+}
+
+}  // namespace edged

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "inspect/survey.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/status_line.hpp"
+#include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+
+namespace edged {
+namespace {
+
+std::string survey_line(std::string_view name, const std::string& value) {
+  return fmt::format("{:<15} {}\n", name, value);
+}
+
+std::string size_text(cv::Size size) {
+  return size.empty() ? "size unknown" : fmt::format("{} x {} px", size.width, size.height);
+}
+
+std::string gap_text(const StreamSurvey& stream) {
+  if (stream.gaps == 0) return "no gaps";
+  std::string text = fmt::format("{} gaps of {:.3f} s together, longest:", stream.gaps, to_seconds(stream.missing));
+  for (const Gap& gap : stream.longest)
+    text += fmt::format(" {:.3f} s at {:.3f}", to_seconds(gap.length), to_seconds(gap.after));
+  return text;
+}
+
+std::string stream_text(const StreamSurvey& stream, std::string_view unit = "Hz") {
+  return fmt::format("{} in {:.3f} s ({:.3f} to {:.3f} s), {}{}", stream.count, to_seconds(stream.length()),
+                     to_seconds(*stream.begin), to_seconds(*stream.end), si_number(stream.rate_hz()), unit);
+}
+
+/// "below 1 k", "1 k to 10 k", ..., "above 10 M", each with a bar.
+std::string histogram(const EventSurvey& events) {
+  constexpr double kBarColumns = 40;
+  const auto& bands = EventSurvey::kRateBands;
+  std::string text;
+  for (std::size_t i = 0; i <= bands.size(); ++i) {
+    const std::string name = i == 0 ? fmt::format("below {}", si_number(bands.front()))
+                             : i == bands.size()
+                                 ? fmt::format("above {}", si_number(bands.back()))
+                                 : fmt::format("{} to {}", si_number(bands[i - 1]), si_number(bands[i]));
+    const auto columns = static_cast<std::size_t>(kBarColumns * events.rate_shares[i] + 0.5);
+    text += survey_line(
+        "", fmt::format("{:>22} ev/s {:5.1f} % {}", name, 100 * events.rate_shares[i], std::string(columns, '#')));
+  }
+  return text;
+}
+
+std::string events_text(const Survey& s) {
+  const EventSurvey& e = s.event_details;
+  std::string text = survey_line("events", stream_text(s.events, "ev/s"));
+  text += survey_line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
+                                      size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
+                                      100 * e.positive_share, 100 * e.active_share));
+  text += survey_line("", s.events.gaps == 0 ? "never silent for 0.1 s" : "silences of 0.1 s: " + gap_text(s.events));
+  text += survey_line(
+      "", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
+  text += histogram(e);
+  if (!e.hot_known) return text + survey_line("", "too short to tell hot pixels");
+  std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
+  for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
+    hot +=
+        fmt::format("{} ({}, {}) {:.0f} Hz", i == 0 ? ":" : ",", e.hottest[i].x, e.hottest[i].y, e.hottest[i].rate_hz);
+  return text + survey_line("", hot);
+}
+
+std::string imu_text(const Survey& s) {
+  const ImuSurvey& imu = s.imu_details;
+  std::string text = survey_line("IMU", stream_text(s.imu)) + survey_line("", gap_text(s.imu));
+  text +=
+      survey_line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
+                                  imu.mean_accel, imu.mean_gyro, imu.max_gyro));
+  if (!imu.rest) return text + survey_line("", "never at rest for half a second: no figure for its noise");
+  const ImuRest& rest = *imu.rest;
+  text += survey_line(
+      "", fmt::format(
+              "noise at rest ({:.1f} s at {:.1f} s): gyro {:.2g} rad/s/sqrt(Hz), accelerometer {:.2g} m/s^2/sqrt(Hz)",
+              to_seconds(rest.length), to_seconds(rest.begin), rest.gyro_noise, rest.accel_noise));
+  return text +
+         survey_line(
+             "",
+             fmt::format("at rest: gyro ({:.4f}, {:.4f}, {:.4f}) rad/s, accelerometer ({:.2f}, {:.2f}, {:.2f}) m/s^2",
+                         rest.gyro.x(), rest.gyro.y(), rest.gyro.z(), rest.accel.x(), rest.accel.y(), rest.accel.z()));
+}
+
+nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
+  if (stream.count == 0) return {{"count", 0}};
+  nlohmann::ordered_json json = {{"count", stream.count},        {"begin_ns", to_ns(*stream.begin)},
+                                 {"end_ns", to_ns(*stream.end)}, {"rate_hz", stream.rate_hz()},
+                                 {"gaps", stream.gaps},          {"missing_s", to_seconds(stream.missing)}};
+  for (const Gap& gap : stream.longest)
+    json["longest_gaps"].push_back({{"after_ns", to_ns(gap.after)}, {"length_s", to_seconds(gap.length)}});
+  return json;
+}
+
+nlohmann::ordered_json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::Good:
+      return "ok";
+    case Severity::Note:
+      return "note";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Error:
+      break;
+  }
+  return "error";
+}
+
+const char* name_of(Fit fit) {
+  return fit == Fit::Fits ? "fits" : fit == Fit::DoesNotFit ? "does not fit" : "cannot be told";
+}
+
+}  // namespace
+
+std::string to_text(const Survey& s) {
+  std::string text = survey_line("recording", fmt::format("{} ({})", s.info.name, s.info.format));
+  for (const StreamInfo& stream : s.info.streams)
+    text += survey_line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
+                                                stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
+                                                stream.role.empty() ? "" : " -> " + stream.role));
+  text += survey_line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
+  if (s.events.count > 0) text += events_text(s);
+  if (s.frames.count > 0) {
+    text += survey_line("frames", stream_text(s.frames)) + survey_line("", gap_text(s.frames));
+    text +=
+        survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
+  }
+  if (s.imu.count > 0) text += imu_text(s);
+  if (s.truth && s.truth->stream.count > 0)
+    text += survey_line("ground truth", fmt::format("{}, path {:.2f} m, of {}", stream_text(s.truth->stream),
+                                                    s.truth->path_m, s.truth->frame));
+  for (const auto& [kind, count] : s.repairs) text += survey_line("repaired", fmt::format("{} ({})", kind, count));
+  return text;
+}
+
+nlohmann::ordered_json to_json(const Survey& s) {
+  const EventSurvey& e = s.event_details;
+  nlohmann::ordered_json json = {
+      {"name", s.info.name}, {"format", s.info.format}, {"overlap_s", to_seconds(s.overlap())}};
+  json["streams"] = nlohmann::ordered_json::array();
+  for (const StreamInfo& stream : s.info.streams)
+    json["streams"].push_back(
+        {{"name", stream.name}, {"type", stream.type}, {"count", stream.count}, {"role", stream.role}});
+  json["events"] = stream_json(s.events);
+  if (s.events.count > 0) {
+    json["events"].update({{"width", s.info.event_sensor.width},
+                           {"height", s.info.event_sensor.height},
+                           {"max_x", e.extent.width - 1},
+                           {"max_y", e.extent.height - 1},
+                           {"positive_share", e.positive_share},
+                           {"active_share", e.active_share},
+                           {"peak_rate_hz", e.peak_rate_hz},
+                           {"rate_bands_hz", EventSurvey::kRateBands},
+                           {"rate_shares", e.rate_shares},
+                           {"hot_known", e.hot_known},
+                           {"hot_pixels", e.hot_pixels},
+                           {"hot_share", e.hot_share}});
+    for (const HotPixel& pixel : e.hottest)
+      json["events"]["hottest"].push_back(
+          {{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
+  }
+  json["frames"] = stream_json(s.frames);
+  if (s.frames.count > 0)
+    json["frames"].update(
+        {{"width", s.image_size.width}, {"height", s.image_size.height}, {"mean_brightness", s.mean_brightness}});
+  json["imu"] = stream_json(s.imu);
+  if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0) {
+    json["imu"].update({{"mean_accel", imu.mean_accel}, {"mean_gyro", imu.mean_gyro}, {"max_gyro", imu.max_gyro}});
+    json["imu"]["at_rest"] = imu.rest.has_value();
+    if (imu.rest)
+      json["imu"].update({{"rest_s", to_seconds(imu.rest->length)},
+                          {"gyro_noise", imu.rest->gyro_noise},
+                          {"accel_noise", imu.rest->accel_noise},
+                          {"rest_gyro", numbers(imu.rest->gyro)},
+                          {"rest_accel", numbers(imu.rest->accel)}});
+  }
+  if (s.truth) {
+    json["ground_truth"] = stream_json(s.truth->stream);
+    json["ground_truth"].update({{"path_m", s.truth->path_m}, {"frame", s.truth->frame}});
+  }
+  json["repairs"] = s.repairs;
+  return json;
+}
+
+std::string to_text(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const Severity severity : {Severity::Good, Severity::Note, Severity::Warning, Severity::Error})
+    for (const Finding& finding : findings) {
+      if (finding.severity != severity) continue;
+      text += fmt::format("{:<8} {}\n", name_of(severity), finding.text);
+      if (!finding.remedy.empty()) text += fmt::format("{:<8}   -> {}\n", "", finding.remedy);
+    }
+  const auto count = [&](Severity severity) { return std::ranges::count(findings, severity, &Finding::severity); };
+  return text + fmt::format("{} errors, {} warnings\n", count(Severity::Error), count(Severity::Warning));
+}
+
+nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Finding& finding : findings)
+    json.push_back({{"severity", name_of(finding.severity)}, {"text", finding.text}, {"remedy", finding.remedy}});
+  return json;
+}
+
+nlohmann::ordered_json to_json(const CalibrationFound& c) {
+  return {{"camera", c.camera},
+          {"rotation_off_deg", c.rotation_deg},
+          {"rotation_sigma_deg", number_or_null(c.rotation_sigma_deg)},
+          {"time_offset_ms", c.time_offset_ms},
+          {"time_offset_sigma_ms", number_or_null(c.time_sigma_ms)},
+          {"given_time_offset_ms", c.given_offset_ms}};
+}
+
+std::string to_text(const CalibrationFit& fit) {
+  std::string text = fit.findings.empty() ? "" : to_text(fit.findings);
+  for (const CameraFit& camera : fit.cameras)
+    text += fmt::format("{:<11} {}: {}\n", camera.found.camera, name_of(camera.fit), camera.why);
+  return text + fmt::format("{:<11} {}: {}\n", "calibration", name_of(fit.fit), fit.why);
+}
+
+nlohmann::ordered_json to_json(const CalibrationFit& fit) {
+  nlohmann::ordered_json json = {{"verdict", name_of(fit.fit)}, {"why", fit.why}};
+  json["cameras"] = nlohmann::ordered_json::array();
+  for (const CameraFit& camera : fit.cameras) {
+    nlohmann::ordered_json one = to_json(camera.found);
+    one.update({{"verdict", name_of(camera.fit)}, {"why", camera.why}});
+    json["cameras"].push_back(one);
+  }
+  json["findings"] = to_json(fit.findings);
+  return json;
+}
+
+SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also) {
+  Surveyor surveyor(dataset.info());
+  StatusLine status(quiet);
+  InterruptibleDataset recording(dataset);
+  std::optional<std::string> damage;
+  try {
+    while (const auto measurement = recording.next()) {
+      surveyor.add(*measurement);
+      if (also) also(*measurement);
+      if (const auto t = last_stamp(*measurement); t && status.due())
+        status.show(progress_text(*t, dataset.info(), "read"));
+    }
+  } catch (const InputError& error) {
+    damage = error.what();
+  }
+  return {surveyor.result(dataset, dataset.ground_truth()), damage};
+}
+
+}  // namespace edged

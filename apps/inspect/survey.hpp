@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One pass through a recording; what a survey, a diagnosis and a check of a calibration say, as text and json.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/source.hpp"
+#include "edged/survey/calibration_fit.hpp"
+#include "edged/survey/diagnosis.hpp"
+#include "edged/survey/survey.hpp"
+
+namespace edged {
+
+std::string to_text(const Survey& survey);
+nlohmann::ordered_json to_json(const Survey& survey);
+
+/// A line for each finding and one for its remedy, errors last, and a summary.
+std::string to_text(const std::vector<Finding>& findings);
+nlohmann::ordered_json to_json(const std::vector<Finding>& findings);
+
+std::string to_text(const CalibrationFit& fit);
+nlohmann::ordered_json to_json(const CalibrationFit& fit);
+nlohmann::ordered_json to_json(const CalibrationFound& found);
+
+struct SurveyRun {
+  Survey survey;
+  std::optional<std::string> damage;  ///< why the recording could not be read beyond what was surveyed
+};
+
+/// With a status line. Ends early, with what was read so far, when the user interrupts. also: sees every measurement;
+/// may be empty.
+SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also);
+
+}  // namespace edged

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "live/live_feed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/json_text.hpp"
+#include "common/pictures.hpp"
+#include "common/step_facts.hpp"
+#include "report/report_rows.hpp"
+
+namespace edged {
+namespace {
+
+using LiveClockTime = std::chrono::steady_clock;
+constexpr auto kShotPeriod = std::chrono::milliseconds(150), kMapPeriod = std::chrono::milliseconds(2000);
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kWidestShot_px = 640;
+
+struct LiveColumn {
+  const char* name;  ///< as in the report's rows
+  int decimals;
+};
+constexpr std::array kLiveColumns = {LiveColumn{"x", 5},
+                                     LiveColumn{"y", 5},
+                                     LiveColumn{"z", 5},
+                                     LiveColumn{"roll", 3},
+                                     LiveColumn{"pitch", 3},
+                                     LiveColumn{"yaw", 3},
+                                     LiveColumn{"vx", 4},
+                                     LiveColumn{"vy", 4},
+                                     LiveColumn{"vz", 4},
+                                     LiveColumn{"bgx", 6},
+                                     LiveColumn{"bgy", 6},
+                                     LiveColumn{"bgz", 6},
+                                     LiveColumn{"bax", 5},
+                                     LiveColumn{"bay", 5},
+                                     LiveColumn{"baz", 5},
+                                     LiveColumn{"keyframe", 0},
+                                     LiveColumn{"event_tracks", 0},
+                                     LiveColumn{"frame_tracks", 0},
+                                     LiveColumn{"landmarks", 0},
+                                     LiveColumn{"event_track_survival_rate", 3},
+                                     LiveColumn{"frame_track_survival_rate", 3},
+                                     LiveColumn{"map_matches", 0},
+                                     LiveColumn{"map_reach", 2},
+                                     LiveColumn{"event_rate", 0},
+                                     LiveColumn{"depth", 3},
+                                     LiveColumn{"processing", 3},
+                                     LiveColumn{"latency", 3},
+                                     LiveColumn{"sigma3_x", 6},
+                                     LiveColumn{"sigma3_y", 6},
+                                     LiveColumn{"sigma3_z", 6}};
+
+nlohmann::ordered_json progress_json(const RunProgress& progress) {
+  const RunStatistics& s = progress.statistics;
+  const double span = s.visual_span_s();
+  return {{"poses", progress.poses},
+          {"keyframes", s.keyframes()},
+          {"packets", s.packets()},
+          {"coverage", s.coverage()},
+          {"first_good_s", s.first_good_s() ? nlohmann::ordered_json(*s.first_good_s()) : nlohmann::ordered_json()},
+          {"times_lost", s.times_lost()},
+          {"duration_s", span},
+          {"real_time_factor", progress.wall_s > 0.0 ? span / progress.wall_s : 0.0}};
+}
+
+}  // namespace
+
+LiveFeed::LiveFeed(OutputFrame frame) : frame_(std::move(frame)), angles_(Eigen::Vector3d::Constant(kUnknown)) {
+  newest_.values.fill(kUnknown);
+}
+
+LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
+  static_assert(kLiveColumns.size() == kColumns);
+  Row row{to_seconds(step.t - *origin_), step.status, {}};
+  auto value = row.values.begin();
+  const auto put = [&value](const Eigen::Vector3d& v, bool known) {
+    for (int k = 0; k < 3; ++k) *value++ = known ? v[k] : kUnknown;
+  };
+  const bool tracking = is_tracking(step.status), started = step.status != TrackingStatus::Initializing;
+  if (tracking) angles_ = angles_deg(step.state.T_W_B, angles_);
+  put(frame_({step.t, step.state.T_W_B}).T.translation(), tracking);
+  put(angles_, tracking);
+  put(step.state.v_W, started);
+  put(step.state.bias_gyro, started);
+  put(step.state.bias_accel, started);
+  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
+  for (const double number : {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks),
+                              static_cast<double>(frames.tracks), static_cast<double>(step.landmarks.size()),
+                              events.survival_rate.value_or(kUnknown), frames.survival_rate.value_or(kUnknown),
+                              step.map_matches.empty() ? kUnknown : static_cast<double>(step.map_matches.size()),
+                              map_reach_s(step).value_or(kUnknown), events.event_rate_hz, step.scene_depth,
+                              pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
+    *value++ = number;
+  const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
+  put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());
+  return row;
+}
+
+void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album) {
+  if (!origin_) origin_ = step.t;
+  const Row row = row_of(step, progress.pace);
+  if (viewers_ > 0) take_shots(step);
+  const std::lock_guard lock(mutex_);
+  newest_ = row;
+  reason_ = reason_of(step);
+  progress_ = std::move(progress);
+  changes_.add(step);
+  if (rows_.add(row)) ++thinned_;
+  const auto now = LiveClockTime::now();
+  if (viewers_ == 0 || now < map_taken_ + kMapPeriod) return;
+  map_taken_ = now;
+  ++map_number_;
+  map_.clear();
+  for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
+}
+
+/// Copies of the first camera of each kind, as the odometry goes on with its own, at the pace of a viewer.
+void LiveFeed::take_shots(const Step& step) {
+  const auto now = LiveClockTime::now();
+  const auto take = [&](std::shared_ptr<const Shot>& shot, const CameraStep* camera) {
+    if (camera == nullptr || camera->image.empty() || (shot && now < shot->taken + kShotPeriod)) return;
+    auto taken =
+        std::make_shared<const Shot>(Shot{shot ? shot->number + 1 : 1, now, camera->image.clone(), camera->tracks});
+    const std::lock_guard lock(mutex_);
+    shot = std::move(taken);
+  };
+  take(event_shot_, step.find(Modality::Events));
+  take(frame_shot_, step.find(Modality::Frames));
+}
+
+void LiveFeed::finish(RunProgress progress) {
+  const std::lock_guard lock(mutex_);
+  progress_ = std::move(progress);
+}
+
+LiveFeed::Present LiveFeed::present(Place& place) const {
+  const std::lock_guard lock(mutex_);
+  const std::vector<StatusChange>& changes = changes_.all();
+  const auto known = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
+  const std::size_t shown = std::min(changes.size(), kMostChangesShown);
+  if (place.thinned != thinned_) place.rows = 0;
+  Present now{newest_,
+              reason_,
+              progress_,
+              place.rows,
+              place.changes,
+              {rows_.all().begin() + known(place.rows), rows_.all().end()},
+              {changes.begin() + known(place.changes), changes.begin() + known(shown)},
+              {},
+              event_shot_ ? event_shot_->number : 0,
+              frame_shot_ ? frame_shot_->number : 0};
+  if (place.map != map_number_) now.new_map = map_;
+  place.rows = rows_.all().size();
+  place.thinned = thinned_;
+  place.changes = shown > 0 ? shown - 1 : 0;  // the last one's reason may change
+  place.map = map_number_;
+  return now;
+}
+
+nlohmann::ordered_json LiveFeed::columns(const std::vector<Row>& rows) {
+  nlohmann::ordered_json json = {{"t", nlohmann::ordered_json::array()}, {"status", nlohmann::ordered_json::array()}};
+  for (const Row& row : rows) {
+    json["t"].push_back(rounded(row.t, 4));
+    json["status"].push_back(to_string(row.status));
+  }
+  for (std::size_t k = 0; k < kColumns; ++k) {
+    auto& column = json[kLiveColumns[k].name] = nlohmann::ordered_json::array();
+    for (const Row& row : rows) column.push_back(rounded(row.values[k], kLiveColumns[k].decimals));
+  }
+  return json;
+}
+
+std::string LiveFeed::news(Place& place) const {
+  const Present now = present(place);
+  nlohmann::ordered_json json = {{"t", rounded(now.newest.t, 4)},
+                                 {"status", to_string(now.newest.status)},
+                                 {"reason", now.reason},
+                                 {"left_out", place.left_out},
+                                 {"progress", progress_json(now.progress)},
+                                 {"newest", columns({now.newest})},
+                                 {"rows_from", now.rows},
+                                 {"rows", columns(now.new_rows)},
+                                 {"changes_from", now.changes},
+                                 {"changes", nlohmann::ordered_json::array()},
+                                 {"pictures", {{"events", now.event_shot}, {"frame", now.frame_shot}}}};
+  for (const StatusChange& change : now.new_changes) {
+    json["changes"].push_back({{"t", rounded(to_seconds(change.t - *origin_), 4)},
+                               {"status", to_string(change.status)},
+                               {"reason", change.reason},
+                               {"relocalized", change.relocalized}});
+  }
+  if (!now.new_map.empty()) {
+    auto& map = json["map"] = nlohmann::ordered_json::array();
+    for (const float x : now.new_map) map.push_back(rounded(x, 3));
+  }
+  return compact_json(json);
+}
+
+std::vector<unsigned char> LiveFeed::picture(Modality of) const {
+  std::shared_ptr<const Shot> shot;
+  {
+    const std::lock_guard lock(mutex_);
+    shot = of == Modality::Events ? event_shot_ : frame_shot_;
+  }
+  return shot ? track_picture(shot->image, shot->tracks, kWidestShot_px) : std::vector<unsigned char>{};
+}
+
+}  // namespace edged

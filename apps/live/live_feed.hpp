@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What viewers of a run that goes on are told: rows of its plots, changes of its status, map points, pictures.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/evenly.hpp"
+#include "common/step_facts.hpp"
+#include "edged/camera/output_frame.hpp"
+#include "edged/step.hpp"
+#include "run/run_album.hpp"
+#include "run/run_statistics.hpp"
+
+namespace edged {
+
+/// How far a run has come.
+struct RunProgress {
+  RunStatistics statistics;
+  std::size_t poses = 0;
+  double wall_s = 0;
+  PacketPace pace;  ///< of the newest packet
+};
+
+/// `add` and `finish` are for the thread of the run, the rest for any others. It holds a bounded number of rows, evenly
+/// over the whole run, and copies images only while there is a viewer.
+class LiveFeed {
+ public:
+  static constexpr std::size_t kMostRows = 3000;
+
+  /// What one viewer has been told.
+  struct Place {
+    std::size_t rows = 0, thinned = 0, changes = 0, map = 0;
+    std::size_t left_out = 0;  ///< updates that came while this viewer was too slow for them
+  };
+
+  /// Positions are those of `frame`, as in the trajectory files.
+  explicit LiveFeed(OutputFrame frame);
+
+  void add(const Step& step, RunProgress progress, const RunAlbum& album);
+  /// The numbers at the end: the last measurements come after the last step.
+  void finish(RunProgress progress);
+
+  void viewer_came() { ++viewers_; }
+  void viewer_left() { --viewers_; }
+  std::size_t viewers() const { return viewers_; }
+
+  /// One line of json: the present numbers, and what this viewer does not know yet of the rest (docs/report.md).
+  std::string news(Place& place) const;
+  /// The newest image with its tracks as JPEG, made by the caller's thread; empty where there is none.
+  std::vector<unsigned char> picture(Modality of) const;
+
+ private:
+  static constexpr std::size_t kColumns = 30;
+  struct Row {
+    double t = 0;  ///< [s] since the first packet
+    TrackingStatus status = TrackingStatus::Initializing;
+    std::array<double, kColumns> values{};  ///< NaN where there is none
+  };
+  struct Shot {
+    std::size_t number = 0;  ///< 0: there is none
+    std::chrono::steady_clock::time_point taken;
+    cv::Mat image;
+    std::vector<Track> tracks;
+  };
+  /// All that is guarded; what is large is copied by its new part only.
+  struct Present {
+    Row newest;
+    std::string reason;
+    RunProgress progress;
+    std::size_t rows = 0, changes = 0;  ///< of all, that lie before those here
+    std::vector<Row> new_rows;
+    std::vector<StatusChange> new_changes;
+    std::vector<float> new_map;
+    std::size_t event_shot = 0, frame_shot = 0;
+  };
+
+  Row row_of(const Step& step, const PacketPace& pace);
+  void take_shots(const Step& step);
+  Present present(Place& place) const;
+  static nlohmann::ordered_json columns(const std::vector<Row>& rows);
+
+  OutputFrame frame_;
+  std::atomic<std::size_t> viewers_ = 0;
+  std::optional<Timestamp> origin_;  ///< set before there are rows or changes, and no more afterwards
+  Eigen::Vector3d angles_;           ///< of the row before [deg]
+
+  mutable std::mutex mutex_;  ///< guards all below
+  Row newest_;
+  std::string reason_;
+  RunProgress progress_;
+  Evenly<Row> rows_{kMostRows};
+  std::size_t thinned_ = 0;
+  StatusChanges changes_;
+  std::vector<float> map_;
+  std::size_t map_number_ = 0;
+  std::chrono::steady_clock::time_point map_taken_;
+  std::shared_ptr<const Shot> event_shot_, frame_shot_;
+};
+
+}  // namespace edged

@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "live/live_page.hpp"
+
+#include <httplib.h>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <charconv>
+#include <condition_variable>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/json_text.hpp"
+#include "edged/core/check.hpp"
+#include "program.hpp"
+#include "report/report_page.hpp"
+#include "run/run_observer.hpp"
+
+namespace edged {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+constexpr auto kUpdatePeriod = std::chrono::milliseconds(200), kEndPeriod = std::chrono::milliseconds(20);
+constexpr std::size_t kMostViewers = 12, kThreads = kMostViewers + 4;  // a viewer keeps one for as long as it watches
+constexpr auto kLongestFarewell = std::chrono::seconds(10), kPatience = std::chrono::seconds(2),
+               kTimeToConnect = std::chrono::seconds(1);
+
+/// By a provider: what is set as a body is compressed, which takes longer than this machine's own network.
+/// sent: called when the answer is out, or has failed.
+void reply(httplib::Response& response, const char* type, std::string body, std::function<void()> sent = nullptr) {
+  response.set_header("Cache-Control", "no-store");
+  const std::size_t size = body.size();
+  response.set_content_provider(
+      size, type,
+      [body = std::move(body)](std::size_t at, std::size_t length, httplib::DataSink& sink) {
+        return sink.write(body.data() + at, length);
+      },
+      [sent = std::move(sent)](bool) {
+        if (sent) sent();
+      });
+}
+
+void refuse(httplib::Response& response, int status, const char* text) {
+  response.status = status;
+  response.set_content(text, "text/plain");
+}
+
+std::string url_of(const ServeAddress& address) {
+  const bool v6 = address.host.find(':') != std::string::npos;
+  return fmt::format("http://{}{}{}:{}/", v6 ? "[" : "", address.host, v6 ? "]" : "", address.port);
+}
+
+/// What the live page calls the run.
+nlohmann::ordered_json about_run(const RunContext& run) {
+  const DatasetInfo& info = run.info();
+  const bool ends = info.begin && info.end;
+  return {{"version", kVersion},
+          {"recording", info.name},
+          {"format", info.format},
+          {"mode", mode_name(run.mode)},
+          {"frame", run.frame.name()},
+          {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
+}
+
+class ServedPage : public RunObserver {
+ public:
+  explicit ServedPage(const RunContext& run)
+      : run_(run), page_(*parse_serve_address(run.options.serve), about_run(run), run.frame) {}
+  const char* stage() const override { return "serve"; }
+  void on_begin() override { fmt::print(stderr, "edged: watch at {}\n", page_.url()); }
+  void on_step(const Step& step) override { page_.add(step, progress(), run_.album); }
+  void on_end(const RunEnd& end) override { page_.finish(progress(), to_json(end.summary), run_.folder); }
+
+ private:
+  RunProgress progress() const { return {run_.statistics, run_.statistics.poses(), run_.meter.wall_s(), run_.pace}; }
+
+  const RunContext& run_;
+  LivePage page_;
+};
+
+}  // namespace
+
+class LivePage::Server {
+ public:
+  Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame);
+  ~Server();
+  void finish(RunProgress progress, const nlohmann::ordered_json& metrics, const std::filesystem::path& folder);
+
+  LiveFeed feed;
+  std::string url;
+
+ private:
+  /// One who watches, in the thread that serves it.
+  struct Viewer {
+    LiveFeed::Place place;
+    WallClock::time_point due = WallClock::now();
+    bool knows_the_end = false;
+  };
+
+  void answer();
+  void bind(ServeAddress address);
+  void welcome(httplib::Response& response);
+  bool tell(Viewer& viewer, httplib::DataSink& sink);
+  void send_report(httplib::Response& response);
+  void part_from_viewers();
+
+  std::string page_;
+  httplib::Server http_;
+
+  std::mutex mutex_;  ///< guards all below but the thread
+  std::condition_variable changed_;
+  bool closing_ = false;
+  std::string end_;               ///< metrics.json on one line, once the run is over
+  std::filesystem::path report_;  ///< report.html, once the run is over
+  std::size_t reports_on_the_way_ = 0, most_viewers_ = 0, left_out_ = 0;
+  WallClock::time_point page_sent_, asked_;  ///< when the page, and when anything was asked for last
+
+  std::jthread thread_;  ///< last: it uses the others
+};
+
+LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
+    : feed(std::move(frame)), page_(live_report_page(about)) {
+  http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  // A connection that waits holds a thread, and the end of the program: browsers open some in advance.
+  http_.set_keep_alive_max_count(1);
+  http_.set_keep_alive_timeout(1);
+  http_.set_read_timeout(1);
+  http_.set_write_timeout(1);  // one who does not read is let go: a browser comes back by itself
+  http_.set_tcp_nodelay(true);
+  // Not httplib's own, by which two programs could share a port and its viewers. A system that holds megabytes for one
+  // who is slow would show that one what was long ago.
+  http_.set_socket_options([](int socket) {
+    const int yes = 1, held_bytes = 1 << 15;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &held_bytes, sizeof held_bytes);
+  });
+  answer();
+  bind(address);
+  thread_ = std::jthread([this] { http_.listen_after_bind(); });
+  while (!http_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // only then it can be stopped
+}
+
+LivePage::Server::~Server() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  changed_.notify_all();
+  http_.stop();
+}
+
+void LivePage::Server::bind(ServeAddress address) {
+  const std::string wanted = fmt::format("{}:{}", address.host, address.port);
+  errno = 0;
+  if (address.port != 0) {
+    if (!http_.bind_to_port(address.host, address.port)) address.port = -1;
+  } else {
+    address.port = http_.bind_to_any_port(address.host);
+  }
+  if (address.port > 0) {
+    url = url_of(address);
+    return;
+  }
+  const int error = errno;
+  const bool told = error == EADDRINUSE || error == EADDRNOTAVAIL || error == EACCES;
+  throw InputError::format("--serve: {}: {}; give another port or address, --serve=[HOST:]PORT, or --serve=0", wanted,
+                           told ? std::generic_category().message(error) : "no such address");
+}
+
+void LivePage::Server::answer() {
+  http_.set_pre_routing_handler([this](const httplib::Request&, httplib::Response&) {
+    const std::lock_guard lock(mutex_);
+    asked_ = WallClock::now();
+    return httplib::Server::HandlerResponse::Unhandled;
+  });
+  http_.Get("/", [this](const httplib::Request&, httplib::Response& response) {
+    reply(response, "text/html; charset=utf-8", page_);
+    const std::lock_guard lock(mutex_);
+    page_sent_ = WallClock::now();
+  });
+  http_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { welcome(response); });
+  http_.Get(R"(/(events|frame)\.jpg)", [this](const httplib::Request& request, httplib::Response& response) {
+    const auto jpeg = feed.picture(request.matches[1] == "events" ? Modality::Events : Modality::Frames);
+    if (jpeg.empty()) return refuse(response, 404, "There is no picture yet.\n");
+    reply(response, "image/jpeg", {jpeg.begin(), jpeg.end()});
+  });
+  http_.Get("/report.html", [this](const httplib::Request&, httplib::Response& response) { send_report(response); });
+}
+
+void LivePage::Server::welcome(httplib::Response& response) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (feed.viewers() >= kMostViewers) return refuse(response, 503, "Too many watch already.\n");
+    feed.viewer_came();
+    most_viewers_ = std::max(most_viewers_, feed.viewers());
+  }
+  response.set_header("Cache-Control", "no-store");
+  response.set_content_provider(
+      "text/event-stream",
+      [this, viewer = std::make_shared<Viewer>()](std::size_t, httplib::DataSink& sink) { return tell(*viewer, sink); },
+      [this](bool) {
+        feed.viewer_left();
+        changed_.notify_all();
+      });
+}
+
+/// The next update when it is due. Whoever takes longer to read one misses those meanwhile. False: the viewer has gone.
+bool LivePage::Server::tell(Viewer& viewer, httplib::DataSink& sink) {
+  std::string end;
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, viewer.due, [&] { return closing_ || (!end_.empty() && !viewer.knows_the_end); });
+    if (closing_) return sink.done(), true;
+    end = end_;
+    const auto missed =
+        static_cast<std::size_t>(std::max<WallClock::rep>(0, (WallClock::now() - viewer.due) / kUpdatePeriod));
+    if (!viewer.knows_the_end) viewer.place.left_out += missed, left_out_ += missed;
+  }
+  viewer.due = WallClock::now() + (end.empty() ? kUpdatePeriod : kEndPeriod);
+  const auto write = [&sink](const std::string& text) { return sink.write(text.data(), text.size()); };
+  if (viewer.knows_the_end) return write(": the run is over\n\n");  // fails once the browser has what it wants
+  if (!write("data: " + feed.news(viewer.place) + "\n\n")) return false;
+  viewer.knows_the_end = !end.empty();
+  return end.empty() || write("event: end\ndata: " + end + "\n\n");
+}
+
+void LivePage::Server::send_report(httplib::Response& response) {
+  std::filesystem::path file;
+  {
+    const std::lock_guard lock(mutex_);
+    file = report_;
+    if (!file.empty()) ++reports_on_the_way_;
+  }
+  if (file.empty()) return refuse(response, 404, "The run has not ended.\n");
+  std::ifstream in(file, std::ios::binary);
+  reply(response, "text/html; charset=utf-8", {std::istreambuf_iterator<char>(in), {}}, [this] {
+    const std::lock_guard lock(mutex_);
+    --reports_on_the_way_;
+    asked_ = WallClock::now();
+    changed_.notify_all();
+  });
+}
+
+void LivePage::Server::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
+                              const std::filesystem::path& folder) {
+  feed.finish(std::move(progress));
+  {
+    const std::lock_guard lock(mutex_);
+    report_ = folder / "report.html";
+    end_ = compact_json(metrics);
+    asked_ = WallClock::now();
+  }
+  changed_.notify_all();
+  part_from_viewers();
+}
+
+void LivePage::Server::part_from_viewers() {
+  const auto begin = WallClock::now();
+  std::unique_lock lock(mutex_);
+  while (true) {
+    const auto now = WallClock::now();
+    const bool watched = feed.viewers() > 0 || now < page_sent_ + kTimeToConnect;
+    const bool heard = reports_on_the_way_ > 0 || now < asked_ + kPatience;
+    if (!(watched || reports_on_the_way_ > 0) || !heard || now > begin + kLongestFarewell) break;
+    changed_.wait_for(lock, std::chrono::milliseconds(20));
+  }
+  spdlog::info(
+      fmt::format("live page: {} at once at most, {} updates left out for who was too slow", most_viewers_, left_out_));
+}
+
+LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
+    : server_(std::make_unique<Server>(address, about, std::move(frame))) {}
+
+LivePage::~LivePage() = default;
+
+const std::string& LivePage::url() const { return server_->url; }
+
+void LivePage::add(const Step& step, RunProgress progress, const RunAlbum& album) {
+  server_->feed.add(step, std::move(progress), album);
+}
+
+void LivePage::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
+                      const std::filesystem::path& folder) {
+  server_->finish(std::move(progress), metrics, folder);
+}
+
+std::optional<ServeAddress> parse_serve_address(const std::string& text) {
+  ServeAddress address;
+  if (text == "true") return address;
+  std::string port = text;
+  if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
+    address.host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (address.host.starts_with('[') && address.host.ends_with(']'))
+      address.host = address.host.substr(1, address.host.size() - 2);
+  }
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
+  const bool whole = error == std::errc() && end == port.data() + port.size();
+  if (!whole || address.host.empty() || address.port < 0 || address.port > 65535) return std::nullopt;
+  return address;
+}
+
+void add_serve_option(CLI::App& command, std::string& text) {
+  command
+      .add_flag(
+          "--serve", text,
+          "Watch the run in a browser while it goes on; --serve=PORT or --serve=HOST:PORT, port 0: any that is free "
+          "[127.0.0.1:8765]")
+      ->check([](const std::string& given) {
+        return parse_serve_address(given) ? ""
+                                          : fmt::format("'{}' is no PORT or HOST:PORT, such as --serve=8765", given);
+      });
+}
+
+std::unique_ptr<RunObserver> observe_live_page(RunContext& run) {
+  return run.options.serve.empty() ? nullptr : std::make_unique<ServedPage>(run);
+}
+
+}  // namespace edged

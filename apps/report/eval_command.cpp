@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "common/numbers.hpp"
+#include "edged/core/check.hpp"
+#include "edged/eval/evaluation_json.hpp"
+#include "edged/eval/metrics.hpp"
+#include "edged/io/trajectory_io.hpp"
+#include "report/evaluation.hpp"
+
+namespace edged {
+namespace {
+
+struct EvalOptions {
+  std::filesystem::path truth, estimate;
+  EvaluationOptions how;
+  std::vector<double> deltas_s = {1.0, 10.0};
+  bool json = false;
+};
+
+/// KITTI holds no times: nothing that is measured in seconds can be said of it.
+void refuse_times(const EvalOptions& options, const CLI::App& eval) {
+  std::string timed =
+      chosen_protocol(options.how).window == TimeWindow{} ? "" : "--protocol " + options.how.protocol_name;
+  for (const char* name : {"--window", "--first", "--max-gap", "--delta"})
+    if (eval.count(name) > 0) timed = name;
+  if (!timed.empty())
+    throw InputError::format("{} is in seconds, and KITTI files hold no times; give files with stamps (TUM, EuRoC csv)",
+                             timed);
+}
+
+/// Pose i against pose i; all that would need times is left empty.
+Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate, const EvalOptions& options) {
+  if (truth.size() != estimate.size())
+    throw InputError::format(
+        "KITTI files hold no times, so pose i is compared with pose i: {} holds {} poses, {} holds {}; give files with "
+        "stamps (TUM, EuRoC csv)",
+        options.truth.string(), truth.size(), options.estimate.string(), estimate.size());
+  Evaluation result = evaluate(associate_by_index(truth, estimate), chosen_protocol(options.how), {}, {});
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  result.duration_s = result.start_scale = result.first_scale = result.later_scale = kUnknown;
+  return result;
+}
+
+Evaluation evaluate_files(const EvalOptions& options, const CLI::App& eval) {
+  const bool timed = trajectory_format(options.truth) != TrajectoryFormat::Kitti &&
+                     trajectory_format(options.estimate) != TrajectoryFormat::Kitti;
+  if (!timed) refuse_times(options, eval);
+  const Trajectory truth = read_trajectory(options.truth);
+  const Trajectory estimate = read_trajectory(options.estimate);
+  if (!timed) return evaluate_untimed(truth, estimate, options);
+  const Association association = associate(truth, estimate, duration_from_seconds(options.how.max_gap_s));
+  return evaluate(association, chosen_protocol(options.how), options.deltas_s);
+}
+
+int run_eval(const EvalOptions& options, const CLI::App& eval) {
+  const Evaluation evaluation = evaluate_files(options, eval);
+  fmt::print("{}", options.json ? to_json(evaluation).dump(2) + "\n" : to_table(evaluation));
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_eval_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<EvalOptions>();
+  CLI::App* eval = app.add_subcommand(
+      "eval", "Compare a trajectory with ground truth: ATE, local error, RPE, error per metre, scale");
+  eval->add_option("GROUNDTRUTH", options->truth,
+                   "Trajectory file: TUM, EuRoC csv or KITTI (no times: pose i against pose i), found by content")
+      ->required();
+  eval->add_option("ESTIMATE", options->estimate, "Trajectory file of the same sensor on the same clock")->required();
+  add_evaluation_options(*eval, options->how);
+  eval->add_option("--delta", options->deltas_s, "Time steps of the relative errors [s], separated by blanks")
+      ->check(positive_number())
+      ->capture_default_str();
+  eval->add_flag("--json", options->json, "Print json instead of a table");
+  eval->footer("Example:\n  edged eval data/groundtruth.txt runs/poster-fused/trajectory.tum --protocol P1");
+  eval->callback([options, eval, &chosen] { chosen = [options, eval] { return run_eval(*options, *eval); }; });
+}
+
+}  // namespace edged

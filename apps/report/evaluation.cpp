@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "report/evaluation.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <map>
+
+#include "common/numbers.hpp"
+
+namespace edged {
+namespace {
+
+const std::map<std::string, AlignmentKind> kAlignments = {{"none", AlignmentKind::None},
+                                                          {"yaw", AlignmentKind::PositionYaw},
+                                                          {"se3", AlignmentKind::SE3},
+                                                          {"sim3", AlignmentKind::Sim3}};
+
+std::string row(const char* name, const Statistics& s, const char* unit) {
+  return fmt::format("  {:<22} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f}  {}\n", name, s.rmse, s.mean,
+                     s.median, s.std, s.min, s.max, unit);
+}
+
+std::string window_text(const TimeWindow& window) {
+  if (window == TimeWindow{}) return "all poses";
+  if (std::isinf(window.end_s)) return fmt::format("seconds {} to the end", window.begin_s);
+  return fmt::format("seconds {} to {}", window.begin_s, window.end_s);
+}
+
+}  // namespace
+
+void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
+  CLI::Option* align =
+      command.add_option("--align", options.align, "What is aligned: none, yaw (position and yaw), se3, sim3")
+          ->check(CLI::IsMember({"none", "yaw", "se3", "sim3"}))
+          ->capture_default_str();
+  CLI::Option* window =
+      command.add_option("--window", options.window, "Align on these seconds only: BEGIN END")->expected(2);
+  CLI::Option* first = command.add_option("--first", options.first_s, "Align on the first so many seconds only")
+                           ->check(positive_number())
+                           ->excludes(window);
+  command
+      .add_option("--protocol", options.protocol_name,
+                  "P1: SE3 on seconds 3-8 (Ultimate SLAM). P2: SE3 on the first 5 s (PL-EVIO, EVI-SAM). "
+                  "P3: SE3 on all (ESVIO). P4: Sim3 on all (DEVO)")
+      ->check(CLI::IsMember({"P1", "P2", "P3", "P4"}))
+      ->excludes(align)
+      ->excludes(window)
+      ->excludes(first);
+  command.add_option("--max-gap", options.max_gap_s, "Longest gap in the ground truth to interpolate over [s]")
+      ->check(positive_number())
+      ->capture_default_str();
+}
+
+Protocol chosen_protocol(const EvaluationOptions& options) {
+  if (!options.protocol_name.empty()) return protocol(options.protocol_name);
+  Protocol result{"custom", kAlignments.at(options.align), {}};
+  if (options.window.size() == 2) result.window = {options.window[0], options.window[1]};
+  if (options.first_s > 0.0) result.window = {0.0, options.first_s};
+  return result;
+}
+
+std::string local_error_text(const std::vector<LocalError>& local) {
+  std::string errors, counts;
+  for (const LocalError& e : local) {
+    if (e.windows == 0) continue;
+    const char* comma = errors.empty() ? "" : ", ";
+    errors += fmt::format("{}{:.2f} mm over {} s", comma, 1e3 * e.rmse_m, e.window_s);
+    counts += fmt::format("{}{}", comma, e.windows);
+  }
+  return errors.empty() ? "- (too short)" : fmt::format("{} ({} windows)", errors, counts);
+}
+
+std::string to_table(const Evaluation& e) {
+  const bool timed = !std::isnan(e.duration_s);
+  std::string table = fmt::format("{} pairs over {}{:.3f} m; {} alignment on {}\n", e.pairs,
+                                  timed ? fmt::format("{:.2f} s and ", e.duration_s) : "", e.path_length_m,
+                                  to_string(e.protocol.alignment), window_text(e.protocol.window));
+  if (e.outside + e.in_gaps > 0) {
+    table +=
+        fmt::format("without ground truth: {} poses outside its time span, {} in its gaps\n", e.outside, e.in_gaps);
+  }
+  table += fmt::format("  {:<22} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "rmse", "mean", "median", "std",
+                       "min", "max");
+  table += row("ATE position", e.ate_m, "m");
+  table += row("ATE rotation", e.rotation_deg, "deg");
+  table += row("ATE yaw", e.yaw_deg, "deg");
+  for (const RelativeError& relative : e.relative) {
+    if (relative.translation_m.count == 0) continue;
+    table += row(fmt::format("RPE position, {} s", relative.delta_s).c_str(), relative.translation_m, "m");
+    table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
+  }
+  if (timed) table += fmt::format("  local error            {}\n", local_error_text(e.local));
+  table += fmt::format("  mean position error    {:.4f} % of the path\n", e.mpe_percent);
+  table +=
+      fmt::format("  mean rotation error    {:.4f} deg/m, yaw {:.4f} deg/m\n", e.rotation_deg_per_m, e.yaw_deg_per_m);
+  table += fmt::format("  scale (Sim3)           {:.6f}{}\n", e.scale,
+                       e.protocol.alignment == AlignmentKind::Sim3 ? " applied" : " estimated, not applied");
+  return table;
+}
+
+}  // namespace edged

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How a trajectory is held against ground truth, as a user says it on the command line, and the result as a table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/cli_fwd.hpp"
+#include "edged/eval/metrics.hpp"
+
+namespace edged {
+
+struct EvaluationOptions {
+  std::string align = "se3";
+  std::vector<double> window;
+  double first_s = 0.0;
+  std::string protocol_name;
+  double max_gap_s = kDefaultMaxGap_s;
+};
+
+/// Adds --align, --window, --first, --protocol and --max-gap.
+void add_evaluation_options(CLI::App& command, EvaluationOptions& options);
+
+Protocol chosen_protocol(const EvaluationOptions& options);
+
+std::string to_table(const Evaluation& evaluation);
+/// In one line, of the windows that there are.
+std::string local_error_text(const std::vector<LocalError>& local);
+
+}  // namespace edged

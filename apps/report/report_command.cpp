@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/json_text.hpp"
+#include "report/report_data.hpp"
+#include "report/report_page.hpp"
+
+namespace edged {
+namespace {
+
+struct ReportCommand {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path out;
+  ReportOptions report;
+  bool json = false;
+};
+
+int write_report(const ReportCommand& options) {
+  const bool one_folder = options.runs.size() == 1 && std::filesystem::is_directory(options.runs[0]);
+  std::filesystem::path out = one_folder && options.out.empty() ? options.runs[0] : options.out;
+  if (out.empty() || std::filesystem::is_directory(out)) out /= "report.html";
+  write_file(out, report_page(report_data(options.runs, options.report)));
+  fmt::print("{}\n", options.json ? json_text({{"out", out.string()}}) : out.string());
+  return kExitOk;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<ReportCommand>();
+  CLI::App* report = app.add_subcommand("report", "Show runs side by side, in one page for a browser");
+  report
+      ->add_option("RUN", options->runs,
+                   "Folders that `edged run` left; also trajectory files of other programs, of the same sensor")
+      ->required();
+  report->add_option("--out", options->out, "The page [report.html, of one run in its folder]");
+  report->add_option("--truth", options->report.truth,
+                     "Ground truth of the sensor whose poses the trajectory files hold [what each run knew]");
+  add_evaluation_options(*report, options->report.how);
+  report->add_flag("--json", options->json, "Print where it is as json");
+  report->footer(
+      "Examples:\n"
+      "  edged report runs/boxes-fused\n"
+      "  edged report runs/boxes-fused runs/boxes-events runs/boxes-frames --out modes.html\n"
+      "  edged report runs/boxes-fused other_slam.tum --truth groundtruth.txt --protocol P1");
+  report->callback([options, &chosen] { chosen = [options] { return write_report(*options); }; });
+}
+
+}  // namespace edged

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "report/report_path.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "edged/camera/output_frame.hpp"
+#include "edged/core/angles.hpp"
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& frame, const Association& association) {
+  auto pair = association.pairs.begin();
+  for (std::size_t i = 0; i < path.shown.size(); ++i) {
+    StampedPose& pose = path.shown[i];
+    while (pair != association.pairs.end() && pair->t < pose.t) ++pair;
+    const bool paired = pair != association.pairs.end() && pair->t == pose.t;
+    pose.T = path.alignment * pose.T;
+    path.body[i].T = frame.to_body(pose).T;
+    if (!paired) continue;
+    path.truth[i] = pair->truth;
+    path.true_body[i] = frame.to_body({pose.t, pair->truth}).T;
+    path.error_m[i] = (pair->truth.translation() - pose.T.translation()).norm();
+    path.rotation_deg[i] = kDegreesPerRadian * so3::log(pair->truth.rotation().conjugate() * pose.T.rotation()).norm();
+  }
+  for (const StampedPose& pose : truth.trajectory) {
+    if (pose.t >= path.shown.front().t && pose.t <= path.shown.back().t) path.true_path.push_back(pose);
+  }
+}
+
+}  // namespace
+
+ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
+                          const std::string& frame_name, const std::optional<GroundTruth>& truth,
+                          const EvaluationOptions& how) {
+  ReportPath path;
+  const OutputFrame frame(rig, truth ? truth->frame : frame_name);
+  path.frame = frame.name();
+  path.body = body;
+  path.shown = frame(body);
+  path.truth.resize(body.size());
+  path.true_body.resize(body.size());
+  path.error_m.assign(body.size(), std::numeric_limits<double>::quiet_NaN());
+  path.rotation_deg = path.error_m;
+  if (!truth || body.empty()) return path;
+  try {
+    const Association association = associate(truth->trajectory, path.shown, duration_from_seconds(how.max_gap_s));
+    path.evaluation = evaluate(association, chosen_protocol(how));
+    path.alignment = path.evaluation->alignment;
+    add_truth(path, *truth, frame, association);
+    Trajectory true_body;
+    for (const StampedPose& pose : truth->trajectory) true_body.push_back(frame.to_body(pose));
+    path.pose_errors = check_consistency(true_body, samples).errors;
+  } catch (const InputError& e) {
+    path.not_compared = e.what();
+  }
+  return path;
+}
+
+}  // namespace edged

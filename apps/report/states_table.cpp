@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "report/states_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "edged/core/check.hpp"
+#include "edged/io/text.hpp"
+
+namespace edged {
+namespace {
+
+std::optional<TrackingStatus> parse_status(std::string_view text) {
+  for (const auto status :
+       {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
+    if (text == to_string(status)) return status;
+  }
+  return std::nullopt;
+}
+
+/// The present name of a column that version 0.2 wrote under another one.
+std::string present_name(const std::string& column) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 4> kDeprecated = {
+      {{"found_again", "relocalized"},                   // deprecated
+       {"event_survival", "event_track_survival_rate"},  // deprecated
+       {"frame_survival", "frame_track_survival_rate"},  // deprecated
+       {"map_found", "map_matches"}}};                   // deprecated
+  const auto renamed = std::ranges::find(kDeprecated, column, [](const auto& pair) { return pair.first; });
+  return renamed == kDeprecated.end() ? column : renamed->second;
+}
+
+/// The numbers of these columns by row; nothing where one of them is missing or empty.
+template <std::size_t N>
+auto numbers_of(const StatesTable& states, const std::array<const char*, N>& names) {
+  std::array<const std::vector<double>*, N> columns;
+  std::ranges::transform(names, columns.begin(), [&](const char* name) { return states.find(name); });
+  return [columns](std::size_t row) -> std::optional<std::array<double, N>> {
+    std::array<double, N> numbers;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!columns[i] || std::isnan((*columns[i])[row])) return std::nullopt;
+      numbers[i] = (*columns[i])[row];
+    }
+    return numbers;
+  };
+}
+
+/// use(row, T_W_B) of each row that has a pose.
+template <typename Use>
+void for_each_pose(const StatesTable& states, Use use) {
+  const auto numbers = numbers_of<7>(states, {"px_m", "py_m", "pz_m", "qx", "qy", "qz", "qw"});
+  for (std::size_t row = 0; row < states.t.size(); ++row) {
+    const auto v = numbers(row);
+    if (v) use(row, SE3(Eigen::Quaterniond(v->data() + 3), Eigen::Vector3d(v->data())));
+  }
+}
+
+/// The upper triangle, row by row.
+Eigen::Matrix3d symmetric(const double* v) {
+  Eigen::Matrix3d P;
+  P << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+  return P;
+}
+
+}  // namespace
+
+const std::vector<double>* StatesTable::find(const std::string& column) const {
+  const auto found = columns.find(column);
+  return found == columns.end() ? nullptr : &found->second;
+}
+
+StatesTable read_states(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "states.csv";
+  LineReader lines(file);
+  const auto heading = lines.next();
+  const std::vector<std::string> names = heading ? heading_fields(heading->text) : std::vector<std::string>();
+  if (names.size() < 2 || names[0] != "t_ns" || names[1] != "status") {
+    throw InputError::format("{}: is no states.csv of a run; give the folder that `edged run` left", file.string());
+  }
+  StatesTable table;
+  std::vector<std::vector<double>*> columns;
+  for (std::size_t i = 2; i < names.size(); ++i) columns.push_back(&table.columns[present_name(names[i])]);
+  while (const auto line = lines.next()) {
+    FieldReader fields(line->text);
+    const auto t = parse_nanoseconds(fields.next());
+    const auto status = parse_status(fields.next());
+    if (!t || !status || std::ranges::count(line->text, ',') + 1 != std::ssize(names)) continue;
+    table.t.push_back(*t);
+    table.status.push_back(*status);
+    for (auto* column : columns) {
+      column->push_back(parse_number(fields.next()).value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+  }
+  return table;
+}
+
+Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows) {
+  Trajectory body;
+  for_each_pose(states, [&](std::size_t row, const SE3& T_W_B) {
+    if (!is_tracking(states.status[row])) return;
+    body.push_back({states.t[row], T_W_B});
+    if (rows) rows->push_back(row);
+  });
+  return body;
+}
+
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states) {
+  const auto covariance =
+      numbers_of<12>(states, {"p_xx_m2", "p_xy_m2", "p_xz_m2", "p_yy_m2", "p_yz_m2", "p_zz_m2", "r_xx_rad2",
+                              "r_xy_rad2", "r_xz_rad2", "r_yy_rad2", "r_yz_rad2", "r_zz_rad2"});
+  const std::vector<double>* relocalized = states.find("relocalized");
+  CovarianceSamples samples;
+  for_each_pose(states, [&](std::size_t row, const SE3& T_W_B) {
+    Step step;
+    step.t = states.t[row];
+    step.status = states.status[row];
+    step.state.T_W_B = T_W_B;
+    step.relocalized = relocalized && (*relocalized)[row] == 1.0;
+    if (const auto P = covariance(row)) step.covariance = {symmetric(P->data()), symmetric(P->data() + 6)};
+    samples.add(step);
+  });
+  return samples.all();
+}
+
+void CovarianceSamples::add(const Step& step) {
+  const bool good = step.status == TrackingStatus::Good;
+  // Packets after the first of a loss only skip a number.
+  if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
+  if (!step.covariance || !is_tracking(step.status)) return;
+  const auto& [position, rotation] = *step.covariance;
+  const auto old = [&](const PoseCovarianceSample& last) {
+    return last.start == start_ && last.good && last.position == position;
+  };
+  if (good && !samples_.empty() && old(samples_.back())) return;
+  samples_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
+}
+
+void read_pace(const std::filesystem::path& folder, StatesTable& states) {
+  const std::filesystem::path file = folder / "pace.csv";
+  if (!std::filesystem::exists(file)) return;
+  std::vector<double> processing(states.t.size(), std::numeric_limits<double>::quiet_NaN()), latency = processing;
+  LineReader lines(file);
+  lines.next();
+  for (std::size_t row = 0; row < states.t.size();) {
+    const auto line = lines.next();
+    if (!line) break;
+    FieldReader fields(line->text);
+    if (parse_nanoseconds(fields.next()) != states.t[row]) continue;  // a kill may have left half a line
+    if (const auto number = parse_number(fields.next())) processing[row] = *number;
+    if (const auto number = parse_number(fields.next())) latency[row] = *number;
+    ++row;
+  }
+  states.columns["processing_ms"] = std::move(processing);
+  states.columns["latency_ms"] = std::move(latency);
+}
+
+std::vector<MappedKeyframe> read_keyframes(const std::filesystem::path& folder) {
+  std::vector<MappedKeyframe> keyframes;
+  if (!std::filesystem::exists(folder / "keyframes.csv")) return keyframes;
+  LineReader lines(folder / "keyframes.csv");
+  while (const auto line = lines.next()) {
+    FieldReader fields(line->text);
+    const auto t = parse_nanoseconds(fields.next());
+    if (!t) continue;  // the heading
+    std::array<double, 7> v;
+    for (double& number : v) number = parse_number(fields.next()).value_or(0.0);
+    MappedKeyframe& keyframe = keyframes.emplace_back();
+    keyframe.t = *t;
+    keyframe.T_W_B = SE3(Eigen::Quaterniond(v.data() + 3), Eigen::Vector3d(v.data()));
+    keyframe.camera = fields.next();
+    fields.next();  // how many points it has
+    keyframe.times_found = static_cast<int>(parse_number(fields.next()).value_or(0.0));
+  }
+  return keyframes;
+}
+
+}  // namespace edged

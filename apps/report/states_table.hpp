@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is read of the tables in a run folder: states.csv as columns, whatever version wrote it, pace.csv,
+// keyframes.csv.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "edged/eval/consistency.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/odometry.hpp"
+#include "edged/state.hpp"
+#include "edged/step.hpp"
+
+namespace edged {
+
+struct StatesTable {
+  std::vector<Timestamp> t;
+  std::vector<TrackingStatus> status;
+  std::map<std::string, std::vector<double>> columns;  ///< by the names of the heading; NaN where a field is empty
+
+  /// One number a row; null where there is no such column.
+  const std::vector<double>* find(const std::string& column) const;
+};
+
+/// Of a run's folder. Lines that are cut short, as a kill may leave the last one, are left out. Throws InputError when
+/// there is no such file, or it has other columns.
+StatesTable read_states(const std::filesystem::path& folder);
+
+/// Good and Degraded rows as T_W_B on the IMU clock. rows: gets the row of each.
+Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows = nullptr);
+
+/// Those of the poses whose covariance was worked out anew.
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states);
+
+/// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start,
+/// and so does being found again.
+class CovarianceSamples {
+ public:
+  /// Every step, in time order.
+  void add(const Step& step);
+  const std::vector<PoseCovarianceSample>& all() const { return samples_; }
+
+ private:
+  std::vector<PoseCovarianceSample> samples_;
+  int start_ = 0;
+};
+
+/// Adds the columns processing_ms and latency_ms, where the run's folder has them.
+void read_pace(const std::filesystem::path& folder, StatesTable& states);
+
+/// keyframes.csv of a run's folder, without their points; empty where there is no such file.
+std::vector<MappedKeyframe> read_keyframes(const std::filesystem::path& folder);
+
+}  // namespace edged

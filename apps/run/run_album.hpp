@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the report of a run shows beside its files: small pictures, map points, and why its status changed (album.json).
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/step_facts.hpp"
+#include "edged/core/dataset.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/odometry.hpp"
+
+namespace edged {
+
+/// Bytes as text of 64 letters (RFC 4648).
+std::string base64(const std::vector<unsigned char>& bytes);
+
+/// Looks at the steps as they come. However long the run is, it keeps a bounded number of pictures and points, evenly
+/// over the whole of it.
+class RunAlbum {
+ public:
+  static constexpr std::size_t kMostPictures = 60;
+  static constexpr std::size_t kMostPoints = 4000;
+
+  void add(const Step& step);
+
+  /// x, y, z [m] in the world of the estimate, by landmark.
+  const std::map<FeatureId, std::array<float, 3>>& points() const { return points_; }
+
+  const std::vector<StatusChange>& changes() const { return changes_.all(); }
+  Timestamp last() const { return last_; }  ///< step
+
+  /// truth_frame: whose pose the ground truth is; "" where there is none.
+  nlohmann::ordered_json to_json(const std::string& truth_frame) const;
+
+  /// album.json, groundtruth.tum where there is a truth, and calibration_found.yaml: `given` with the cameras of
+  /// `found`.
+  void write(const std::filesystem::path& folder, const Calibration& given, const Rig& found,
+             const std::optional<GroundTruth>& truth) const;
+
+ private:
+  /// JPEG, empty where the step brought none.
+  struct Picture {
+    Timestamp t;
+    std::vector<unsigned char> events, frame;
+  };
+
+  void take_picture(const Step& step);
+  void note_points(const Step& step);
+
+  std::vector<Picture> pictures_;
+  std::optional<Timestamp> due_;  ///< of the next picture
+  Duration spacing_ = std::chrono::milliseconds(200);
+  bool events_come_ = false, frames_come_ = false;
+  StatusChanges changes_;
+  Timestamp last_{};
+  std::map<FeatureId, std::array<float, 3>> points_;
+  FeatureId every_ = 1;  ///< only ids that it divides are kept
+};
+
+}  // namespace edged

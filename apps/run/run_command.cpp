@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "live/live_page.hpp"
+#include "run/run.hpp"
+#include "run/run_folder.hpp"
+#include "run/run_many.hpp"
+#include "run/run_map.hpp"
+
+namespace edged {
+namespace {
+
+int run(RunOptions options) {
+  options.live = options.live || is_live(options.source);
+  const RunConfig config = load_config(options.config);
+  options.source.cameras = camera_names(config.odometry.cameras);
+  Source source = open_source(options.source);
+  const Mode mode = choose_mode(options.mode, source.dataset->info());
+  match_cameras(source, mode);
+  for (const Modality modality : {Modality::Events, Modality::Frames})
+    if (!uses(mode, modality)) source.dataset->leave_out(modality);
+  const RunSummary summary = Run(options, std::move(source), mode, config).go();
+  fmt::print("{}", options.json ? json_text(to_json(summary)) + "\n" : to_table(summary));
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (summary.verdict.contradicted) return kExitNotTrusted;
+  return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
+}
+
+bool is_assignment(const std::string& word) {
+  std::error_code ignored;
+  return word.find('=') != std::string::npos && !std::filesystem::exists(word, ignored);
+}
+
+int run_all(const RunOptions& given, const CLI::App& app) {
+  RunOptions options = given;
+  std::vector<std::string> recordings = {options.source.recording}, assignments;
+  for (const std::string& word : options.more) (is_assignment(word) ? assignments : recordings).push_back(word);
+  if (recordings.size() > 1 && !options.map.save.empty())
+    throw CLI::ValidationError("--save-map", "is for one recording; each would replace the map of the one before");
+  if (recordings.size() > 1 && !options.archive.empty() && options.archive != kArchiveBeside)
+    throw CLI::ValidationError("--archive",
+                               "is one file, the recordings are several; leave =FILE out for one beside each folder");
+  if (recordings.size() > 1 && !options.serve.empty())
+    throw CLI::ValidationError("--serve", "shows one run; give one recording (a port is written --serve=PORT)");
+  if (recordings.size() > 1)
+    return run_many({recordings, arguments_for_each(app, assignments), options.out, options.force, options.quiet,
+                     options.json, options.jobs});
+  options.config.assignments.insert(options.config.assignments.end(), assignments.begin(), assignments.end());
+  return run(std::move(options));
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
+  add_source_options(*run_app, options->source);
+  add_config_options(*run_app, options->config);
+  add_map_options(*run_app, options->map);
+  run_app->add_option("MORE", options->more, "More recordings; options as KEY=VALUE, as with --set");
+  run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
+      ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
+      ->capture_default_str();
+  run_app
+      ->add_option(
+          "--frame", options->frame,
+          "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
+      ->capture_default_str();
+  run_app->add_option(
+      "--out", options->out,
+      "Run folder; where it holds a run, one with a number [runs/NAME-MODE]; of several recordings the folder of "
+      "theirs");
+  run_app->add_option("--jobs", options->jobs, "Of several recordings so many at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  run_app->add_flag("--force", options->force, "Replace an earlier run in the folder");
+  run_app->add_flag("--live", options->live,
+                    "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
+                    "events (live.*); the "
+                    "depth network in a thread of its own; not repeatable to the bit");
+  run_app->add_flag(
+      "--mcap", options->mcap,
+      "Leave results.mcap in the run folder as well: poses, path, map, pictures, numbers for Foxglove, Lichtblick "
+      "and others (10 MB a minute or so)");
+  add_archive_option(*run_app, options->archive);
+  add_serve_option(*run_app, options->serve);
+  run_app->add_flag("--quiet", options->quiet, "No status line");
+  run_app->add_flag("--json", options->json, "Print the summary as json");
+  run_app->footer(
+      "Examples:\n"
+      "  edged run data/boxes_6dof --rig davis240c_ecd\n"
+      "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
+      "  edged run data/boxes_6dof data/poster_6dof --rig davis240c_ecd --jobs 2    # ends with a table\n"
+      "  edged run data/boxes_6dof --live --set depth.source=fused\n"
+      "  edged run tcp://127.0.0.1:7777 --calib head.yaml --serve    # a live camera, watched in a browser\n"
+      "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
+      "Of several recordings the exit code is that of the first whose is not 0.");
+  run_app->callback(
+      [options, run_app, &chosen] { chosen = [options, run_app] { return run_all(*options, *run_app); }; });
+}
+
+}  // namespace edged

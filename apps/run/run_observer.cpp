@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_observer.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+
+#include "program.hpp"
+#include "report/report_page.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::array kObservers = {
+    observe_status_line,
+    observe_log,
+    observe_verdict,
+    observe_map,
+    observe_states,
+    observe_album,  // which those below look at
+    observe_final_trajectory,
+    observe_summary,
+    observe_overview,
+    observe_report,  // of the files of those above
+    observe_mcap,
+    observe_live_page,
+};
+
+/// What was asked for, or what the format's users expect, where the calibration has that.
+std::string frame_name(const std::string& wanted, const Source& source) {
+  const std::string& usual = source.dataset->info().pose_frame;
+  const bool has_usual = std::ranges::count(source.calibration.rig.cameras, usual, &RigCamera::name) > 0;
+  return wanted != "auto" ? wanted : has_usual ? usual : "body";
+}
+
+class ReportFile : public RunObserver {
+ public:
+  explicit ReportFile(const RunContext& run) : run_(run) {}
+  void on_end(const RunEnd&) override { write_run_report(run_.folder); }
+
+ private:
+  const RunContext& run_;
+};
+
+}  // namespace
+
+RunContext::RunContext(const RunOptions& run_options, Source recording, Mode run_mode, const RunConfig& run_config)
+    : options(run_options),
+      source(std::move(recording)),
+      mode(run_mode),
+      config(run_config),
+      frame(source.calibration.rig, frame_name(options.frame, source)),
+      used(used_cameras(source.calibration.rig, mode, config.odometry.cameras)),
+      odometry(source.calibration.rig, source.calibration.imu, mode, config.odometry,
+               {kInOrder, options.live ? Inference::OwnThread : Inference::Synchronous}) {}
+
+std::vector<std::string> RunContext::heading(const std::string& known_when) const {
+  return {fmt::format("{}; {}", frame.describe(), known_when),
+          fmt::format("edged {}, recording {}, mode {}", kVersion, info().name, mode_name(mode))};
+}
+
+std::vector<std::unique_ptr<RunObserver>> make_observers(RunContext& run) {
+  std::vector<std::unique_ptr<RunObserver>> observers;
+  for (ObserverFactory* make : kObservers)
+    if (auto observer = make(run)) observers.push_back(std::move(observer));
+  return observers;
+}
+
+std::unique_ptr<RunObserver> observe_report(RunContext& run) { return std::make_unique<ReportFile>(run); }
+
+}  // namespace edged

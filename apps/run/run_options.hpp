@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What `edged run` was asked for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/config_source.hpp"
+#include "common/source.hpp"
+
+namespace edged {
+
+struct MapOptions {
+  std::filesystem::path load, save;  ///< "": none
+};
+
+struct RunOptions {
+  SourceOptions source;
+  ConfigSource config;
+  MapOptions map;
+  std::string mode = "auto";
+  std::string frame = "auto";
+  std::filesystem::path out;
+  std::vector<std::string> more;  ///< recordings, and options as key=value
+  int jobs = 1;
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+  bool live = false;
+  bool mcap = false;
+  std::string archive;  ///< which file; "true" for the one beside the folder; "" for none
+  std::string serve;    ///< where to; "true" where that is not said; "" without a live page
+};
+
+}  // namespace edged

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_reader.hpp"
+
+#include "common/interrupt.hpp"
+
+namespace edged {
+namespace {
+
+/// Events and frames read before they are wanted: a packet of a wide sensor in haste, and little beside what a run
+/// holds.
+constexpr int kReadAheadMegabytes = 16;
+
+}  // namespace
+
+RunReader::RunReader(RunContext& run) : run_(run) {
+  const auto interrupted = [] { return interrupt_signal() != 0; };
+  Dataset& dataset = *run_.source.dataset;
+  // The price of making up a recording is no part of what it costs to estimate one: that is not done beside.
+  if (run_.source.seed) return;
+  if (run_.options.live) {
+    live_.emplace(dataset, run_.config.live, interrupted);
+  } else {
+    ahead_.emplace(dataset, QueueConfig{.max_megabytes = kReadAheadMegabytes}, WhenFull::Wait, interrupted);
+  }
+}
+
+std::optional<Measurement> RunReader::next() { return interrupt_signal() == 0 ? read() : std::nullopt; }
+
+std::optional<Measurement> RunReader::read() {
+  const auto timer = run_.timings.measure_often(run_.source.seed ? "simulate" : "wait");
+  if (live_) return live_->next();
+  if (ahead_) return ahead_->next();
+  return run_.meter.without([this] { return run_.source.dataset->next(); });
+}
+
+std::optional<double> RunReader::note_result(Timestamp t) {
+  return live_ ? std::optional(live_->note_result(t)) : std::nullopt;
+}
+
+void RunReader::stop() {
+  if (live_) live_->stop();
+  if (ahead_) ahead_->stop();
+  if (live_ || ahead_) run_.timings.put("read", live_ ? live_->reading() : ahead_->reading());
+}
+
+std::optional<LiveSummary> RunReader::live_summary() const {
+  if (!live_) return std::nullopt;
+  return LiveSummary{live_->latency(), live_->shed(), run_.odometry.counters().packets.packets_overflow,
+                     live_->peaks()};
+}
+
+}  // namespace edged

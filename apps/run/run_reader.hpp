@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// How a run gets its measurements: from a thread that reads ahead, from one that plays the recording as sensors would,
+// or, where the recording is made up, in the thread of the run.
+#pragma once
+
+#include <optional>
+
+#include "edged/live/live_source.hpp"
+#include "edged/live/read_ahead.hpp"
+#include "run/run_observer.hpp"
+
+namespace edged {
+
+class RunReader {
+ public:
+  /// Starts to read.
+  explicit RunReader(RunContext& run);
+
+  /// Nothing at the end, and when the user interrupts.
+  std::optional<Measurement> next();
+  /// The result for t is there. How late it is [s], in a live run.
+  std::optional<double> note_result(Timestamp t);
+  /// The dataset is no longer read.
+  void stop();
+  std::optional<LiveSummary> live_summary() const;
+
+ private:
+  std::optional<Measurement> read();
+
+  RunContext& run_;
+  std::optional<LiveSource> live_;
+  std::optional<ReadAhead> ahead_;
+};
+
+}  // namespace edged

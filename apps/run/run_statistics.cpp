@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_statistics.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "edged/core/measurement_stamps.hpp"
+
+namespace edged {
+namespace {
+
+rusage usage() {
+  rusage u = {};
+  getrusage(RUSAGE_SELF, &u);
+  return u;
+}
+
+double process_cpu_s() {
+  const rusage u = usage();
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(u.ru_utime) + seconds(u.ru_stime);
+}
+
+}  // namespace
+
+void RunStatistics::add_visual(Timestamp first, Timestamp last) {
+  if (!first_visual_) {
+    first_visual_ = first;
+    last_visual_ = last;
+  }
+  last_visual_ = std::max(last_visual_, last);
+}
+
+void RunStatistics::add_visual(const Measurement& measurement, const Rig& used) {
+  const std::optional<Timestamp> first = first_stamp(measurement);
+  const std::string* name = camera_of(measurement);
+  if (!first || !name) return;
+  const auto camera = std::ranges::find(used.cameras, *name, &RigCamera::name);
+  if (camera != used.cameras.end())
+    add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);
+}
+
+void RunStatistics::add(const Step& step) {
+  ++packets_;
+  if (is_tracking(step.status)) ++poses_;
+  if (step.keyframe) ++keyframes_;
+  if (step.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
+  last_status_ = step.status;
+  ln_depth_scale_ = step.ln_depth_scale;
+  if (is_tracking(step.status)) accel_bias_ = step.state.bias_accel;
+  if (!step.waiting_for.empty()) waiting_for_ = step.waiting_for;
+  if (!step.lost_because.empty()) lost_because_ = step.lost_because;
+  const Timestamp begin = first_visual_.value_or(step.t);
+  seconds_[static_cast<std::size_t>(step.status)] += std::max(0.0, to_seconds(step.t - last_packet_.value_or(begin)));
+  last_packet_ = step.t;
+  if (step.status == TrackingStatus::Good && !first_good_s_) first_good_s_ = to_seconds(step.t - begin);
+}
+
+double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(last_visual_ - *first_visual_) : 0.0; }
+
+double RunStatistics::coverage() const {
+  const double span = visual_span_s();
+  return span > 0.0 ? std::min(1.0, time_in_s(TrackingStatus::Good) / span) : 0.0;
+}
+
+double RunStatistics::lost_share() const {
+  const double since = visual_span_s() - first_good_s_.value_or(0.0);
+  return first_good_s_ && since > 0.0 ? std::min(1.0, time_in_s(TrackingStatus::Lost) / since) : 0.0;
+}
+
+ResourceMeter::ResourceMeter() : wall_(std::chrono::steady_clock::now()), cpu_s_(process_cpu_s()) {}
+
+double ResourceMeter::wall_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count() - paused_wall_s_;
+}
+
+double ResourceMeter::cpu_s() const { return process_cpu_s() - cpu_s_ - paused_cpu_s_; }
+
+double ResourceMeter::peak_rss_mb() { return static_cast<double>(usage().ru_maxrss) / 1024.0; }
+
+}  // namespace edged

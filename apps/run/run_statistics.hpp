@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is counted while a run goes, and what the process used.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "edged/measurement.hpp"
+#include "edged/odometry.hpp"
+
+namespace edged {
+
+/// How long the program took for a packet.
+struct PacketPace {
+  double processing_ms = 0;          ///< the odometry's work on it
+  std::optional<double> latency_ms;  ///< live runs: from when it was measured to its result
+};
+
+/// Counts of one run. Stamps are on the IMU clock.
+class RunStatistics {
+ public:
+  /// A visual measurement that the mode uses: spans the time that a pose could cover.
+  void add_visual(Timestamp first, Timestamp last);
+  /// The same of a measurement as recorded, where it is one.
+  void add_visual(const Measurement& measurement, const Rig& used);
+  void add(const Step& step);
+
+  std::size_t packets() const { return packets_; }
+  std::size_t poses() const { return poses_; }  ///< Good and Degraded packets
+  std::size_t keyframes() const { return keyframes_; }
+  std::size_t times_lost() const { return times_lost_; }
+  /// First visual measurement to last [s].
+  double visual_span_s() const;
+  /// Time since the previous packet (the first: since the first measurement), summed over packets of that status [s].
+  double time_in_s(TrackingStatus status) const { return seconds_[static_cast<std::size_t>(status)]; }
+  /// Share of the visual span whose packets were Good.
+  double coverage() const;
+  /// From the first visual measurement to the first Good packet [s].
+  std::optional<double> first_good_s() const { return first_good_s_; }
+  TrackingStatus last_status() const { return last_status_; }
+  /// Share of the time since the first Good packet that was Lost.
+  double lost_share() const;
+  /// What was missing when an estimate was last waited for, and what ended the last one; empty where it never was so.
+  const std::string& waiting_for() const { return waiting_for_; }
+  const std::string& lost_because() const { return lost_because_; }
+  /// As estimated last [m/s^2].
+  const Eigen::Vector3d& accel_bias() const { return accel_bias_; }
+  /// ln s of Eq. 5 at the end; nothing without the depth factor.
+  const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
+
+ private:
+  std::optional<Timestamp> first_visual_;
+  Timestamp last_visual_;
+  std::optional<Timestamp> last_packet_;
+  std::size_t packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0;
+  std::array<double, 4> seconds_{};
+  std::optional<double> first_good_s_;
+  TrackingStatus last_status_ = TrackingStatus::Initializing;
+  std::optional<LogScale> ln_depth_scale_;
+  std::string waiting_for_, lost_because_;
+  Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
+};
+
+/// Wall and processor time since construction, without the pauses; peak memory since the process began.
+class ResourceMeter {
+ public:
+  ResourceMeter();
+  double wall_s() const;
+  double cpu_s() const;  ///< user + system, all threads
+  static double peak_rss_mb();
+
+  /// Calls work() and leaves out what it uses.
+  template <typename Work>
+  auto without(Work work) {
+    const double wall = wall_s(), cpu = cpu_s();
+    auto result = work();
+    paused_wall_s_ += wall_s() - wall;
+    paused_cpu_s_ += cpu_s() - cpu;
+    return result;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point wall_;
+  double cpu_s_;
+  double paused_wall_s_ = 0.0, paused_cpu_s_ = 0.0;
+};
+
+}  // namespace edged

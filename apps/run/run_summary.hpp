@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What a run amounts to: metrics.json, and the short table at its end.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/camera/output_frame.hpp"
+#include "edged/core/dataset.hpp"
+#include "edged/core/timing.hpp"
+#include "edged/eval/consistency.hpp"
+#include "edged/eval/metrics.hpp"
+#include "edged/live/measurement_queue.hpp"
+#include "edged/pipeline/counters.hpp"
+#include "run/run_statistics.hpp"
+#include "run/verdict.hpp"
+
+namespace edged {
+
+/// How a live run kept up.
+struct LiveSummary {
+  StageTiming latency;           ///< from when a measurement was due to its result
+  ShedCounters shed;             ///< by the queue before the packetizer
+  std::size_t shed_packets = 0;  ///< by the packetizer, while the IMU stayed away
+  QueuePeaks peaks;
+};
+
+/// What became of --map and --save-map.
+struct MapSummary {
+  std::string loaded;             ///< file; empty: none was given
+  std::optional<double> found_s;  ///< from the first pose until the body was found in it
+  std::string saved;              ///< file; empty: none was asked for, or there was nothing to save
+};
+
+struct RunSummary {
+  std::string recording, format, mode, frame, folder;
+  std::string archive;  ///< file that holds the folder, too; "": none was asked for
+  std::optional<int> seed;
+  /// "good", "degraded", "not to be trusted" (with a pose to the end, but contradicted), "lost", "never good",
+  /// "interrupted" or "broken off" (by an error)
+  std::string status;
+  Verdict verdict;
+  RunStatistics statistics;
+  std::size_t poses = 0;
+  double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
+  std::optional<LiveSummary> live;
+  std::optional<MapSummary> map;
+  std::vector<CalibrationFound> calibration;
+  std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
+  std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
+  std::optional<Evaluation> final_evaluation;  ///< the same of the poses as known in the end, not causal
+  std::optional<Consistency> consistency;      ///< nothing without ground truth
+  std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
+};
+
+/// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
+/// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+                  const Rig& rig, const GroundTruth& truth);
+
+/// The same of its poses as known in the end, which are as many.
+void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
+
+/// What the odometry could not use, in the words of a user.
+void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters);
+
+nlohmann::ordered_json to_json(const RunSummary& summary);
+std::string to_table(const RunSummary& summary);
+
+/// Count, mean, p50, p95, p99, total and, where it was taken, processor time of every stage, as json text.
+std::string timing_json(const StageTimings& pipeline, const StageTimings& program);
+
+}  // namespace edged

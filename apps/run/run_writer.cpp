@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/run_writer.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <optional>
+
+#include "common/files.hpp"
+#include "common/step_facts.hpp"
+#include "edged/core/check.hpp"
+#include "run/run_observer.hpp"
+
+namespace edged {
+namespace {
+
+constexpr const char* kStatesHeader =
+    "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
+    "baz_mps2,keyframe,relocalized,event_tracks,frame_tracks,landmarks,event_track_survival_rate,frame_track_survival_"
+    "rate,map_matches,map_"
+    "reach_s,event_rate_hz,scene_depth_m,"
+    "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
+    "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
+
+void append(std::string& line, const Eigen::Vector3d& v) { line += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); }
+
+/// The upper triangle, row by row.
+void append(std::string& line, const Eigen::Matrix3d& P) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) line += fmt::format(",{}", P(row, column));
+  }
+}
+
+std::string state_line(const Step& step) {
+  std::string line = fmt::format("{},{}", to_ns(step.t), to_string(step.status));
+  if (step.status == TrackingStatus::Initializing) {
+    line += std::string(16, ',');
+  } else {
+    const NavState& state = step.state;
+    const Eigen::Quaterniond& q = state.T_W_B.rotation();
+    append(line, state.T_W_B.translation());
+    line += fmt::format(",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
+    append(line, state.v_W);
+    append(line, state.bias_gyro);
+    append(line, state.bias_accel);
+  }
+  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
+  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.relocalized ? 1 : 0, events.tracks, frames.tracks,
+                      step.landmarks.size());
+  for (const std::optional<double>& number : {events.survival_rate, frames.survival_rate})
+    line += number ? fmt::format(",{}", *number) : ",";
+  const std::optional<double> reach_s = map_reach_s(step);
+  line += reach_s ? fmt::format(",{},{}", step.map_matches.size(), *reach_s) : ",,";
+  line += fmt::format(",{},{}", events.event_rate_hz, step.scene_depth);
+  const auto& ln_s = step.ln_depth_scale;
+  line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
+  if (step.covariance) {
+    append(line, step.covariance->position);
+    append(line, step.covariance->rotation);
+  } else {
+    line += std::string(12, ',');
+  }
+  return line + '\n';
+}
+
+class StatesFiles : public RunObserver {
+ public:
+  explicit StatesFiles(const RunContext& run) : run_(run) {}
+  void on_begin() override {
+    writer_.emplace(run_.folder, run_.frame, run_.heading("causal: each as it was known at its time"));
+    pace_.emplace(run_.folder);
+  }
+  void on_step(const Step& step) override {
+    writer_->add(step);
+    pace_->add(step.t, run_.pace);
+  }
+
+ private:
+  const RunContext& run_;
+  std::optional<RunWriter> writer_;
+  std::optional<PaceWriter> pace_;
+};
+
+}  // namespace
+
+RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& frame,
+                     const std::vector<std::string>& comments)
+    : frame_(frame),
+      tum_(folder / "trajectory.tum", TrajectoryFormat::Tum, comments),
+      euroc_(folder / "trajectory_euroc.csv", TrajectoryFormat::EurocCsv, comments),
+      kitti_(folder / "trajectory.kitti", TrajectoryFormat::Kitti, {}),
+      states_file_(folder / "states.csv"),
+      states_(open_for_writing(states_file_)) {
+  states_ << "# state of the body (IMU) in the world (z up), stamps on the IMU clock, whatever the trajectory's frame\n"
+          << kStatesHeader;
+  flush();  // a run without a packet leaves files that can be read, too
+}
+
+void RunWriter::add(const Step& step) {
+  states_ << state_line(step);
+  if (is_tracking(step.status)) {
+    ++poses_;
+    const StampedPose pose = frame_({step.t, step.state.T_W_B});
+    tum_.add(pose);
+    euroc_.add(pose);
+    kitti_.add(pose);
+  }
+  // Each line goes out by itself: a buffer that is left to fill up ends within one, and there a kill would leave it.
+  flush();
+}
+
+void RunWriter::flush() {
+  tum_.flush();
+  euroc_.flush();
+  kitti_.flush();
+  if (!states_.flush()) throw InputError::format("{}: cannot be written; is the disk full?", states_file_.string());
+}
+
+PaceWriter::PaceWriter(const std::filesystem::path& folder) : out_(folder / "pace.csv") {
+  out_ << "t_ns,processing_ms,latency_ms\n" << std::flush;
+}
+
+void PaceWriter::add(Timestamp t, const PacketPace& pace) {
+  out_ << fmt::format("{},{:.3f},{}\n", to_ns(t), pace.processing_ms,
+                      pace.latency_ms ? fmt::format("{:.3f}", *pace.latency_ms) : "")
+       << std::flush;
+}
+
+std::unique_ptr<RunObserver> observe_states(RunContext& run) { return std::make_unique<StatesFiles>(run); }
+
+}  // namespace edged

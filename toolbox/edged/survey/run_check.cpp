@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/survey/run_check.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "edged/camera/field_of_view.hpp"
+#include "edged/core/angles.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/statistics.hpp"
+
+namespace edged {
+namespace {
+
+constexpr int kCorners = 40;
+constexpr double kLeastRate = 0.15;                          // what counts as turning [rad/s]
+constexpr double kNewest = 0.05;                             // weight of a sample in the gyro's present rate
+constexpr double kUnexplained = 0.5;                         // beyond it an agreement means little
+constexpr Duration kEnough = std::chrono::seconds(3);        // turning for so long, more tells little more
+constexpr Duration kBurst = std::chrono::milliseconds(500);  // followed for so long, then not for as long
+constexpr int kOneOf = 4;                                    // such bursts, events and frames are surveyed
+constexpr Duration kPatience = std::chrono::seconds(6);      // with frames, before the events of their lens are asked
+constexpr Duration kFirstUnits = std::chrono::seconds(5);    // until then a gyro can be checked against a camera
+
+bool agrees(const std::optional<GyroAgreement>& found) { return found && found->unexplained < kUnexplained; }
+
+/// Median over the turns of what the gyro does not explain when the camera is mounted with R_B_C [rad/s].
+double median_error(const std::vector<Turn>& turns, const GyroIntegral& gyro, const GyroAgreement& found,
+                    const Eigen::Matrix3d& R_B_C) {
+  std::vector<double> errors;
+  for (const Turn& turn : turns) {
+    const auto phi = gyro.between(turn.begin + found.time_offset, turn.end + found.time_offset);
+    if (!phi) continue;
+    errors.push_back((*phi / found.gyro_scale - R_B_C * turn.phi_C).norm() / to_seconds(turn.end - turn.begin));
+  }
+  return median(std::move(errors));
+}
+
+/// Turns that are too noisy to tell the rotation still tell one that is grossly wrong: then the best one explains
+/// clearly more. (Mirror recordings, two people in view included: right calibrations reach 22 deg and 1.22 times the
+/// error, but not both; those wrong by 90 deg 80 deg and 1.20 times at least.)
+double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro, const RigCamera& given,
+                       const GyroAgreement& found) {
+  constexpr double kGross_deg = 45.0, kClearlyWorse = 1.15;
+  const Eigen::Matrix3d R = given.T_B_C.R();
+  const double off_deg = Eigen::AngleAxisd(R.transpose() * found.R_B_C).angle() * 180.0 / std::numbers::pi;
+  if (off_deg < kGross_deg) return 0.0;
+  const double best = median_error(turns, gyro, found, found.R_B_C);
+  return median_error(turns, gyro, found, R) > kClearlyWorse * best ? off_deg : 0.0;
+}
+
+/// Turning for so long, a camera can be judged: over less, corners on pictures of events give rotations that are wrong
+/// by any angle, and pass for those of a mirrored gyro.
+Duration least_turning(const RigCamera& camera) {
+  return std::chrono::seconds(camera.modality == Modality::Events ? 2 : 1);
+}
+
+/// As the doctor should take it, which follows more corners for longer: what few have in common is not in how parts of
+/// the recording scatter. (Mirror recordings, pieces of 8 s, calibrated right: events up to 14 deg off at a sigma of
+/// 1 deg and up to 100 ms, so that their time is left to the estimate; frames up to 12 deg at 0.8 deg in the dark.)
+GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
+  constexpr double kLess = 2.0;
+  const bool events = given.modality == Modality::Events;
+  const double common = (events ? 5.0 : 3.0) * kDegree;
+  agreement.rotation_covariance *= kLess * kLess;
+  agreement.rotation_covariance += common * common * Eigen::Matrix3d::Identity();
+  agreement.time_sigma_s *= kLess;
+  agreement.scale_sigma *= kLess;
+  if (events) {
+    agreement.time_offset = given.time_offset;
+    agreement.at_bound = false;
+  }
+  return agreement;
+}
+
+/// Nothing more to be found out.
+bool confirms(const GyroAgreement& found, const RigCamera& given) {
+  constexpr double kMostOff = 5.0 * kDegree, kSureOf = 2.0 * kDegree;  // [rad]
+  return !found.mirrored && found.unexplained < kUnexplained && found.rotation_sigma < kSureOf &&
+         found.accel.turns >= kFewestAccelTurns &&
+         Eigen::AngleAxisd(given.T_B_C.R().transpose() * found.R_B_C).angle() < kMostOff;
+}
+
+/// Up to its numbers.
+std::string subject_of(const Finding& finding) { return finding.text.substr(0, finding.text.find(':')); }
+
+void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
+  constexpr double kLongest_m = 2.0;
+  const double arm_m = camera.T_B_C.translation().norm();
+  if (arm_m <= kLongest_m) return;
+  out.push_back(
+      {Severity::Error,
+       fmt::format("camera {}: calibrated {:.4g} m away from the IMU, as if its translation were in millimetres",
+                   camera.name, arm_m),
+       "translations are in metres: divide that of T_B_C by 1000"});
+}
+
+}  // namespace
+
+RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics)
+    : has_extrinsics_(has_extrinsics), surveyor_(info) {
+  for (const Modality modality : {Modality::Frames, Modality::Events}) {
+    if (used.find(modality) == nullptr) continue;
+    const RigCamera& camera = *used.find(modality);
+    cameras_.push_back({camera, VisualTurns(camera, kCorners)});
+    cameras_.back().next_look = least_turning(camera);
+    cameras_.back().twin = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
+    cameras_.back().waits = cameras_.back().twin;
+  }
+}
+
+void RunCheck::add(const Measurement& measurement) {
+  const std::string* name = camera_of(measurement);
+  if (name && std::ranges::none_of(cameras_, [&](const Camera& camera) { return camera.given.name == *name; })) return;
+  using Detail = Surveyor::Detail;
+  surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps);
+  const auto first = first_stamp(measurement), last = last_stamp(measurement);
+  if (!first) return;
+  const auto note = [&](std::optional<Timestamp>& begin, Duration& length) {
+    if (!begin) begin = first;
+    length = *last - *begin;
+  };
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
+    note(first_imu_, imu_);
+    accel_axes_.add(*sample);
+    if (std::ranges::all_of(cameras_, [](const Camera& camera) { return camera.done || camera.waits; })) return;
+    gyro_.add(*sample);
+    rate_ += kNewest * (sample->gyro_B.norm() - rate_);
+  } else {
+    note(first_visual_, visual_);
+    for (Camera& camera : cameras_) follow(camera, measurement);
+    if (visual_ > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;
+  }
+  if (!looked_ && std::min(imu_, visual_) >= kFirstUnits) look_ = true;
+}
+
+void RunCheck::follow(Camera& camera, const Measurement& measurement) {
+  if (camera.done || camera.waits) return;
+  const bool pauses = camera.turning >= least_turning(camera.given) && (visual_ / kBurst) % 2 == 1;
+  if (pauses || !(rate_ > kLeastRate)) return;
+  camera.visual.add(measurement);
+  const std::vector<Turn>& turns = camera.visual.turns();
+  for (; camera.counted < turns.size(); ++camera.counted) {
+    const Turn& turn = turns[camera.counted];
+    const Timestamp before = camera.counted == 0 ? turn.begin : std::max(turn.begin, turns[camera.counted - 1].end);
+    if (turn.phi_C.norm() > kLeastRate * to_seconds(turn.end - turn.begin)) camera.turning += turn.end - before;
+  }
+  if (camera.turning < camera.next_look) return;
+  camera.next_look = camera.turning * 3 / 2;
+  compare(camera);
+  look_ |= camera.done;
+}
+
+/// What is not sure yet is looked at again.
+void RunCheck::compare(Camera& camera) {
+  const std::vector<Turn>& turns = camera.visual.turns();
+  camera.agreement = compare_with_gyro(turns, gyro_, camera.given.time_offset);
+  const bool known = agrees(camera.agreement);
+  camera.contradiction_deg =
+      camera.agreement && !known ? grossly_off_deg(turns, gyro_, camera.given, *camera.agreement) : 0.0;
+  camera.done = camera.turning >= kEnough || (camera.agreement && confirms(*camera.agreement, camera.given));
+}
+
+std::vector<Finding> RunCheck::judge(Survey survey) const {
+  // A gap is bridged, counted among the repairs, and known to the estimate's covariance.
+  survey.imu.gaps = 0;
+  std::vector<CameraCheck> checks;
+  for (const Camera& camera : cameras_)
+    if (!camera.waits) checks.push_back({camera.given, has_extrinsics_, camera.done ? camera.agreement : std::nullopt});
+  for (CameraCheck& check : checks)
+    if (check.agreement) check.agreement = less_sure(*check.agreement, check.camera);
+  std::vector<Finding> out = diagnose(survey, true, checks);
+  for (const Camera& camera : cameras_) {
+    const bool events = camera.given.modality == Modality::Events;
+    const std::string kind = events ? "events" : "frames";
+    if ((events ? survey.events : survey.frames).count == 0)
+      out.push_back(
+          {Severity::Error, fmt::format("no {}: the mode needs them, and not one came", kind),
+           fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind)});
+    if (camera.done && camera.contradiction_deg > 0.0)
+      out.push_back({Severity::Error,
+                     fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
+                                 camera.given.name, camera.contradiction_deg),
+                     "check the rotation of T_B_C and its direction: `edged calib` shows both"});
+    if (!camera.twin) judge_lever_arm(camera.given, out);
+  }
+  const bool gyro_agrees = std::ranges::any_of(
+      cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
+  if (const auto better = accel_axes_.better(); better && gyro_agrees)
+    out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as the gyro says",
+                   fmt::format("give it the axes of the gyro: {} would fit", *better)});
+  std::erase_if(out, [](const Finding& f) { return f.severity == Severity::Good || f.severity == Severity::Note; });
+  return out;
+}
+
+std::vector<Finding> RunCheck::news() {
+  if (!std::exchange(look_, false)) return {};
+  looked_ = true;
+  std::vector<Finding> fresh = judge(surveyor_.so_far());
+  std::erase_if(fresh, [this](const Finding& finding) {
+    const bool known = std::ranges::find(told_, subject_of(finding)) != told_.end();
+    return known || finding.severity != Severity::Error;
+  });
+  for (const Finding& finding : fresh) told_.push_back(subject_of(finding));
+  return fresh;
+}
+
+std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
+  for (Camera& camera : cameras_) {
+    if (!camera.done && !camera.waits && camera.turning >= least_turning(camera.given)) compare(camera);
+    camera.done = true;
+  }
+  return judge(surveyor_.result(dataset, truth));
+}
+
+}  // namespace edged
