@@ -89,9 +89,9 @@ void add_config_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ConfigOptions>();
   CLI::App* config = app.add_subcommand("config", "List the options: key, default, type, range, unit and effect");
   config->add_option("FILTER", options->filter,
-                     "All options whose key contains this text; `expert`: those for who works on the method");
-  CLI::Option* yaml = config->add_flag("--yaml", options->yaml, "Print a complete file for --config instead");
-  config->add_flag("--json", options->json, "Print json instead of text")->excludes(yaml);
+                     "Show all options whose key contains this text; `expert` shows the expert options");
+  CLI::Option* yaml = config->add_flag("--yaml", options->yaml, "Print a complete options file for --config");
+  config->add_flag("--json", options->json, "Print JSON")->excludes(yaml);
   config->footer("Example:\n  edged config --yaml > mine.yaml   # edit, then: edged run RECORDING --config mine.yaml");
   config->callback([options, &chosen] { chosen = [options] { return run_config(*options); }; });
 }

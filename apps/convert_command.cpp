@@ -82,13 +82,15 @@ void add_convert_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ConvertOptions>();
   std::vector<std::string_view> names;
   for (const WritableFormat& format : writable_formats()) names.push_back(format.name);
-  CLI::App* convert = app.add_subcommand("convert", "Write a recording in another format, every event to the last bit");
+  CLI::App* convert = app.add_subcommand("convert", "Convert a recording to another format without loss of any event");
   add_source_options(*convert, options->source);
-  convert->add_option("TARGET", options->target, "File or folder to make; its extension tells the format")->required();
+  convert->add_option("TARGET", options->target, "File or folder to write; the extension determines the format")
+      ->required();
   convert->add_option("--format", options->format, fmt::format("One of {} [by extension]", fmt::join(names, ", ")));
-  convert->add_flag("--round", options->round, "Cut stamps that are finer than the format's instead of refusing them");
+  convert->add_flag("--round", options->round,
+                    "Truncate timestamps that are finer than the format can store, instead of refusing them");
   convert->add_flag("--quiet", options->quiet, "No status line");
-  convert->add_flag("--json", options->json, "Print the summary as json");
+  convert->add_flag("--json", options->json, "Print the summary as JSON");
   convert->footer(
       "Examples:\n"
       "  edged convert flight.aedat4 flight_folder\n"

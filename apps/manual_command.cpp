@@ -227,7 +227,7 @@ int print_manual(const CLI::App& app, const std::string& kind) {
 void add_manual_command(CLI::App& app, std::function<int()>& chosen) {
   const auto kind = std::make_shared<std::string>();
   CLI::App* manual =
-      app.add_subcommand("manual", "Print the man page, the completion of a shell, or the rigs there are");
+      app.add_subcommand("manual", "Print the man page, the completion of a shell, or the names of the rigs");
   manual->group("");
   manual->add_option("KIND", *kind, "What to print")
       ->required()

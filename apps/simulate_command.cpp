@@ -89,7 +89,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->add_flag("--list", *list, "Print every option as chosen, with unit and effect, instead");
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
   simulate->add_flag("--quiet", options->quiet, "No status line");
-  simulate->add_flag("--json", options->json, "Print the summary as json");
+  simulate->add_flag("--json", options->json, "Print the summary as JSON");
   simulate->footer(
       "Examples:\n"
       "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"

@@ -247,7 +247,7 @@ CLI::Option* add_check_options(CLI::App& calib, CalibOptions& options, CLI::Opti
                   kCheckedSeconds));
   const std::size_t before = calib.get_options().size();
   add_reading_options(calib, options.recording);
-  calib.add_option("--mode", options.mode, "Sensors beside the IMU; auto: all there are")
+  calib.add_option("--mode", options.mode, "Sensors used beside the IMU; auto: all that are present")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
       ->capture_default_str();
   calib.add_flag("--quiet", options.quiet, "No status line");
@@ -278,7 +278,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
           ->allow_extra_args(false);
   calib->add_option("--out", options->out,
                     "Write it as yaml of our own, for --rig and --calib; with --check as the run found it");
-  CLI::Option* json = calib->add_flag("--json", options->json, "Print json instead of text");
+  CLI::Option* json = calib->add_flag("--json", options->json, "Print JSON");
   CLI::Option* fresh =
       calib->add_option("--new", options->camera_of_template, "Instead: a commented file to fill in for this camera")
           ->check(CLI::IsMember(template_names()))

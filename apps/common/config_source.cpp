@@ -12,7 +12,7 @@ void RunConfig::visit(ConfigFields& fields) {
 }
 
 void add_config_options(CLI::App& command, ConfigSource& source) {
-  command.add_option("--config", source.file, "Options file (yaml); `edged config --yaml` prints one");
+  command.add_option("--config", source.file, "Options file (YAML); `edged config --yaml` prints one");
   command.add_option("--set", source.assignments, "One option as key=value; may be repeated")->allow_extra_args(false);
 }
 

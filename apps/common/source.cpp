@@ -87,12 +87,11 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
 }
 
 void add_reading_options(CLI::App& command, SourceOptions& options) {
-  CLI::Option* rig = command.add_option("--rig", options.rig, "Calibration that ships with the program, by name");
+  CLI::Option* rig = command.add_option("--rig", options.rig, "Name of a calibration that ships with the program");
   command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
   command.add_option("--geometry", options.geometry,
-                     "WIDTHxHEIGHT [px] of the event sensor, for files that do not hold it");
-  command
-      .add_option("--time-unit", options.time_unit, "Unit of the stamps in a plain event file [found from its content]")
+                     "Size of the event sensor, WIDTHxHEIGHT [px], for files that do not contain it");
+  command.add_option("--time-unit", options.time_unit, "Unit of the timestamps in a plain event file [detected]")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   command
       .add_option("--topic", options.topics,
@@ -101,24 +100,24 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
                   "[the only topic of a fitting type]")
       ->allow_extra_args(false);
   command
-      .add_option("--from,--start", options.piece.from_s, "Leave out what comes before [s since the recording's begin]")
+      .add_option("--from,--start", options.piece.from_s, "Skip what comes earlier [s from the start of the recording]")
       ->check(non_negative_number());
-  CLI::Option* to = command.add_option("--to", options.piece.to_s,
-                                       "Leave out what comes from then on [s since the recording's begin]");
+  CLI::Option* to =
+      command.add_option("--to", options.piece.to_s, "Stop at this time [s from the start of the recording]");
   to->check(non_negative_number());
-  command.add_option("--duration", options.duration_s, "Leave out what comes so many seconds after --from")
+  command.add_option("--duration", options.duration_s, "Stop this long after --from [s]")
       ->check(positive_number())
       ->excludes(to);
   command
       .add_option("--dim-frames", options.dim_frames,
-                  "Frames as their camera would give them in so much less light: 0.06 leaves some 20 grey levels")
+                  "Darken the frames by this factor, with the noise of their camera: 0.06 leaves about 20 grey levels")
       ->check(CLI::Range(1e-3, 1.0));
 }
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
   command
       .add_option("RECORDING", options.recording,
-                  "Folder or file (format found by content), tcp://HOST:PORT[,PORT...] of a DV server, or "
+                  "Folder or file (the format is detected), tcp://HOST:PORT[,PORT...] of a DV server, or "
                   "sim:PRESET[:SEED]")
       ->required();
   command.add_option("--imu", options.imu,

@@ -99,16 +99,17 @@ int explain_fetch() {
 
 void add_depth_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<DepthOptions>();
-  CLI::App* depth = app.add_subcommand("depth", "Show a depth network and its cost here");
-  depth->add_option("MODEL", options->model, "Name of one that is installed, or the path of an .onnx file")
+  CLI::App* depth = app.add_subcommand("depth", "Describe a depth network and measure its run time");
+  depth->add_option("MODEL", options->model, "Name of an installed network, or path of an .onnx file")
       ->capture_default_str();
-  depth->add_flag("--json", options->json, "Print json instead of text");
+  depth->add_flag("--json", options->json, "Print JSON");
   depth->footer(
       "Examples:\n"
       "  edged depth\n"
       "  edged depth small_recurrent --json\n"
       "  edged depth fetch");
-  CLI::App* fetch = depth->add_subcommand("fetch", "Say where the published e2depth weights come from and go");
+  CLI::App* fetch =
+      depth->add_subcommand("fetch", "Print where to get the published e2depth weights and where to put them");
   depth->callback([options, fetch, &chosen] {
     chosen = [options, fetching = fetch->parsed()] { return fetching ? explain_fetch() : run_depth(*options); };
   });

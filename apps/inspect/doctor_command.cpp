@@ -73,10 +73,10 @@ int run_doctor(const DoctorOptions& options) {
 void add_doctor_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<DoctorOptions>();
   CLI::App* doctor = app.add_subcommand(
-      "doctor", "What is wrong with a recording or its calibration, and what to do about it (exit code 3 for errors)");
+      "doctor", "Check a recording and its calibration and propose remedies (exit code 3 for errors)");
   add_source_options(*doctor, options->source);
   doctor->add_flag("--quiet", options->quiet, "No status line");
-  doctor->add_flag("--json", options->json, "Print json instead of text");
+  doctor->add_flag("--json", options->json, "Print JSON");
   doctor->footer("Example:\n  edged doctor flight.bag --calib camchain-imucam.yaml");
   doctor->callback([options, &chosen] { chosen = [options] { return run_doctor(*options); }; });
 }

@@ -308,15 +308,16 @@ int run_enhance(const EnhanceOptions& options) {
 void add_enhance_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<EnhanceOptions>();
   CLI::App* enhance = app.add_subcommand("enhance",
-                                         "Draw the event frame of one moment and every step of its enhancement; "
-                                         "without IMU or calibration as the events fell");
+                                         "Render the event frame of one moment and every step of its enhancement; "
+                                         "without IMU or calibration, without motion compensation");
   add_source_options(*enhance, options->source);
-  enhance->add_option("--at", options->at_s, "[s] from the recording's start: the first packet from then on")
+  enhance
+      ->add_option("--at", options->at_s, "Use the first packet from this time on [s from the start of the recording]")
       ->required();
-  enhance->add_option("--out", options->out, "Folder for sheet.png and one picture per step")->required();
+  enhance->add_option("--out", options->out, "Folder for sheet.png and one image per step")->required();
   add_config_options(*enhance, options->config);
   enhance->add_flag("--quiet", options->quiet, "No status line");
-  enhance->add_flag("--json", options->json, "Print what was made as json");
+  enhance->add_flag("--json", options->json, "Print what was written as JSON");
   enhance->footer(
       "Example:\n  edged enhance sim:room --at 5 --out /tmp/steps --set enhance.clahe_clip=4 --set "
       "expert.enhance.erosion_px=3");

@@ -57,10 +57,10 @@ int run_info(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* info = app.add_subcommand("info", "What a recording holds: streams, rates, gaps, hot pixels, IMU noise");
+  CLI::App* info = app.add_subcommand("info", "Describe a recording: streams, rates, gaps, hot pixels, IMU noise");
   add_source_options(*info, options->source);
   info->add_flag("--quiet", options->quiet, "No status line");
-  info->add_flag("--json", options->json, "Print json instead of text");
+  info->add_flag("--json", options->json, "Print JSON");
   info->footer("Example:\n  edged info flight.bag");
   info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
 }

@@ -111,16 +111,16 @@ int run_merge(const MapCommandOptions& options) {
 
 void add_map_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<MapCommandOptions>();
-  CLI::App* map = app.add_subcommand("map", "Maps that runs have kept: what is in them, two made one");
+  CLI::App* map = app.add_subcommand("map", "Inspect, export and merge saved maps");
   map->require_subcommand(1);
   CLI::App* info = map->add_subcommand("info", "Cameras, keyframes, points and size of a map");
-  CLI::App* show = map->add_subcommand("show", "Its points as a ply file, which viewers of point clouds read");
-  CLI::App* merge = map->add_subcommand("merge", "Two maps of one place in the frame of the first");
+  CLI::App* show = map->add_subcommand("show", "Write the map points as a PLY file for point cloud viewers");
+  CLI::App* merge = map->add_subcommand("merge", "Merge two maps of one place, in the frame of the first");
   for (CLI::App* each : {info, show, merge})
-    each->add_option("MAP", options->file, "File that `edged run --save-map` wrote")->required();
-  for (CLI::App* each : {info, show, merge}) each->add_flag("--json", options->json, "Print json instead of text");
+    each->add_option("MAP", options->file, "Map file of `edged run --save-map`")->required();
+  for (CLI::App* each : {info, show, merge}) each->add_flag("--json", options->json, "Print JSON");
   show->add_option("--out", options->out, "File to write [map.ply]");
-  merge->add_option("OTHER", options->other, "Another of the same place")->required();
+  merge->add_option("OTHER", options->other, "Another map of the same place")->required();
   merge->add_option("--out", options->out, "File to write")->required();
   map->footer(
       "Examples:\n"

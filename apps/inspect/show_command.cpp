@@ -166,29 +166,29 @@ int show_recording(const ShowOptions& options) {
 
 void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ShowOptions>();
-  CLI::App* show =
-      app.add_subcommand("show", "Show a recording's events, beside its frames: a page that plays them, or pictures");
+  CLI::App* show = app.add_subcommand("show", "Show events beside frames: a page that plays them, or images");
   add_source_options(*show, options->source);
-  show->add_option("--out", options->out, "NAME.html: a page for a browser; else a folder for a PNG a picture")
+  show->add_option("--out", options->out, "NAME.html: a page for a browser; otherwise a folder of PNG images")
       ->required();
-  CLI::Option* window = show->add_option("--window", options->window_s, "Length of a picture [s]");
+  CLI::Option* window = show->add_option("--window", options->window_s, "Time window of one image [s]");
   window->check(positive_number())->check(CLI::Range(1e-6, 3600.0))->capture_default_str();
-  show->add_option("--events", options->events, "So many events a picture, however long they take")
+  show->add_option("--events", options->events, "Number of events per image, instead of a time window")
       ->check(CLI::PositiveNumber)
       ->excludes(window);
   const std::map<std::string, PictureStyle> styles = {{"polarity", PictureStyle::Polarity},
                                                       {"counts", PictureStyle::Counts}};
   show->add_option("--style", options->style,
-                   "polarity: blue brighter, red darker; counts: grey (the page changes it) [polarity]")
+                   "polarity: blue brighter, red darker; counts: grey (can be switched on the page) [polarity]")
       ->transform(CLI::Transformer(styles));
-  show->add_option("--max-mb", options->max_mb, "Size of the page's pictures [MB]; beyond, every second picture goes")
+  show->add_option("--max-mb", options->max_mb,
+                   "Largest total size of the page's images; beyond it every second image is dropped [MB]")
       ->check(CLI::Range(0.1, 200.0))
       ->capture_default_str();
-  show->add_option("--max-pictures", options->max_pictures, "In a folder; it stops there")
+  show->add_option("--max-pictures", options->max_pictures, "Largest number of images in a folder")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   show->add_flag("--quiet", options->quiet, "No status line");
-  show->add_flag("--json", options->json, "Print what was made as json");
+  show->add_flag("--json", options->json, "Print what was written as JSON");
   show->footer(
       "Needs neither IMU nor calibration. Examples:\n"
       "  edged show flight.raw --out flight.html\n"

@@ -308,10 +308,9 @@ std::optional<ServeAddress> parse_serve_address(const std::string& text) {
 
 void add_serve_option(CLI::App& command, std::string& text) {
   command
-      .add_flag(
-          "--serve", text,
-          "Watch the run in a browser while it goes on; --serve=PORT or --serve=HOST:PORT, port 0: any that is free "
-          "[127.0.0.1:8765]")
+      .add_flag("--serve", text,
+                "Show the run live in a browser; --serve=PORT or --serve=HOST:PORT, port 0: any free port "
+                "[127.0.0.1:8765]")
       ->check([](const std::string& given) {
         return parse_serve_address(given) ? ""
                                           : fmt::format("'{}' is no PORT or HOST:PORT, such as --serve=8765", given);

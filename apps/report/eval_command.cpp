@@ -77,14 +77,15 @@ void add_eval_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* eval = app.add_subcommand(
       "eval", "Compare a trajectory with ground truth: ATE, local error, RPE, error per metre, scale");
   eval->add_option("GROUNDTRUTH", options->truth,
-                   "Trajectory file: TUM, EuRoC csv or KITTI (no times: pose i against pose i), found by content")
+                   "Trajectory file: TUM, EuRoC csv or KITTI (without times: poses are compared by index); the format "
+                   "is detected")
       ->required();
-  eval->add_option("ESTIMATE", options->estimate, "Trajectory file of the same sensor on the same clock")->required();
+  eval->add_option("ESTIMATE", options->estimate, "Trajectory file of the same sensor, on the same clock")->required();
   add_evaluation_options(*eval, options->how);
-  eval->add_option("--delta", options->deltas_s, "Time steps of the relative errors [s], separated by blanks")
+  eval->add_option("--delta", options->deltas_s, "Time steps of the relative errors, separated by blanks [s]")
       ->check(positive_number())
       ->capture_default_str();
-  eval->add_flag("--json", options->json, "Print json instead of a table");
+  eval->add_flag("--json", options->json, "Print JSON");
   eval->footer("Example:\n  edged eval data/groundtruth.txt runs/poster-fused/trajectory.tum --protocol P1");
   eval->callback([options, eval, &chosen] { chosen = [options, eval] { return run_eval(*options, *eval); }; });
 }

@@ -33,12 +33,12 @@ std::string window_text(const TimeWindow& window) {
 
 void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
   CLI::Option* align =
-      command.add_option("--align", options.align, "What is aligned: none, yaw (position and yaw), se3, sim3")
+      command.add_option("--align", options.align, "Alignment: none, yaw (position and yaw), se3, sim3")
           ->check(CLI::IsMember({"none", "yaw", "se3", "sim3"}))
           ->capture_default_str();
   CLI::Option* window =
-      command.add_option("--window", options.window, "Align on these seconds only: BEGIN END")->expected(2);
-  CLI::Option* first = command.add_option("--first", options.first_s, "Align on the first so many seconds only")
+      command.add_option("--window", options.window, "Align on these seconds only: BEGIN END [s]")->expected(2);
+  CLI::Option* first = command.add_option("--first", options.first_s, "Align on the first seconds only [s]")
                            ->check(positive_number())
                            ->excludes(window);
   command
@@ -49,7 +49,7 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
       ->excludes(align)
       ->excludes(window)
       ->excludes(first);
-  command.add_option("--max-gap", options.max_gap_s, "Longest gap in the ground truth to interpolate over [s]")
+  command.add_option("--max-gap", options.max_gap_s, "Longest gap of the ground truth that is interpolated [s]")
       ->check(positive_number())
       ->capture_default_str();
 }

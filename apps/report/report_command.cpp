@@ -37,16 +37,16 @@ int write_report(const ReportCommand& options) {
 
 void add_report_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ReportCommand>();
-  CLI::App* report = app.add_subcommand("report", "Show runs side by side, in one page for a browser");
+  CLI::App* report = app.add_subcommand("report", "Make one page that shows runs side by side");
   report
       ->add_option("RUN", options->runs,
-                   "Folders that `edged run` left; also trajectory files of other programs, of the same sensor")
+                   "Run folders of `edged run`, or trajectory files of other programs for the same sensor")
       ->required();
-  report->add_option("--out", options->out, "The page [report.html, of one run in its folder]");
+  report->add_option("--out", options->out, "Page to write [report.html; for one run in its folder]");
   report->add_option("--truth", options->report.truth,
-                     "Ground truth of the sensor whose poses the trajectory files hold [what each run knew]");
+                     "Ground truth of the sensor that the trajectory files are of [that of each run]");
   add_evaluation_options(*report, options->report.how);
-  report->add_flag("--json", options->json, "Print where it is as json");
+  report->add_flag("--json", options->json, "Print the path of the page as JSON");
   report->footer(
       "Examples:\n"
       "  edged report runs/boxes-fused\n"

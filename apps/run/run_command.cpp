@@ -64,39 +64,38 @@ int run_all(const RunOptions& given, const CLI::App& app) {
 
 void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<RunOptions>();
-  CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and leave a run folder");
+  CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and write a run folder");
   add_source_options(*run_app, options->source);
   add_config_options(*run_app, options->config);
   add_map_options(*run_app, options->map);
-  run_app->add_option("MORE", options->more, "More recordings; options as KEY=VALUE, as with --set");
-  run_app->add_option("--mode", options->mode, "Sensors beside the IMU; auto: all there are")
+  run_app->add_option("MORE", options->more, "More recordings, or options as KEY=VALUE (as with --set)");
+  run_app->add_option("--mode", options->mode, "Sensors used beside the IMU; auto: all that are present")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
       ->capture_default_str();
   run_app
-      ->add_option(
-          "--frame", options->frame,
-          "Whose pose the trajectory files hold: body, a camera's name, or auto (what the format's users expect)")
+      ->add_option("--frame", options->frame,
+                   "Frame of the trajectory files: body, the name of a camera, or auto (the convention of the format)")
       ->capture_default_str();
   run_app->add_option(
       "--out", options->out,
-      "Run folder; where it holds a run, one with a number [runs/NAME-MODE]; of several recordings the folder of "
-      "theirs");
-  run_app->add_option("--jobs", options->jobs, "Of several recordings so many at once")
+      "Run folder; a number is appended if it holds a run [runs/NAME-MODE]; for several recordings the folder of "
+      "their run folders");
+  run_app->add_option("--jobs", options->jobs, "Number of recordings that run at the same time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  run_app->add_flag("--force", options->force, "Replace an earlier run in the folder");
-  run_app->add_flag("--live", options->live,
-                    "At the recording's own speed, as from sensors: who is too slow for it leaves out the oldest "
-                    "events (live.*); the "
-                    "depth network in a thread of its own; not repeatable to the bit");
+  run_app->add_flag("--force", options->force, "Overwrite an existing run folder (default: append a number)");
   run_app->add_flag(
-      "--mcap", options->mcap,
-      "Leave results.mcap in the run folder as well: poses, path, map, pictures, numbers for Foxglove, Lichtblick "
-      "and others (10 MB a minute or so)");
+      "--live", options->live,
+      "Play at the speed of the recording, as from live sensors; if that is too fast, the oldest events are "
+      "dropped (live.*); the "
+      "depth network runs in its own thread; results are not bit-identical between runs");
+  run_app->add_flag("--mcap", options->mcap,
+                    "Also write results.mcap: poses, path, map, images and numbers for Foxglove, Lichtblick "
+                    "and others (about 10 MB per minute)");
   add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);
   run_app->add_flag("--quiet", options->quiet, "No status line");
-  run_app->add_flag("--json", options->json, "Print the summary as json");
+  run_app->add_flag("--json", options->json, "Print the summary as JSON");
   run_app->footer(
       "Examples:\n"
       "  edged run data/boxes_6dof --rig davis240c_ecd\n"

@@ -113,7 +113,7 @@ void give_back_run_folder(const std::filesystem::path& folder) {
 
 void add_archive_option(CLI::App& app, std::string& archive) {
   app.add_flag("--archive", archive,
-               "Pack the run folder into one file at the end, however the run ends; --archive=FILE [FOLDER.zip]");
+               "Also pack the run folder into one file, however the run ends; --archive=FILE [FOLDER.zip]");
 }
 
 void check_archive(const std::filesystem::path& file, EarlierRun earlier) {

@@ -80,9 +80,9 @@ class RunMap : public RunObserver {
 
 void add_map_options(CLI::App& app, MapOptions& options) {
   app.add_option("--map", options.load,
-                 "Go on in the map that --save-map of an earlier run wrote: poses are in its frame once a place of it "
-                 "has been recognised");
-  app.add_option("--save-map", options.save, "Keep what has been seen in this file, which may be that of --map");
+                 "Relocalize in a map of --save-map: poses are in its frame once "
+                 "a place has been recognized");
+  app.add_option("--save-map", options.save, "Save the map to this file, which may be that of --map");
 }
 
 SavedMap read_map(const std::filesystem::path& file) { return read_map_file(file, saved_map_from_bytes); }
