@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "edged/core/config.hpp"
-#include "edged/depth/depth_config.hpp"
-#include "edged/estimator/estimator_config.hpp"
-#include "edged/events/events_config.hpp"
-#include "edged/frontend/frontend_config.hpp"
-#include "edged/map/map_config.hpp"
+#include "edged/config.hpp"
+#include "edged/options/depth.hpp"
+#include "edged/options/estimator.hpp"
+#include "edged/options/events.hpp"
+#include "edged/options/frontend.hpp"
+#include "edged/options/map.hpp"
 
 namespace edged {
 

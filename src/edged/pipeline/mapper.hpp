@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/hindsight.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"

@@ -3,8 +3,8 @@
 // The options of the map.
 #pragma once
 
-#include "edged/core/config.hpp"
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

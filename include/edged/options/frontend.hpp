@@ -3,7 +3,7 @@
 // The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
 #pragma once
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
