@@ -37,6 +37,7 @@ struct PacketizerConfig {
 struct AlignmentConfig {
   double gain = 0.0;    ///< weight of the newest image; 0: off
   double max_px = 3.0;  ///< bound of the mean
+  void visit(ConfigFields& fields);
 };
 
 /// How what a camera gives is weighed by what becomes of its tracks.
@@ -64,12 +65,12 @@ struct OdometryConfig {
   PacketizerConfig packets;
   EventFrameConfig event_frame;
   EnhanceConfig enhance;
-  bool enhance_detect = true;  ///< find corners on the enhanced event frame
-  bool enhance_track = false;  ///< follow them on it too
-  AlignmentConfig alignment;   ///< of the event frames
-  HealthConfig health;         ///< of each camera
-  DimImageConfig dim_frames;   ///< standard frames in the dark
-  TrackerConfig event_tracker;
+  bool enhance_detect = true;   ///< find corners on the enhanced event frame
+  bool enhance_track = false;   ///< follow them on it too
+  AlignmentConfig alignment;    ///< of the event frames
+  HealthConfig health;          ///< of each camera
+  DimImageConfig dim_frames;    ///< standard frames in the dark
+  TrackerConfig event_tracker;  ///< `tracker.*` sets both trackers, but those of kPerCameraKind
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
   DepthConfig depth;

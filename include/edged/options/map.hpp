@@ -10,17 +10,17 @@ namespace edged {
 
 /// Which keyframes are kept, and which of their points are looked for.
 struct KeyframeMapConfig {
-  double min_interval_s = 0.3;       ///< between keyframes that are kept
-  double max_covered = 0.5;          ///< share of a keyframe's view that the map already shows: beyond, it is let go
-  int min_points = 15;               ///< a keyframe with fewer well-placed points is let go
-  int max_points = 60;               ///< kept of a keyframe
-  double max_depth_error = 0.1;      ///< sigma of a point's inverse depth, as a share of it
-  double min_known_s = 4.0;          ///< since the estimator's start: before, its keyframes have a poor scale
-  double min_age_s = 2.0;            ///< younger keyframes share their points with the window
-  double max_view_angle_deg = 35.0;  ///< between the rays of a point now and then
-  double max_scale = 1.5;            ///< a point is at most so much nearer or farther than then
-  int max_keyframes = 100;           ///< kept; time and memory of the filter grow with the square
-  int candidates = 30;               ///< keyframes that are looked at for an image, the nearest
+  static constexpr double min_interval_s = 0.3;  ///< between keyframes that are kept
+  double max_covered = 0.5;  ///< share of a keyframe's view that the map already shows: beyond, it is let go
+  int min_points = 15;       ///< a keyframe with fewer well-placed points is let go
+  int max_points = 60;       ///< kept of a keyframe
+  static constexpr double max_depth_error = 0.1;  ///< sigma of a point's inverse depth, as a share of it
+  double min_known_s = 4.0;                 ///< since the estimator's start: before, its keyframes have a poor scale
+  double min_age_s = 2.0;                   ///< younger keyframes share their points with the window
+  double max_view_angle_deg = 35.0;         ///< between the rays of a point now and then
+  static constexpr double max_scale = 1.5;  ///< a point is at most so much nearer or farther than then
+  int max_keyframes = 100;                  ///< kept; time and memory of the filter grow with the square
+  int candidates = 30;                      ///< keyframes that are looked at for an image, the nearest
   void visit(ConfigFields& fields);
 };
 
