@@ -53,8 +53,8 @@ struct RunSummary {
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
 /// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
-                  const GroundTruth& truth);
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+                  const Rig& rig, const GroundTruth& truth);
 
 /// The same of its poses as known in the end, which are as many.
 void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);

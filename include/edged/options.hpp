@@ -42,9 +42,9 @@ struct AlignmentConfig {
 
 /// How what a camera gives is weighed by what becomes of its tracks.
 struct HealthConfig {
-  double time_constant_s = 0.3;  ///< of the running mean of the share of tracks that survive an image
-  double min_survival = 0.4;     ///< below it the camera's observations are ignored
-  int min_event_corners = 40;    ///< kept on event frames where the standard frames carry all of theirs
+  double time_constant_s = 0.3;    ///< of the running mean of the share of tracks that survive an image
+  double min_survival_rate = 0.4;  ///< below it the camera's observations are ignored
+  int min_event_features = 40;     ///< kept on event frames where the standard frames carry all of theirs
 
   void visit(ConfigFields& fields);
 };
@@ -65,11 +65,11 @@ struct OdometryConfig {
   PacketizerConfig packets;
   EventFrameConfig event_frame;
   EnhanceConfig enhance;
-  bool enhance_detect = true;   ///< find corners on the enhanced event frame
+  bool enhance_detect = true;   ///< find features on the enhanced event frame
   bool enhance_track = false;   ///< follow them on it too
   AlignmentConfig alignment;    ///< of the event frames
   HealthConfig health;          ///< of each camera
-  DimImageConfig dim_frames;    ///< standard frames in the dark
+  LowLightConfig low_light;     ///< standard frames in the dark
   TrackerConfig event_tracker;  ///< `tracker.*` sets both trackers, but those of kPerCameraKind
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The first looks of corners. Optical flow follows a corner from image to image, and what it drifts by adds up; aligned
-// to its first look, warped as the camera has moved since, it stays.
+// The reference patches of corners. Optical flow follows a corner from image to image, and what it drifts by adds up;
+// aligned to its reference patch, warped as the camera has moved since, it stays.
 #pragma once
 
 #include <map>

@@ -90,7 +90,7 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   }
   check_image(image);
   current_.build(image, config_.klt);
-  if (prediction && prediction->first_looks) {
+  if (prediction && prediction->reference_patches) {
     templates_.move(prediction->T_cur_prev);
   } else {
     templates_.clear();
@@ -214,7 +214,7 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   return seeds;
 }
 
-/// expected_C: of each track, for the warp of its first look [m]; empty where that is not known.
+/// expected_C: of each track, for the warp of its reference patch [m]; empty where that is not known.
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
                                               std::span<const Eigen::Vector3d> expected_C) const {
@@ -247,7 +247,7 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   return matches;
 }
 
-/// Those that no first look confirms must lead back to where they come from, and look alike there.
+/// Those that no reference patch confirms must lead back to where they come from, and look alike there.
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
   const Flow backward =

@@ -30,7 +30,7 @@ struct TrackPrediction {
   double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
   std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to where the poses expect a corner
-  bool first_looks = true;                                ///< compare corners with their first looks
+  bool reference_patches = true;                          ///< compare corners with their reference patches
 };
 
 /// What happened to the tracks in one image.

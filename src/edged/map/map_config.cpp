@@ -27,7 +27,7 @@ void MapFilterConfig::visit(ConfigFields& fields) {
   fields.add("drift_yaw_deg", drift_yaw_deg, {"deg", 0, 90, "Drift of the odometry's yaw in 1 s."});
   fields.add("drift_tilt_deg", drift_tilt_deg, {"deg", 0, 90, "Drift of the odometry's roll and pitch in 1 s."});
   fields.add("pixel_sigma", pixel_sigma, {"px", 0.01, 100, "Standard deviation of a matched point."});
-  fields.add("min_sights", min_sights, {"", 3, 1000, "A match with fewer points is rejected."});
+  fields.add("min_observations", min_observations, {"", 3, 1000, "A match with fewer points is rejected."});
   fields.add("min_found_share", min_found_share,
              {"", 0, 1, "A match with a smaller share of the expected points is rejected."});
   fields.add("max_misfit", max_misfit,
@@ -37,7 +37,7 @@ void MapFilterConfig::visit(ConfigFields& fields) {
 void MapConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled, {.effect = "Match the map and correct the pose."});
   fields.add("min_interval_s", min_interval_s, {"s", 0, 10, "Time between images that are matched with the map."});
-  fields.add("max_sights", max_sights,
+  fields.add("max_observations", max_observations,
              {"", 8, 1000, "Largest number of points that are matched in an image. More cost time."});
   fields.add("search_px", search_px,
              {"px", 1, 50, "Upper bound of the search radius, which is 3 sigma of the prediction."});

@@ -101,9 +101,9 @@ constexpr ConfigFields::Renamed kRenamed[] = {
     {"expert.event_tracker.templates.iterations", ""},
     {"expert.frame_tracker.templates.iterations", ""},
     {"expert.map.patch.iterations", ""},
-    {"expert.dim_frames.target_range", ""},
-    {"expert.dim_frames.max_gain", ""},
-    {"expert.dim_frames.smoothing_px", ""},
+    {"expert.low_light.target_range", ""},
+    {"expert.low_light.max_gain", ""},
+    {"expert.low_light.smoothing_px", ""},
     {"expert.keyframes.starved_interval_s", ""},
     {"expert.keyframes.min_interval_s", ""},
     {"expert.keyframes.still_parallax_deg", ""},
@@ -169,7 +169,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.add("enhance.track", enhance_track, {.effect = "Track features in the enhanced event frame."});
   fields.group("alignment", alignment);
   fields.group("health", health);
-  fields.group("dim_frames", dim_frames);
+  fields.group("low_light", low_light);
   fields.pair("tracker", "events", event_tracker, "frames", frame_tracker, kPerCameraKind);
   fields.group("keyframes", keyframes);
   fields.group("depth", depth);

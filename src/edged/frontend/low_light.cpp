@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/frontend/dim_image.hpp"
+#include "edged/frontend/low_light.hpp"
 
 #include <algorithm>
 #include <array>
@@ -36,12 +36,12 @@ Range grey_range(const cv::Mat& image) {
 
 }  // namespace
 
-void DimImageConfig::visit(ConfigFields& fields) {
+void LowLightConfig::visit(ConfigFields& fields) {
   fields.add("below_range", below_range,
              {"grey", 0, 255, "Frames whose grey levels span less are smoothed and stretched. 0: none."});
 }
 
-cv::Mat DimImageStretch::operator()(const cv::Mat& image) {
+cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {
   if (image.empty() || image.type() != CV_8UC1) return image;  // the tracker says what it wants
   const Range range = grey_range(image);
   const double width = std::max(range.bright - range.dark, 1.0);
