@@ -20,8 +20,8 @@
 #include "commands.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
+#include "edged/config.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/config.hpp"
 
 namespace edged {
 namespace {

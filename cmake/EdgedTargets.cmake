@@ -14,8 +14,11 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/config ${PROJECT_BINARY_DIR}/share/edged 
 # Options of every target of ours, and of ours alone. No -march and no fused multiply-add: the same bits on every
 # machine.
 add_library(edged_options INTERFACE)
-target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off
+target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
                                                -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+if(EDGED_WERROR)
+  target_compile_options(edged_options INTERFACE -Werror)
+endif()
 if(EDGED_SANITIZE)
   target_compile_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
-no components include one another in a cycle, and that no two headers define a type of the same name.
+no components include one another in a cycle, that public headers include no private ones, and that no two headers define
+a type of the same name.
 
 The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
@@ -18,6 +19,8 @@ import sys
 ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
+ANY_INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
+PUBLIC_INCLUDE = re.compile(r"\w+|Eigen/\w+|opencv2/core(/[\w/]+)?\.hpp")
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
 
@@ -35,7 +38,7 @@ def read_table(architecture):
             errors += [f"{architecture.name}:{number}: `{name}` uses `{use}`, which has no row above it"
                        for use in uses if use not in allowed]
             allowed[name] = set(uses)
-            public.update((header, name) for header in re.findall(r"`(\w+)`", row.group(3)))
+            public.update((header, name) for header in re.findall(r"`([\w/]+)`", row.group(3)))
     return allowed, public, errors
 
 
@@ -80,6 +83,17 @@ def check_includes(root, folders, public, allowed):
                     yield f"{where}: {module} may not include {target}"
 
 
+def check_public(root, public):
+    """A public header includes others, the standard library's, Eigen's and those of OpenCV's core."""
+    for name in public:
+        file = public_header(root, name)
+        for number, line in enumerate(file.read_text().splitlines() if file else (), 1):
+            included = ANY_INCLUDE.match(line)
+            if included and not PUBLIC_INCLUDE.fullmatch(included := included.group(1)) and not (
+                    included.startswith("edged/") and included.removeprefix("edged/").removesuffix(".hpp") in public):
+                yield f"{file.relative_to(root)}:{number}: a public header may not include {included}"
+
+
 def check_cycles(root, folders, public):
     """Cycles of components, no two of which share a step."""
     uses = {}
@@ -88,8 +102,8 @@ def check_cycles(root, folders, public):
             continue
         for include in filter(None, map(INCLUDE.match, file.read_text().splitlines())):
             used = pathlib.PurePath(include.group(1)).with_suffix("")
-            if used.name in public and len(used.parts) == 2:
-                used = used.parent / public[used.name] / used.name
+            if (name := str(used.relative_to("edged"))) in public:
+                used = pathlib.PurePath("edged", public[name], name)
             uses.setdefault(component, {})[str(used)] = None
         uses.get(component, {}).pop(component, None)
     while True:
@@ -137,10 +151,12 @@ def main():
     method = {name for name, folder in folders.items() if folder.is_relative_to(root / "src")}
     errors += [f"ARCHITECTURE.md: `{name}` is of the method, `{use}` is not" for name in sorted(method & allowed.keys())
                for use in sorted(allowed[name] - method)]
-    headers = {file.name.removesuffix(".in").removesuffix(".hpp") for file in (root / "include" / "edged").iterdir()}
+    include = root / "include" / "edged"
+    headers = {str(file.relative_to(include)).removesuffix(".in").removesuffix(".hpp") for file in include.rglob("*.hpp*")}
     errors += [f"ARCHITECTURE.md: no row has include/edged/{name}.hpp" for name in sorted(headers - public.keys())]
     errors += [f"ARCHITECTURE.md: there is no include/edged/{name}.hpp" for name in sorted(public.keys() - headers)]
     errors += check_includes(root, folders, public, allowed)
+    errors += check_public(root, public)
     errors += check_cycles(root, folders, public)
     errors += check_names(root, folders, public)
     errors += check_links(root, folders, allowed)

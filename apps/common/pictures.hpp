@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/frontend/track.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

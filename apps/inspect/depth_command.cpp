@@ -16,9 +16,9 @@
 #include "commands.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/network.hpp"
 #include "edged/events/voxel_grid.hpp"
+#include "edged/options/depth.hpp"
 
 namespace edged {
 namespace {

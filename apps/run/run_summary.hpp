@@ -11,11 +11,12 @@
 
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/dataset.hpp"
-#include "edged/core/timing.hpp"
+#include "edged/counters.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "edged/pipeline/counters.hpp"
+#include "edged/counters.hpp"
+#include "edged/timing.hpp"
 #include "run/run_statistics.hpp"
 #include "run/verdict.hpp"
 

@@ -9,16 +9,16 @@
 #include <string>
 #include <string_view>
 
-#include "edged/core/timing.hpp"
+#include "edged/counters.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/counters.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 #include "edged/step.hpp"
 #include "edged/time.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "edged/core/config.hpp"
-#include "edged/depth/depth_config.hpp"
-#include "edged/estimator/estimator_config.hpp"
-#include "edged/events/events_config.hpp"
-#include "edged/frontend/frontend_config.hpp"
-#include "edged/map/map_config.hpp"
+#include "edged/config.hpp"
+#include "edged/options/depth.hpp"
+#include "edged/options/estimator.hpp"
+#include "edged/options/events.hpp"
+#include "edged/options/frontend.hpp"
+#include "edged/options/map.hpp"
 
 namespace edged {
 
@@ -37,6 +37,7 @@ struct PacketizerConfig {
 struct AlignmentConfig {
   double gain = 0.0;    ///< weight of the newest image; 0: off
   double max_px = 3.0;  ///< bound of the mean
+  void visit(ConfigFields& fields);
 };
 
 /// How what a camera gives is weighed by what becomes of its tracks.
@@ -64,12 +65,12 @@ struct OdometryConfig {
   PacketizerConfig packets;
   EventFrameConfig event_frame;
   EnhanceConfig enhance;
-  bool enhance_detect = true;  ///< find features on the enhanced event frame
-  bool enhance_track = false;  ///< follow them on it too
-  AlignmentConfig alignment;   ///< of the event frames
-  HealthConfig health;         ///< of each camera
-  LowLightConfig low_light;    ///< standard frames in the dark
-  TrackerConfig event_tracker;
+  bool enhance_detect = true;   ///< find features on the enhanced event frame
+  bool enhance_track = false;   ///< follow them on it too
+  AlignmentConfig alignment;    ///< of the event frames
+  HealthConfig health;          ///< of each camera
+  LowLightConfig low_light;     ///< standard frames in the dark
+  TrackerConfig event_tracker;  ///< `tracker.*` sets both trackers, but those of kPerCameraKind
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;
   DepthConfig depth;

@@ -37,6 +37,11 @@ struct Landmark {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
+/// Logarithm of the scale s of a depth source (paper Eq. 5): its depths are too large by the factor s.
+struct LogScale {
+  double value = 0.0, sigma = 0.0;
+};
+
 /// Gravity in W [m/s^2].
 inline const Eigen::Vector3d kGravity_W(0.0, 0.0, -9.81);
 

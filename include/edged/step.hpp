@@ -10,14 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/estimator/keyframe_record.hpp"
-#include "edged/estimator/region_depth.hpp"
 #include "edged/final_trajectory.hpp"
-#include "edged/frontend/track.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/measurement.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
+#include <spdlog/spdlog.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -170,14 +171,24 @@ void ConfigFields::expert_but(std::span<const std::string_view> names, const std
   audience_.reset();
 }
 
+bool ConfigFields::is_separate(std::string_view name) const {
+  return pair_ &&
+         std::ranges::find(pair_->separate, prefix_.substr(pair_->prefix) + std::string(name)) != pair_->separate.end();
+}
+
+std::string ConfigFields::path_of(std::string_view name) const {
+  std::string path = prefix_ + std::string(name);
+  if (is_separate(name)) path.insert(pair_->prefix, std::string(pair_->kind) + ".");
+  return path;
+}
+
 bool ConfigFields::is_expert(std::string_view name) const {
   if (!audience_) return false;
-  return std::ranges::find(audience_->everyone, prefix_.substr(audience_->prefix) + std::string(name)) ==
-         audience_->everyone.end();
+  return std::ranges::find(audience_->everyone, path_of(name).substr(audience_->prefix)) == audience_->everyone.end();
 }
 
 std::string ConfigFields::key_of(std::string_view name) const {
-  std::string key = prefix_ + std::string(name);
+  std::string key = path_of(name);
   if (is_expert(name)) key.insert(audience_->prefix, "expert.");
   return key;
 }
@@ -189,6 +200,14 @@ void ConfigFields::experts_last() {
 
 void ConfigFields::add_field(std::string_view name, std::string type, const FieldDoc& doc, bool numeric,
                              std::function<std::string()> get, std::function<void(const std::string&)> set) {
+  if (pair_ && pair_->second && !is_separate(name)) {
+    const auto shared = std::ranges::find(fields_, key_of(name), &ConfigField::key);
+    shared->set = [first = std::move(shared->set), second = std::move(set)](const std::string& text) {
+      first(text);
+      second(text);
+    };
+    return;
+  }
   const std::string default_value = get();
   ConfigField field{.key = key_of(name),
                     .expert = is_expert(name),
@@ -250,9 +269,25 @@ void ConfigFields::add_choice(std::string_view name, const std::vector<std::stri
       });
 }
 
+bool ConfigFields::set_known(const std::string& key, const std::string& value) {
+  const auto field = std::ranges::find(fields_, key, &ConfigField::key);
+  if (field != fields_.end()) field->set(value);
+  return field != fields_.end();
+}
+
 void ConfigFields::set(const std::string& key, const std::string& value) {
-  for (const ConfigField& field : fields_) {
-    if (field.key == key) return field.set(value);
+  if (set_known(key, value)) return;
+  for (const Renamed& renamed : renamed_) {
+    const bool group = renamed.before.ends_with('.');
+    if (group ? !key.starts_with(renamed.before) : key != renamed.before) continue;
+    if (renamed.now.empty()) {
+      spdlog::warn(fmt::format("option '{}' has become a constant and is ignored; remove it", key));
+      return;
+    }
+    const std::string now = std::string(renamed.now) + key.substr(renamed.before.size());
+    if (!set_known(now, value)) continue;
+    spdlog::warn(fmt::format("option '{}' is called '{}' now; the next version refuses the old name", key, now));
+    return;
   }
   std::vector<std::string> keys;
   for (const ConfigField& field : fields_) keys.push_back(field.key);

@@ -8,13 +8,11 @@
 namespace edged {
 
 void DepthFilterConfig::visit(ConfigFields& fields) {
-  fields.add("min_m", min_m, {"m", 0.001, 100, "a nearer measurement is rejected and the estimate before it held"});
-  fields.add("max_m", max_m, {"m", 0.1, 10000, "a farther measurement is rejected"});
+  fields.add("min_m", min_m, {"m", 0.001, 100, "A smaller depth measurement is rejected."});
+  fields.add("max_m", max_m, {"m", 0.1, 10000, "A larger depth measurement is rejected."});
   fields.add(
       "time_constant_s", time_constant_s,
-      {"s", 0, 60, "smoothing of ln depth (paper Eq. 4): the share of a new measurement is 1 - exp(-dt / this)"});
-  fields.add("max_age_s", max_age_s, {"s", 0.01, 600, "an estimate without newer measurements is given up after this"});
-  fields.add("drift", drift, {"1/sqrt(s)", 0, 10, "how fast the uncertainty of ln depth grows with age"});
+      {"s", 0, 60, "Time constant of the low-pass filter of ln depth (paper Eq. 4). The gain is 1 - exp(-dt / this)."});
 }
 
 bool DepthFilter::add(const DepthEstimate& measured) {

@@ -7,13 +7,6 @@
 
 namespace edged {
 
-void ScaleConfig::visit(ConfigFields& fields) {
-  fields.add("prior_sigma", prior_sigma, {"", 0.001, 10, "how far ln s may be from 0 before anything is known"});
-  fields.add("walk", walk, {"1/sqrt(s)", 0, 10, "random walk of ln s; larger forgets faster"});
-  fields.add("measurement_sigma", measurement_sigma,
-             {"", 0.001, 10, "of ln (landmark depth / network depth) in one window"});
-}
-
 void ScaleEstimate::update(Timestamp t, double ln_ratio) {
   const double dt = t_ ? std::max(0.0, to_seconds(t - *t_)) : 0.0;
   t_ = t;

@@ -10,10 +10,6 @@
 
 namespace edged {
 
-void LandmarkDepthConfig::visit(ConfigFields& fields) {
-  fields.add("min_landmarks", min_landmarks, {"", 1, 1000, "in the central region, for a measurement of its depth"});
-}
-
 CentralRegion::CentralRegion(const CameraModel& camera, double share) {
   const cv::Rect region = central_region(cv::Size(camera.width(), camera.height()), share);
   low = camera.pixel_to_point(Eigen::Vector2d(region.x - 0.5, region.y - 0.5));

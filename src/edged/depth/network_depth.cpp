@@ -23,14 +23,13 @@ DepthFilterConfig with_time_constant(DepthFilterConfig filter, double time_const
 }  // namespace
 
 void NetworkDepthConfig::visit(ConfigFields& fields) {
-  fields.add("model", model, {.effect = "name of a network in config/depth, or the path of an .onnx file"});
-  fields.add("margin_px", margin_px, {"px", 0, 4096, "the network sees that much more than the region on each side"});
+  fields.add("model", model, {.effect = "Name of a network in config/depth, or path of an .onnx file."});
+  fields.add("margin_px", margin_px, {"px", 0, 4096, "The network's input exceeds the region by this on each side."});
   fields.choice("region_value", region_value, {{"median", RegionValue::Median}, {"mean", RegionValue::Mean}},
-                {.effect = "what stands for all depths of the region: their median, or their mean as in the paper"});
-  fields.add("min_events_per_pixel", min_events_per_pixel,
-             {"", 0, 100, "a window with fewer events around the region gives no depth"});
+                {.effect = "Depth of the region: median of its pixels, or mean as in the paper."});
   fields.add("time_constant_s", time_constant_s,
-             {"s", 0, 60, "smoothing of the network's ln depth, in place of filter.time_constant_s"});
+             {"s", 0, 60,
+              "Time constant of the low-pass filter of the network's ln depth, in place of filter.time_constant_s."});
 }
 
 NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const NetworkDepthConfig& config,

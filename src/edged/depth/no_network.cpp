@@ -11,7 +11,7 @@ struct DepthNetwork::Runtime {};
 DepthNetwork::DepthNetwork(const std::filesystem::path& onnx) {
   throw InputError::format(
       "{}: built without depth networks (EDGED_DEPTH_NETWORK=OFF): set depth.source = landmarks or constant, and "
-      "depth_factor.enabled = false",
+      "estimator.depth_factor.enabled = false",
       onnx.string());
 }
 

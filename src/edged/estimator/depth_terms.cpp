@@ -89,17 +89,11 @@ Factor depth_factor(const Window& window, StateId state, const Middle& middle) {
 
 void DepthFactorConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled,
-             {.effect = "hold the landmarks' median depth to the depth network's, up to its scale (paper Eq. 5)"});
+             {.effect = "Add factors between the median landmark depth and the network's depth, with an estimated "
+                        "scale s (paper Eq. 5)."});
   fields.choice("form", form, {{"log", DepthResidual::Log}, {"paper", DepthResidual::Paper}},
-                {.effect = "difference of logarithms, or of inverse depths as the paper prints it"});
-  fields.add("scale_sigma", scale_sigma, {"", 0.001, 10, "how far ln s may lie from 0 before anything is known"});
-  fields.add("scale_walk", scale_walk, {"1/sqrt(s)", 0, 10, "random walk of ln s"});
-  fields.add("noise_share", noise_share,
-             {"", 0.01, 10, "share of the source's sigma_ln that changes with time, and that s cannot explain"});
-  fields.add("min_interval_s", min_interval_s, {"s", 0, 60, "keyframes sooner than this after a factor get none"});
-  fields.add("min_landmarks", min_landmarks, {"", 1, 1000, "in the region, for a factor"});
-  fields.add("gate", gate, {"sigma", 0.1, 100, "a depth that is farther off than this is not used"});
-  fields.add("cauchy_scale", cauchy_scale, {"sigma", 0.1, 100, "residuals beyond this are weighted down"});
+                {.effect = "Residual: difference of logarithms, or of inverse depths as in the paper."});
+  fields.add("scale_sigma", scale_sigma, {"", 0.001, 10, "Prior uncertainty of ln s."});
 }
 
 bool depth_due(const Window& window) {

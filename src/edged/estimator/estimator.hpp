@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "edged/estimator/depth_terms.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/initializer.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/options/estimator.hpp"
 
 namespace edged {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "edged/estimator/alignment.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {

@@ -108,17 +108,18 @@ std::vector<double> misfit_limits(const Window& window, const Fit& fit, double m
 
 void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("min_parallax_deg", min_parallax_deg,
-             {"deg", 0.05, 10, "rays of a feature must differ by this to place it"});
-  fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
-  fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
-  fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "observations that fit worse are taken out"});
+             {"deg", 0.05, 10, "A landmark is triangulated once its rays differ by this angle."});
+  fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "Nearer landmarks are rejected."});
+  fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "Farther landmarks are rejected."});
+  fields.add("max_residual_sigma", max_residual_sigma,
+             {"sigma", 1, 20, "Observations with larger residuals are removed."});
   fields.add("max_innovation_sigma", max_innovation_sigma,
-             {"sigma", 1, 1000, "features farther from where the IMU expects their landmark end"});
+             {"sigma", 1, 1000, "A track ends when it is farther than this from where the IMU predicts its landmark."});
   fields.add("max_misfit", max_misfit,
              {"", 1, 1000,
-              "landmarks whose observations fit so much worse than the median landmark's are taken out: they move"});
+              "A landmark is removed as dynamic when its residuals exceed the median landmark's by this factor."});
   fields.add("max_per_camera", max_per_camera,
-             {"", 10, 500, "landmarks in the cost; more cost time and gain accuracy"});
+             {"", 10, 500, "Number of landmarks in the cost, per camera. More are more accurate and slower."});
 }
 
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {

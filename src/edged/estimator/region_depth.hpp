@@ -17,9 +17,4 @@ struct RegionDepth {
   double spread_ln = 0.0;  ///< of ln depth within the region
 };
 
-/// ln s of Eq. 5 and how well it is known; s is what the source's depths are too large by.
-struct LogScale {
-  double value = 0.0, sigma = 0.0;
-};
-
 }  // namespace edged

@@ -27,17 +27,17 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
 }  // namespace
 
 void StandstillConfig::visit(ConfigFields& fields) {
-  fields.add("window_s", window_s,
-             {"s", 0.1, 5.0, "calm of the IMU that a still picture confirms must last this long"});
-  fields.add("max_gyro", max_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when calm"});
-  fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when calm"});
-  fields.add("max_gyro_mean", max_gyro_mean, {"rad/s", 1e-3, 1.0, "a mean rate above this is motion, not gyro bias"});
+  fields.add("window_s", window_s, {"s", 0.1, 5.0, "A standstill needs a calm IMU and still images for this time."});
+  fields.add("max_gyro", max_gyro, {"rad/s", 1e-4, 1.0, "Largest spread of the angular rate of a calm IMU."});
+  fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "Largest spread of the acceleration of a calm IMU."});
   fields.add("max_image_motion", max_image_motion,
-             {"rad", 1e-5, 0.1, "largest median travel of the features over the window at rest"});
-  fields.add("quiet_window_s", quiet_window_s,
-             {"s", 0.1, 10.0, "an IMU as quiet as its own noise for this long is at rest, whatever the cameras see"});
-  fields.add("quiet_gyro", quiet_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when quiet"});
-  fields.add("quiet_accel", quiet_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when quiet"});
+             {"rad", 1e-5, 0.1, "Largest median motion of the features over the window at a standstill."});
+  fields.add(
+      "quiet_gyro", quiet_gyro,
+      {"rad/s", 1e-4, 1.0, "Largest spread of the angular rate of an IMU that detects a standstill without images."});
+  fields.add(
+      "quiet_accel", quiet_accel,
+      {"m/s^2", 1e-3, 5.0, "Largest spread of the acceleration of an IMU that detects a standstill without images."});
 }
 
 void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,

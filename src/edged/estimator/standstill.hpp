@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/measurement.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/state.hpp"
 
 namespace edged {

@@ -47,17 +47,19 @@ void EventFrameConfig::visit(ConfigFields& fields) {
                 {{"piecewise", WarpInterpolation::Piecewise},
                  {"single_twist", WarpInterpolation::SingleTwist},
                  {"none", WarpInterpolation::None}},
-                {.effect = "how the camera's pose is read at each event's time: between the IMU poses around it, with "
-                           "one constant twist per packet, or not at all (no motion compensation)"});
-  fields.add("saturation_events", saturation_events,
-             {"events", 0.1, 1000, "events on one pixel that make it white; fewer give more contrast and more noise"});
+                {.effect = "Camera pose at the time of an event: interpolated between IMU poses, one constant twist "
+                           "per packet, or no motion compensation."});
+  fields.add(
+      "saturation_events", saturation_events,
+      {"events", 0.1, 1000, "This many events on one pixel are white. Fewer give more contrast and more noise."});
   fields.choice("depth", depth, {{"scene", EventDepth::Scene}, {"landmarks", EventDepth::Landmarks}},
-                {.effect = "depth that events are moved at: one of the whole scene, or that of the nearest landmark"});
-  fields.add("depth_cell_px", depth_grid.cell_px, {"px", 1, 64, "depth = landmarks: side of a cell of equal depth"});
+                {.effect = "Depth for the motion compensation: one for the scene, or that of the nearest landmark."});
+  fields.add("depth_cell_px", depth_grid.cell_px,
+             {"px", 1, 64, "Side length of a cell of equal depth (depth = landmarks)."});
   fields.add("depth_reach_px", depth_grid.reach_px,
-             {"px", 0, 1000, "depth = landmarks: cells further from any landmark have the scene's depth"});
+             {"px", 0, 1000, "Cells farther than this from every landmark use the scene depth (depth = landmarks)."});
   fields.add("blur_sigma_px", blur_sigma_px,
-             {"px", 0, 10, "Gaussian blur of the event frame: smoother gradients for the tracker; 0 is off"});
+             {"px", 0, 10, "Gaussian blur of the event frame, which gives the tracker smoother gradients. 0: off."});
 }
 
 EventFrameRenderer::EventFrameRenderer(UndistortTable table, const EventFrameConfig& config)

@@ -6,8 +6,8 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 
-#include "edged/events/events_config.hpp"
 #include "edged/events/warp.hpp"
+#include "edged/options/events.hpp"
 
 namespace edged {
 

@@ -104,38 +104,36 @@ cv::Mat run_algorithm(const cv::Mat& event_frame, const EnhanceConfig& config, N
 }  // namespace
 
 void EnhanceConfig::visit(ConfigFields& fields) {
-  fields.choice(
-      "method", method,
-      {{"none", EdgeMethod::None},
-       {"clahe", EdgeMethod::Clahe},
-       {"canny", EdgeMethod::Canny},
-       {"laplacian", EdgeMethod::Laplacian},
-       {"sobel", EdgeMethod::Sobel},
-       {"scharr", EdgeMethod::Scharr}},
-      {.effect = "enhancement of the event frame (Algorithm 1) by this edge map; none switches all of it off"});
-  fields.add("blur_sigma_px", blur_sigma_px, {"px", 0, 10, "Gaussian before the equalisation; 0 is off"});
+  fields.choice("method", method,
+                {{"none", EdgeMethod::None},
+                 {"clahe", EdgeMethod::Clahe},
+                 {"canny", EdgeMethod::Canny},
+                 {"laplacian", EdgeMethod::Laplacian},
+                 {"sobel", EdgeMethod::Sobel},
+                 {"scharr", EdgeMethod::Scharr}},
+                {.effect = "Edge map for the enhancement of the event frame (Algorithm 1). none: no enhancement."});
+  fields.add("blur_sigma_px", blur_sigma_px, {"px", 0, 10, "Gaussian blur before the equalization. 0: off."});
   fields.add("clahe_clip", clahe_clip,
-             {"", 0, 100, "contrast-limited equalisation: limit of its gain; 1 is weak, 4 strong, 0 is off"});
-  fields.add("clahe_tiles", clahe_tiles, {"", 1, 32, "the image is equalised in this many tiles each way"});
+             {"", 0, 100, "Clip limit of the contrast-limited equalization. 1 is weak, 4 strong, 0 off."});
   fields.choice(
       "sharpening", sharpening,
       {{"none", Sharpening::None}, {"paper", Sharpening::Paper}, {"unsharp", Sharpening::Unsharp}},
-      {.effect = "sharpening after the equalisation: the paper's form (clahe minus blur) or unsharp masking"});
-  fields.add("sharpen_lambda", sharpen_lambda, {"", 0, 10, "strength of the sharpening"});
-  fields.add("unsharp_sigma_px", unsharp_sigma_px, {"px", 0.3, 20, "Gaussian of unsharp masking"});
-  fields.add("edge_gain", edge_gain,
-             {"px", 0.01, 100,
-              "grey levels of the edge map per slope of 1 grey/px (Sobel, Scharr) or curvature of 1 grey/px^2 "
-              "(Laplacian)"});
+      {.effect = "Sharpening after the equalization: as in the paper (CLAHE minus blur), or unsharp masking."});
+  fields.add("sharpen_lambda", sharpen_lambda, {"", 0, 10, "Strength of the sharpening."});
+  fields.add(
+      "edge_gain", edge_gain,
+      {"px", 0.01, 100,
+       "Grey levels of the edge map per gradient of 1 grey/px (Sobel, Scharr) or per Laplacian of 1 grey/px^2."});
   fields.choice("norm", norm, {{"l2", MagnitudeNorm::L2}, {"l1", MagnitudeNorm::L1}},
-                {.effect = "slope from its two components (Sobel, Scharr, Canny): root of squares, or sum"});
-  fields.add("canny_low", canny_low, {"grey/px", 0, 255, "slope down to which Canny follows an edge"});
-  fields.add("canny_high", canny_high, {"grey/px", 0, 255, "slope that starts a Canny edge"});
+                {.effect = "Norm of the gradient (Sobel, Scharr, Canny)."});
+  fields.add("canny_low", canny_low, {"grey/px", 0, 255, "Lower gradient threshold of Canny."});
+  fields.add("canny_high", canny_high, {"grey/px", 0, 255, "Upper gradient threshold of Canny."});
   fields.add("erosion_px", erosion_px,
-             {"px", 0, 15, "edge thinning: side of the square that erodes the edge map, odd; 0 is off"});
-  fields.add("event_weight", event_weight, {"", 0, 4, "alpha of Algorithm 1: share of the event frame in the result"});
+             {"px", 0, 15, "Side length of the square that erodes the edge map, odd. 0: off."});
+  fields.add("event_weight", event_weight,
+             {"", 0, 4, "alpha of Algorithm 1: weight of the event frame in the result."});
   fields.add("edge_weight", edge_weight,
-             {"", 0, 4, "beta of Algorithm 1: share of the edge map; sums above 1 saturate"});
+             {"", 0, 4, "beta of Algorithm 1: weight of the edge map. Sums above 1 saturate."});
 }
 
 void EnhanceConfig::validate(const std::function<std::string(std::string_view)>& key) const {

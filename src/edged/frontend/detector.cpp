@@ -228,36 +228,33 @@ void DetectorConfig::visit(ConfigFields& fields) {
   fields.choice(
       "corners", corners,
       {{"fast_harris", CornerKind::FastHarris}, {"fast", CornerKind::Fast}, {"shi_tomasi", CornerKind::ShiTomasi}},
-      {.effect = "what counts as a corner: FAST ranked by Harris (as ORB), FAST by itself, or the smaller eigenvalue"});
-  fields.add("max_features", max_features,
-             {.unit = "1", .min = 8, .max = 2000, .effect = "most live tracks per camera; one per cell"});
+      {.effect = "Corner detector: FAST ranked by Harris score (as in ORB), FAST by its own score, or Shi-Tomasi."});
+  fields.add(
+      "max_features", max_features,
+      {.unit = "1", .min = 8, .max = 2000, .effect = "Largest number of live tracks per camera, one per grid cell."});
   fields.add("cell_px", cell_px,
              {.unit = "px",
               .min = 6,
               .max = 120,
-              .effect = "side of a grid cell in an image 240 px wide; grows with the width"});
+              .effect = "Side length of a grid cell in an image 240 px wide. It scales with the width."});
   fields.add("levels", levels,
-             {.unit = "1", .min = 1, .max = 8, .effect = "scales to find corners at, each 1.2 times coarser (as ORB)"});
-  fields.add("separation_px", separation_px,
-             {.unit = "px",
-              .min = 0,
-              .max = 60,
-              .effect = "no new corner nearer to a track, at 240 px width; grows with the width"});
-  fields.add("border_px", border_px,
-             {.unit = "px", .min = 5, .max = 60, .effect = "no corner nearer to the rim of the image"});
+             {.unit = "1",
+              .min = 1,
+              .max = 8,
+              .effect = "Number of scales for detection, each 1.2 times coarser (as in ORB)."});
+  fields.add(
+      "separation_px", separation_px,
+      {.unit = "px",
+       .min = 0,
+       .max = 60,
+       .effect = "Least distance of a new feature from a track in an image 240 px wide. It scales with the width."});
   fields.add("fast_threshold", fast_threshold,
-             {.unit = "grey", .min = 2, .max = 200, .effect = "contrast of FAST corners, tried first in every cell"});
+             {.unit = "grey", .min = 2, .max = 200, .effect = "Contrast threshold of FAST, used first in every cell."});
   fields.add("fast_threshold_low", fast_threshold_low,
              {.unit = "grey",
               .min = 1,
               .max = 200,
-              .effect = "contrast of FAST corners in cells where the first one finds none"});
-  fields.add("min_gradient", min_gradient,
-             {.unit = "grey/px",
-              .min = 0,
-              .max = 100,
-              .effect = "weakest slope of a Shi-Tomasi corner in its weak direction"});
-  fields.add("subpixel", subpixel, {.effect = "move new corners to their sub-pixel saddle point"});
+              .effect = "Contrast threshold of FAST in cells without a corner at the first threshold."});
 }
 
 std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied, int limit,

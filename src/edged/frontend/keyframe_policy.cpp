@@ -11,26 +11,27 @@ namespace edged {
 
 void KeyframeConfig::visit(ConfigFields& fields) {
   fields.add("min_tracked_share", min_tracked_share,
-             {.unit = "1", .min = 0, .max = 1, .effect = "keyframe when fewer of the last one's tracks are alive"});
+             {.unit = "1",
+              .min = 0,
+              .max = 1,
+              .effect = "A keyframe is made when a smaller share of the last one's tracks is alive."});
   fields.add("parallax_deg", parallax_deg,
              {.unit = "deg",
               .min = 0.01,
               .max = 45,
-              .effect = "keyframe when the median parallax since the last one is larger"});
-  fields.add(
-      "rotation_deg", rotation_deg,
-      {.unit = "deg", .min = 0.1, .max = 180, .effect = "keyframe when the camera has turned more since the last one"});
+              .effect = "A keyframe is made when the median parallax since the last one is larger."});
+  fields.add("rotation_deg", rotation_deg,
+             {.unit = "deg",
+              .min = 0.1,
+              .max = 180,
+              .effect = "A keyframe is made when the camera has rotated more since the last one."});
   fields.add("min_tracks", min_tracks,
-             {.min = 0, .max = 1000, .effect = "with fewer live tracks a keyframe looks for corners anew"});
-  fields.add("starved_interval_s", starved_interval_s,
-             {.unit = "s", .min = 0, .max = 10, .effect = "time between keyframes that look for corners anew"});
-  fields.add("min_interval_s", min_interval_s,
-             {.unit = "s", .min = 0, .max = 10, .effect = "never two keyframes nearer in time"});
-  fields.add(
-      "max_interval_s", max_interval_s,
-      {.unit = "s", .min = 0.01, .max = 100, .effect = "keyframe after this time, unless the camera stands still"});
-  fields.add("still_parallax_deg", still_parallax_deg,
-             {.unit = "deg", .min = 0, .max = 10, .effect = "below this parallax time alone makes no keyframe"});
+             {.min = 0, .max = 1000, .effect = "With fewer live tracks a keyframe detects new features."});
+  fields.add("max_interval_s", max_interval_s,
+             {.unit = "s",
+              .min = 0.01,
+              .max = 100,
+              .effect = "A keyframe is made after this time, unless the camera stands still."});
 }
 
 KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config) {

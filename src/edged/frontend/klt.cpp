@@ -19,15 +19,10 @@ constexpr double kEigenvalueScale = 1.0 / 1024.0;
 }  // namespace
 
 void KltConfig::visit(ConfigFields& fields) {
-  fields.add("window_px", window_px, {.unit = "px", .min = 5, .max = 61, .effect = "side of the compared window, odd"});
+  fields.add("window_px", window_px,
+             {.unit = "px", .min = 5, .max = 61, .effect = "Side length of the matched window, odd."});
   fields.add("levels", levels,
-             {.unit = "1", .min = 1, .max = 6, .effect = "half-size levels searched, full size included"});
-  fields.add("iterations", iterations, {.unit = "1", .min = 1, .max = 100, .effect = "most steps per level"});
-  fields.add("epsilon_px", epsilon_px,
-             {.unit = "px", .min = 0.001, .max = 1, .effect = "a step this short ends a level"});
-  fields.add(
-      "min_gradient", min_gradient,
-      {.unit = "grey/px", .min = 0, .max = 100, .effect = "weakest RMS slope of a window in its weak direction"});
+             {.unit = "1", .min = 1, .max = 6, .effect = "Number of pyramid levels, full size included."});
 }
 
 void ImagePyramid::build(const cv::Mat& image, const KltConfig& config) {

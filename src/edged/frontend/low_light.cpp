@@ -38,10 +38,7 @@ Range grey_range(const cv::Mat& image) {
 
 void LowLightConfig::visit(ConfigFields& fields) {
   fields.add("below_range", below_range,
-             {"grey", 0, 255, "frames with a smaller range of grey levels are smoothed and stretched; 0: none"});
-  fields.add("target_range", target_range, {"grey", 10, 230, "range of grey levels they are stretched to"});
-  fields.add("max_gain", max_gain, {"", 1, 100, "strongest stretch"});
-  fields.add("smoothing_px", smoothing_px, {"px", 0.3, 10, "blur before the stretch, standard deviation"});
+             {"grey", 0, 255, "Frames whose grey levels span less are smoothed and stretched. 0: none."});
 }
 
 cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {

@@ -5,7 +5,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

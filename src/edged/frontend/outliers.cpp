@@ -127,23 +127,14 @@ OutlierResult unknown_rotation(std::span<const Correspondence> pairs, double foc
 
 void OutlierConfig::visit(ConfigFields& fields) {
   fields.add("threshold_px", threshold_px,
-             {.unit = "px", .min = 0.1, .max = 20, .effect = "largest distance of an inlier from its epipolar line"});
+             {.unit = "px", .min = 0.1, .max = 20, .effect = "Largest distance of an inlier from its epipolar line."});
   fields.add("rotation_only_px", rotation_only_px,
-             {.unit = "px", .min = 0, .max = 20, .effect = "below this median parallax no translation is looked for"});
+             {.unit = "px", .min = 0, .max = 20, .effect = "No translation is estimated below this median parallax."});
   fields.add("rotation_gate_px", rotation_gate_px,
              {.unit = "px",
               .min = 0.1,
               .max = 100,
-              .effect = "largest parallax of an inlier while no translation is looked for"});
-  fields.add("fallback_share", fallback_share,
-             {.unit = "1",
-              .min = 0,
-              .max = 1,
-              .effect = "with fewer inliers than this the gyro's rotation is doubted: five-point"});
-  fields.add(
-      "min_share", min_share,
-      {.unit = "1", .min = 0, .max = 1, .effect = "a motion with fewer inliers is not believed and rejects nothing"});
-  fields.add("iterations", iterations, {.unit = "1", .min = 1, .max = 5000, .effect = "most RANSAC trials"});
+              .effect = "Largest parallax of an inlier while no translation is estimated."});
 }
 
 OutlierResult find_inliers(std::span<const Correspondence> pairs, const std::optional<Eigen::Matrix3d>& R_ref_cur,

@@ -123,8 +123,7 @@ std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& ima
 
 void PatchConfig::visit(ConfigFields& fields) {
   fields.add("min_similarity", min_similarity,
-             {"", 0, 1, "normalised cross correlation of a stored patch with the image where it counts as the same"});
-  fields.add("iterations", iterations, {"", 1, 100, "of a patch's alignment, at most"});
+             {"", 0, 1, "Least normalized cross correlation of a stored patch with the image for a match."});
 }
 
 std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner) {

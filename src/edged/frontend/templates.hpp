@@ -8,11 +8,11 @@
 #include <optional>
 #include <span>
 
-#include "edged/frontend/frontend_config.hpp"
 #include "edged/frontend/patch.hpp"
-#include "edged/frontend/track.hpp"
+#include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

@@ -42,9 +42,8 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
 }  // namespace
 
 void TemplateConfig::visit(ConfigFields& fields) {
-  fields.add(
-      "enabled", enabled,
-      {.effect = "align corners to their reference patches, so that what optical flow drifts by does not add up"});
+  fields.add("enabled", enabled,
+             {.effect = "Align features to their reference patches, which removes the drift of optical flow."});
   patch.visit(fields);
 }
 
@@ -53,26 +52,19 @@ void TrackerConfig::visit(ConfigFields& fields) {
   fields.group("klt", klt);
   fields.group("outliers", outliers);
   fields.group("templates", templates);
-  fields.add(
-      "forward_backward_px", forward_backward_px,
-      {.unit = "px", .min = 0.01, .max = 100, .effect = "a track followed back must return this near to its start"});
+  fields.add("forward_backward_px", forward_backward_px,
+             {.unit = "px",
+              .min = 0.01,
+              .max = 100,
+              .effect = "A track that is followed backwards must return this close to its start."});
   fields.add("min_correlation", min_correlation,
-             {.unit = "1", .min = -1, .max = 1, .effect = "least correlation of a track's patch with the one before"});
-  fields.add("border_px", border_px, {.unit = "px", .min = 0, .max = 60, .effect = "tracks nearer to the rim end"});
-  fields.add("merge_px", merge_px,
-             {.unit = "px", .min = 0, .max = 60, .effect = "the younger of two tracks this near ends"});
-  fields.add(
-      "retry_share", retry_share,
-      {.unit = "1",
-       .min = 0,
-       .max = 1,
-       .effect = "when more of the predicted seeds fail, all tracks are also searched from their old positions"});
-  fields.add(
-      "refill_share", refill_share,
-      {.unit = "1", .min = 0, .max = 1, .effect = "fewer live tracks than this share of max_features ask for corners"});
+             {.unit = "1",
+              .min = -1,
+              .max = 1,
+              .effect = "Least correlation of a track's patch with the one in the previous image."});
   fields.add(
       "sigma_px", sigma_px,
-      {.unit = "px", .min = 0.01, .max = 20, .effect = "standard deviation of an observation told to the estimator"});
+      {.unit = "px", .min = 0.01, .max = 20, .effect = "Standard deviation of an observation in the estimator."});
 }
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)

@@ -13,14 +13,14 @@
 
 #include "edged/core/observation.hpp"
 #include "edged/frontend/detector.hpp"
-#include "edged/frontend/frontend_config.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
 #include "edged/frontend/templates.hpp"
-#include "edged/frontend/track.hpp"
+#include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

@@ -12,8 +12,8 @@
 
 #include "edged/final_trajectory.hpp"
 #include "edged/frontend/patch.hpp"
-#include "edged/map/map_config.hpp"
 #include "edged/map/place.hpp"
+#include "edged/options/map.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"

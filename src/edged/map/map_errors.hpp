@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "edged/map/map_config.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "edged/map/map_config.hpp"
 #include "edged/map/map_errors.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 

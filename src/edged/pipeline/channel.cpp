@@ -8,11 +8,12 @@ namespace edged {
 
 void HealthConfig::visit(ConfigFields& fields) {
   fields.add("time_constant_s", time_constant_s,
-             {"s", 0.01, 100, "of the running mean of the share of tracks that survive an image"});
+             {"s", 0.01, 100, "Time constant of the running mean of the track survival rate."});
   fields.add("min_survival_rate", min_survival_rate,
-             {"", 0, 1, "with a smaller share a camera's observations are ignored"});
-  fields.add("min_event_features", min_event_features,
-             {"", 0, 1000, "features kept on event frames where the standard frames carry all of theirs (fused mode)"});
+             {"", 0, 1, "A camera's observations are ignored below this track survival rate."});
+  fields.add(
+      "min_event_features", min_event_features,
+      {"", 0, 1000, "Number of features kept in event frames while the frames have all of theirs (fused mode)."});
 }
 
 Eigen::Matrix3d Channel::since_keyframe(const SE3& T_W_B) const {

@@ -13,7 +13,6 @@ constexpr double kSearchSigmas = 3.0;
 constexpr double kSearchInterval_s = 0.09;  // between images, as long as the place is not known after a loss
 constexpr double kLeastSearch_px = 2.0;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
-constexpr double kUnnoticed_s = 2.5;                         // until a loss is said, StatusConfig::lost_after_s
 constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // that dead reckoning may be off
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
@@ -39,8 +38,12 @@ Features corners_of(const ChannelView& view, const SE3& T_O_C) {
 
 }  // namespace
 
-Mapper::Mapper(const MapConfig& config)
-    : config_(config), map_(config.keyframes), filter_(config.filter), record_(config.filter) {}
+Mapper::Mapper(const MapConfig& config, double lost_after_s)
+    : config_(config),
+      lost_after_s_(lost_after_s),
+      map_(config.keyframes),
+      filter_(config.filter),
+      record_(config.filter) {}
 
 void Mapper::restart(const SE3& T_M_O, const NavState& now) {
   const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
@@ -48,7 +51,7 @@ void Mapper::restart(const SE3& T_M_O, const NavState& now) {
   filter_.restart(T_M_O, now.T_W_B, now.t, position_sigma, yaw_sigma);
   record_.restart({now.t, now.T_W_B}, T_M_O, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
-  blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : kUnnoticed_s) + to_seconds(now.t - predicted_);
+  blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
   T_M_O_guess_ = T_M_O;
   recognised_.reset();

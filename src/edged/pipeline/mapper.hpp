@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/final_trajectory.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/map/saved_map.hpp"
@@ -21,7 +21,8 @@ namespace edged {
 
 class Mapper {
  public:
-  explicit Mapper(const MapConfig& config);
+  /// lost_after_s: StatusConfig's. The last estimate may have been without landmarks for so long.
+  Mapper(const MapConfig& config, double lost_after_s);
 
   /// The estimator has started anew: T_M_O is where dead reckoning puts it.
   void restart(const SE3& T_M_O, const NavState& now);
@@ -37,6 +38,10 @@ class Mapper {
 
   /// That pose of the odometry has been given out.
   void note(const NavState& now) { record_.add({now.t, now.T_W_B}); }
+
+  /// How long the pose has gone on dead reckoning alone, at the newest start [s]. It bounds where relocalization may
+  /// find the body.
+  double dead_reckoning_s() const { return blind_s_; }
 
   const SE3& T_M_O() const { return filter_.T_M_O(); }
   /// What was found in the image of that instant.
@@ -83,6 +88,7 @@ class Mapper {
   void remove_keyframe(std::size_t keyframe);
 
   MapConfig config_;
+  double lost_after_s_;
   KeyframeMap map_;
   MapFilter filter_;
   TrajectorySmoother record_;

@@ -24,20 +24,19 @@ constexpr std::string_view kForEveryone[] = {
     "enhance.sharpening",
     "enhance.detect",
     "enhance.track",
-    "alignment_gain",
-    "event_tracker.detector.max_features",
-    "event_tracker.klt.window_px",
-    "event_tracker.sigma_px",
-    "frame_tracker.detector.max_features",
-    "frame_tracker.klt.window_px",
-    "frame_tracker.sigma_px",
+    "alignment.gain",
+    "tracker.detector.max_features",
+    "tracker.events.klt.window_px",
+    "tracker.events.sigma_px",
+    "tracker.frames.klt.window_px",
+    "tracker.frames.sigma_px",
     "keyframes.parallax_deg",
     "keyframes.min_tracked_share",
     "depth.source",
     "depth.constant_m",
     "depth.network.model",
-    "depth_factor.enabled",
-    "depth_factor.form",
+    "estimator.depth_factor.enabled",
+    "estimator.depth_factor.form",
     "estimator.keyframes",
     "estimator.iterations",
     "estimator.noise_inflation",
@@ -55,7 +54,103 @@ constexpr std::string_view kForEveryone[] = {
     "status.lost_after_s",
 };
 
+/// Options of the tracker whose defaults differ: those of event frames are under tracker.events, of standard frames
+/// under tracker.frames.
+constexpr std::string_view kPerCameraKind[] = {"klt.window_px", "templates.min_similarity", "sigma_px"};
+
+/// Keys of version 0.2. Of several new names the first that exists counts.
+constexpr ConfigFields::Renamed kRenamed[] = {
+    {"alignment_gain", "alignment.gain"},
+    {"expert.dim_frames.", "expert.low_light."},
+    {"expert.health.min_survival", "expert.health.min_survival_rate"},
+    {"expert.health.min_event_corners", "expert.health.min_event_features"},
+    {"expert.map.max_sights", "expert.map.max_observations"},
+    {"expert.map.filter.min_sights", "expert.map.filter.min_observations"},
+    {"expert.alignment_max_px", "expert.alignment.max_px"},
+    {"depth_factor.", "estimator.depth_factor."},
+    {"expert.depth_factor.", "expert.estimator.depth_factor."},
+    {"event_tracker.", "tracker.events."},
+    {"event_tracker.", "tracker."},
+    {"frame_tracker.", "tracker.frames."},
+    {"frame_tracker.", "tracker."},
+    {"expert.event_tracker.", "expert.tracker.events."},
+    {"expert.event_tracker.", "expert.tracker."},
+    {"expert.frame_tracker.", "expert.tracker.frames."},
+    {"expert.frame_tracker.", "expert.tracker."},
+    {"expert.event_tracker.klt.iterations", ""},
+    {"expert.frame_tracker.klt.iterations", ""},
+    {"expert.event_tracker.klt.epsilon_px", ""},
+    {"expert.frame_tracker.klt.epsilon_px", ""},
+    {"expert.event_tracker.klt.min_gradient", ""},
+    {"expert.frame_tracker.klt.min_gradient", ""},
+    {"expert.event_tracker.outliers.fallback_share", ""},
+    {"expert.frame_tracker.outliers.fallback_share", ""},
+    {"expert.event_tracker.outliers.min_share", ""},
+    {"expert.frame_tracker.outliers.min_share", ""},
+    {"expert.event_tracker.outliers.iterations", ""},
+    {"expert.frame_tracker.outliers.iterations", ""},
+    {"expert.event_tracker.detector.border_px", ""},
+    {"expert.frame_tracker.detector.border_px", ""},
+    {"expert.event_tracker.detector.min_gradient", ""},
+    {"expert.frame_tracker.detector.min_gradient", ""},
+    {"expert.event_tracker.detector.subpixel", ""},
+    {"expert.frame_tracker.detector.subpixel", ""},
+    {"expert.event_tracker.border_px", ""},
+    {"expert.frame_tracker.border_px", ""},
+    {"expert.event_tracker.merge_px", ""},
+    {"expert.frame_tracker.merge_px", ""},
+    {"expert.event_tracker.retry_share", ""},
+    {"expert.frame_tracker.retry_share", ""},
+    {"expert.event_tracker.refill_share", ""},
+    {"expert.frame_tracker.refill_share", ""},
+    {"expert.event_tracker.templates.iterations", ""},
+    {"expert.frame_tracker.templates.iterations", ""},
+    {"expert.map.patch.iterations", ""},
+    {"expert.dim_frames.target_range", ""},
+    {"expert.dim_frames.max_gain", ""},
+    {"expert.dim_frames.smoothing_px", ""},
+    {"expert.keyframes.starved_interval_s", ""},
+    {"expert.keyframes.min_interval_s", ""},
+    {"expert.keyframes.still_parallax_deg", ""},
+    {"expert.enhance.clahe_tiles", ""},
+    {"expert.enhance.unsharp_sigma_px", ""},
+    {"expert.depth.constant_sigma_ln", ""},
+    {"expert.depth.filter.max_age_s", ""},
+    {"expert.depth.filter.drift", ""},
+    {"expert.depth.landmarks.min_landmarks", ""},
+    {"expert.depth.network.min_events_per_pixel", ""},
+    {"expert.depth.scale.prior_sigma", ""},
+    {"expert.depth.scale.walk", ""},
+    {"expert.depth.scale.measurement_sigma", ""},
+    {"expert.depth_factor.scale_walk", ""},
+    {"expert.depth_factor.noise_share", ""},
+    {"expert.depth_factor.min_interval_s", ""},
+    {"expert.depth_factor.min_landmarks", ""},
+    {"expert.depth_factor.gate", ""},
+    {"expert.depth_factor.cauchy_scale", ""},
+    {"expert.estimator.rest_gyro_bias_sigma", ""},
+    {"expert.estimator.zero_velocity_sigma", ""},
+    {"expert.estimator.init_spacing_s", ""},
+    {"expert.estimator.init_turn_deg", ""},
+    {"expert.estimator.init_min_views", ""},
+    {"expert.estimator.min_noise_scale", ""},
+    {"expert.estimator.max_noise_scale", ""},
+    {"expert.estimator.standstill.max_gyro_mean", ""},
+    {"expert.estimator.standstill.quiet_window_s", ""},
+    {"expert.map.keyframes.min_interval_s", ""},
+    {"expert.map.keyframes.max_depth_error", ""},
+    {"expert.map.keyframes.max_scale", ""},
+};
+
 }  // namespace
+
+void AlignmentConfig::visit(ConfigFields& fields) {
+  fields.add("gain", gain,
+             {"", 0, 1,
+              "Weight of the newest event frame in the running mean of (measured - predicted) displacement (delta "
+              "x_last of Eq. 2). 0: off."});
+  fields.add("max_px", max_px, {"px", 0, 50, "Upper bound of that mean."});
+}
 
 OdometryConfig::OdometryConfig() {
   event_tracker.sigma_px = 1.5;      // the look of an event frame changes with the direction of motion,
@@ -65,46 +160,37 @@ OdometryConfig::OdometryConfig() {
 
 void OdometryConfig::visit(ConfigFields& fields) {
   fields.expert_but(kForEveryone, [&] { declare(fields); });
+  fields.accept(kRenamed);
 }
 
 void OdometryConfig::declare(ConfigFields& fields) {
-  fields.add(
-      "cameras", cameras,
-      {.effect = "names of the cameras to use, separated by commas, any number of a kind; empty: the first event "
-                 "camera and the first frame camera, as the mode uses them"});
+  fields.add("cameras", cameras,
+             {.effect = "Names of the cameras to use, separated by commas. Empty: the first event camera and the first "
+                        "frame camera."});
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);
-  fields.add("enhance.detect", enhance_detect,
-             {.effect = "find new features on the enhanced event frame, not the plain one"});
-  fields.add("enhance.track", enhance_track,
-             {.effect = "follow features on the enhanced event frame, not the plain one"});
-  fields.add("alignment_gain", alignment.gain,
-             {"", 0, 1,
-              "weight of the last event frame's median (measured - predicted) displacement in the running mean "
-              "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
-  fields.add("alignment_max_px", alignment.max_px, {"px", 0, 50, "bound of that correction"});
+  fields.add("enhance.detect", enhance_detect, {.effect = "Detect features in the enhanced event frame."});
+  fields.add("enhance.track", enhance_track, {.effect = "Track features in the enhanced event frame."});
+  fields.group("alignment", alignment);
   fields.group("health", health);
   fields.group("low_light", low_light);
-  fields.group("event_tracker", event_tracker);
-  fields.group("frame_tracker", frame_tracker);
+  fields.pair("tracker", "events", event_tracker, "frames", frame_tracker, kPerCameraKind);
   fields.group("keyframes", keyframes);
   fields.group("depth", depth);
-  fields.group("depth_factor", estimator.depth_factor);
   fields.group("estimator", estimator);
   fields.group("map", map);
   fields.group("status", status);
   fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
-             {"1/s", 0, 1000, "events per pixel and second below which nothing moves in view"});
-  fields.add(
-      "max_travel_px", max_travel_px,
-      {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
+             {"1/s", 0, 1000, "The scene is static below this event rate per pixel."});
+  fields.add("max_travel_px", max_travel_px,
+             {"px", 0.5, 1000, "An event frame covers at most this image motion by translation."});
   fields.add("thin_width_px", thin_width_px,
              {"px", 1, 1e6,
-              "while frames carry enough features each n-th event is rendered, n the sensor's width over this, rounded "
-              "down"});
+              "While frames have enough features, event frames use each n-th event, with n = sensor width / this, "
+              "rounded down."});
   fields.add("min_events_per_pixel", min_events_per_pixel,
-             {"", 0, 10, "a packet with fewer events draws no event frame"});
+             {"", 0, 10, "A packet with fewer events per pixel makes no event frame."});
 }
 
 void OdometryConfig::validate() const {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "edged/core/check.hpp"
@@ -18,9 +19,55 @@ TEST(OdometryConfig, MostOptionsAreForExpertsAndStandLast) {
   OdometryConfig config;
   const ConfigFields fields = ConfigFields::of(config);
   const auto first_expert = std::ranges::find_if(fields.all(), &ConfigField::expert);
-  EXPECT_EQ(first_expert - fields.all().begin(), 42) << "a name in the list that is no option, or one declared anew";
+  EXPECT_EQ(first_expert - fields.all().begin(), 41) << "a name in the list that is no option, or one declared anew";
   EXPECT_TRUE(std::all_of(first_expert, fields.all().end(),
                           [](const ConfigField& field) { return field.expert && field.key.starts_with("expert."); }));
+}
+
+TEST(OdometryConfig, HasAtMost152OptionsAndOneTrackerGroup) {
+  OdometryConfig config;
+  ConfigFields fields = ConfigFields::of(config);
+  EXPECT_LE(fields.all().size(), 152U) << "derive an option from others, or make it a constant";
+  fields.set("tracker.detector.max_features=77");
+  EXPECT_EQ(config.event_tracker.detector.max_features, 77);
+  EXPECT_EQ(config.frame_tracker.detector.max_features, 77);
+  fields.set("tracker.events.sigma_px=3");
+  EXPECT_EQ(config.event_tracker.sigma_px, 3.0);
+  EXPECT_EQ(config.frame_tracker.sigma_px, OdometryConfig().frame_tracker.sigma_px);
+}
+
+/// Of one option of the tracker two keys, where and only where the defaults differ.
+TEST(OdometryConfig, HasTrackerOptionsPerKindWhereDefaultsDiffer) {
+  OdometryConfig config;
+  const auto texts = [](TrackerConfig& tracker) {
+    std::map<std::string, std::string> values;
+    for (const ConfigField& field : ConfigFields::of(tracker).all()) values[field.key] = field.get();
+    return values;
+  };
+  const auto events = texts(config.event_tracker), frames = texts(config.frame_tracker);
+  const ConfigFields fields = ConfigFields::of(config);
+  for (const auto& [key, value] : events) {
+    const bool separate = std::ranges::any_of(
+        fields.all(), [&](const ConfigField& field) { return field.key.ends_with("tracker.events." + key); });
+    EXPECT_EQ(separate, value != frames.at(key)) << key;
+  }
+}
+
+TEST(OdometryConfig, AcceptsTheKeysOfTheVersionBefore) {
+  OdometryConfig config;
+  ConfigFields fields = ConfigFields::of(config);
+  fields.set("alignment_gain=0.5");
+  fields.set("event_tracker.klt.window_px=21");
+  fields.set("expert.frame_tracker.detector.cell_px=30");
+  fields.set("expert.depth_factor.scale_sigma=0.25");
+  fields.set("expert.event_tracker.klt.epsilon_px=0.1");  // a constant now: ignored
+  EXPECT_EQ(config.alignment.gain, 0.5);
+  EXPECT_EQ(config.event_tracker.klt.window_px, 21);
+  EXPECT_EQ(config.frame_tracker.klt.window_px, OdometryConfig().frame_tracker.klt.window_px);
+  EXPECT_EQ(config.event_tracker.detector.cell_px, 30.0);
+  EXPECT_EQ(config.frame_tracker.detector.cell_px, 30.0);
+  EXPECT_EQ(config.estimator.depth_factor.scale_sigma, 0.25);
+  EXPECT_THROW(fields.set("event_tracker.klt.nothing=1"), InputError);
 }
 
 TEST(OdometryConfig, RefusesAnEnhancementThatNothingUses) {

@@ -41,7 +41,7 @@ PacketOdometry::PacketOdometry(const Rig& cameras, const ImuNoise& noise, const 
       given_rig_(cameras),
       rig_(without_offsets(given_rig_)),
       estimator_(fresh_estimator()),
-      mapper_(config.map),
+      mapper_(config.map, config.status.lost_after_s),
       judge_(config.status),
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
       depth_(fresh_depth()) {
@@ -72,7 +72,7 @@ void PacketOdometry::begin_time() {
   make_channels();
   depth_ = fresh_depth();
   before_ = final_trajectory();
-  mapper_ = Mapper(config_.map);  // its keyframes are of the time before
+  mapper_ = Mapper(config_.map, config_.status.lost_after_s);  // its keyframes are of the time before
   judge_.lose("a clock was set back");
   dead_reckoning_until_ = Timestamp::min();
   last_keyframe_.reset();

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/timing.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/frontend/low_light.hpp"
@@ -25,6 +24,7 @@
 #include "edged/pipeline/world_frame.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

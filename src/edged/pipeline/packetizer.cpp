@@ -35,18 +35,18 @@ std::size_t events_in(const Packet& packet) {
 
 void PacketizerConfig::visit(ConfigFields& fields) {
   fields.add("events_per_pixel", events_per_pixel,
-             {"1/px", 0.001, 100, "new events per pixel that cut a packet; fewer give more packets per second"});
-  fields.add(
-      "window_per_pixel", window_per_pixel,
-      {"1/px", 0.001, 100, "events per pixel that are rendered into one event frame, reaching back past the last cut"});
-  fields.add("max_age_s", max_age_s,
-             {"s", 0.001, 10, "events older than this are not rendered, however few there are"});
+             {"1/px", 0.001, 100,
+              "A packet is made after this many new events per pixel. Fewer give more packets per second."});
+  fields.add("window_per_pixel", window_per_pixel,
+             {"1/px", 0.001, 100, "Number of events per pixel in one event frame, older packets' events included."});
+  fields.add("max_age_s", max_age_s, {"s", 0.001, 10, "Event frames leave out events older than this."});
   fields.add("max_interval_s", max_interval_s,
-             {"s", 0.001, 1, "longest time between two packets with events (the heartbeat at standstill)"});
+             {"s", 0.001, 1, "Longest time between two packets, also at standstill."});
   fields.add("min_interval_s", min_interval_s,
-             {"s", 0, 1, "shortest time between two packets, unless a frame comes: bounds the computing time"});
+             {"s", 0, 1, "Shortest time between two packets without a frame. It bounds the computing time."});
   fields.add("max_waiting_events", max_waiting_events,
-             {"events", 1000, 1e9, "events kept while the IMU is late; beyond, the oldest packets are dropped"});
+             {"events", 1000, 1e9,
+              "Largest number of events that wait for the IMU. The oldest packets beyond it are dropped."});
 }
 
 Packetizer::Packetizer(const Rig& cameras, const PacketizerConfig& config, const PacketizerCounters& so_far)

@@ -15,14 +15,15 @@ constexpr double kMorePatience = 1.5;
 
 void StatusConfig::visit(ConfigFields& fields) {
   fields.add("degraded_after_s", degraded_after_s,
-             {"s", 0.05, 60, "the status is Degraded after this time without landmarks"});
-  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "and Lost after this time"});
-  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "landmarks in view that a Good pose needs"});
+             {"s", 0.05, 60, "The status is Degraded after this time without landmarks."});
+  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "The status is Lost after this time without landmarks."});
+  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "A Good pose needs this many landmarks in view."});
+  fields.add("degraded_strain", degraded_strain,
+             {"sigma", 0.01, 1000,
+              "The status is Degraded when the IMU residuals of the window exceed this: cameras and IMU disagree."});
   fields.add(
-      "degraded_strain", degraded_strain,
-      {"sigma", 0.01, 1000, "Degraded when the window's IMU residuals are larger: the cameras contradict the IMU"});
-  fields.add("lost_strain", lost_strain,
-             {"sigma", 0.01, 1000, "and Lost when they are larger than this; half as much again after each such loss"});
+      "lost_strain", lost_strain,
+      {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
 }
 
 TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, Timestamp t) {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/se3.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/light.hpp"

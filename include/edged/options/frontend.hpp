@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
+// The options of what looks at images: features, optical flow, outliers, keyframes, frames in the dark.
 #pragma once
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 
@@ -17,10 +17,10 @@ enum class CornerKind {
 };
 
 struct DetectorConfig {
-  CornerKind corners = CornerKind::FastHarris;
+  CornerKind features = CornerKind::FastHarris;
   int max_features = 120;
   double cell_px = 20.0;
-  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
+  int levels = 1;  ///< scales the features are found at, each kLevelFactor coarser than the one before
   double separation_px = 8.0;
   int border_px = 8;
   int fast_threshold = 20;
@@ -36,8 +36,8 @@ struct DetectorConfig {
 struct KltConfig {
   int window_px = 11;
   int levels = 3;
-  int iterations = 20;
-  double epsilon_px = 0.005;
+  static constexpr int iterations = 20;
+  static constexpr double epsilon_px = 0.005;
   double min_gradient = 1.0;
 
   void visit(ConfigFields& fields);
@@ -47,9 +47,9 @@ struct OutlierConfig {
   double threshold_px = 2.0;
   double rotation_only_px = 1.0;
   double rotation_gate_px = 6.0;
-  double fallback_share = 0.6;
-  double min_share = 0.3;
-  int iterations = 100;
+  static constexpr double fallback_share = 0.6;
+  static constexpr double min_share = 0.3;
+  static constexpr int iterations = 100;
 
   void visit(ConfigFields& fields);
 };
@@ -57,11 +57,11 @@ struct OutlierConfig {
 /// What makes a patch in an image count as the stored one.
 struct PatchConfig {
   double min_similarity = 0.8;  ///< normalised cross correlation
-  int iterations = 10;
+  static constexpr int iterations = 10;
   void visit(ConfigFields& fields);
 };
 
-/// The reference patch of a corner, which images are aligned to.
+/// The reference patch of a feature, which images are aligned to.
 struct TemplateConfig {
   bool enabled = true;
   PatchConfig patch;
@@ -77,10 +77,10 @@ struct TrackerConfig {
   double forward_backward_px = 1.0;
   // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
   double min_correlation = 0.3;
-  double border_px = 4.0;
+  static constexpr double border_px = 4.0;
   double merge_px = 3.0;
-  double retry_share = 0.5;
-  double refill_share = 0.5;
+  static constexpr double retry_share = 0.5;
+  static constexpr double refill_share = 0.5;
   double sigma_px = 1.0;
 
   void visit(ConfigFields& fields);
@@ -91,19 +91,19 @@ struct KeyframeConfig {
   double parallax_deg = 1.5;
   double rotation_deg = 10.0;
   int min_tracks = 15;
-  double starved_interval_s = 0.2;
-  double min_interval_s = 0.05;
+  static constexpr double starved_interval_s = 0.2;
+  static constexpr double min_interval_s = 0.05;
   double max_interval_s = 0.5;
-  double still_parallax_deg = 0.2;
+  static constexpr double still_parallax_deg = 0.2;
 
   void visit(ConfigFields& fields);
 };
 
 struct LowLightConfig {
-  double below_range = 80.0;    ///< grey levels between the image's dark and bright ends; fewer are stretched
-  double target_range = 160.0;  ///< to so many
-  double max_gain = 12.0;
-  double smoothing_px = 1.0;  ///< standard deviation of the blur before it
+  double below_range = 80.0;  ///< grey levels between the image's dark and bright ends; fewer are stretched
+  static constexpr double target_range = 160.0;  ///< to so many
+  static constexpr double max_gain = 12.0;
+  static constexpr double smoothing_px = 1.0;  ///< standard deviation of the blur before it
   void visit(ConfigFields& fields);
 };
 

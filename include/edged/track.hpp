@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A corner that is followed through the images of one camera.
+// A feature that is followed through the images of one camera.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -21,7 +21,7 @@ struct CalibrationConfig {
 
 /// How errors along a track hang together. KLT follows a feature from image to image: what it has drifted by stays. Of
 /// two observations dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov
-/// process, and on top of it what each image has of its own. An event frame has more of that: it is drawn anew each
+/// process, and on top of it what each image has of its own. An event frame has more of that: it is rendered anew each
 /// time. And the more is taken for drift, the more what moves slowly is believed.
 struct TrackNoise {
   double correlation = 0.95;  ///< on frames
@@ -43,14 +43,14 @@ struct LandmarkConfig {
 };
 
 struct StandstillConfig {
-  double window_s = 0.4;           ///< the body must have rested for this long
-  double max_gyro = 0.03;          ///< spread of the angular rate's block means [rad/s]
-  double max_accel = 0.25;         ///< spread of the acceleration's block means [m/s^2]
-  double max_gyro_mean = 0.15;     ///< a mean rate above this is motion, not bias [rad/s]
+  double window_s = 0.4;                         ///< the body must have rested for this long
+  double max_gyro = 0.03;                        ///< spread of the angular rate's block means [rad/s]
+  double max_accel = 0.25;                       ///< spread of the acceleration's block means [m/s^2]
+  static constexpr double max_gyro_mean = 0.15;  ///< a mean rate above this is motion, not bias [rad/s]
   double max_image_motion = 4e-3;  ///< median travel of the features over the window, on the unit plane [rad]
-  double quiet_window_s = 0.7;     ///< quiet for so long, the IMU needs no picture
-  double quiet_gyro = 0.008;       ///< spread then, near a sensor's own noise [rad/s]
-  double quiet_accel = 0.1;        ///< [m/s^2]
+  static constexpr double quiet_window_s = 0.7;  ///< quiet for so long, the IMU needs no picture
+  double quiet_gyro = 0.008;                     ///< spread then, near a sensor's own noise [rad/s]
+  double quiet_accel = 0.1;                      ///< [m/s^2]
   void visit(ConfigFields& fields);
 };
 
@@ -63,30 +63,30 @@ enum class DepthResidual : std::uint8_t {
 struct DepthFactorConfig {
   bool enabled = false;
   DepthResidual form = DepthResidual::Log;
-  double scale_sigma = 0.5;     ///< of ln s before anything is known
-  double scale_walk = 0.02;     ///< [1/sqrt(s)]
-  double noise_share = 0.5;     ///< of the source's sigma_ln: what changes with time and s cannot explain
-  double min_interval_s = 0.5;  ///< between two factors: what the source gets wrong lasts
-  int min_landmarks = 8;        ///< in the region
-  double gate = 3.0;            ///< [sigma]
-  double cauchy_scale = 1.0;    ///< [sigma]
+  double scale_sigma = 0.5;                   ///< of ln s before anything is known
+  static constexpr double scale_walk = 0.02;  ///< [1/sqrt(s)]
+  static constexpr double noise_share = 0.5;  ///< of the source's sigma_ln: what changes with time and s cannot explain
+  static constexpr double min_interval_s = 0.5;  ///< between two factors: what the source gets wrong lasts
+  static constexpr int min_landmarks = 8;        ///< in the region
+  static constexpr double gate = 3.0;            ///< [sigma]
+  static constexpr double cauchy_scale = 1.0;    ///< [sigma]
 
   void visit(ConfigFields& fields);
 };
 
 struct EstimatorConfig {
-  int recent_states = 3;                ///< newest states, keyframes or not
-  int keyframes = 8;                    ///< older keyframes
-  double max_interval_s = 1.0;          ///< IMU between two keyframes
-  int iterations = 2;                   ///< of the solver, a packet
-  double cauchy_scale = 1.0;            ///< robust loss of visual residuals
-  double gyro_bias_sigma = 0.02;        ///< prior of a start in motion
-  double rest_gyro_bias_sigma = 0.005;  ///< prior of a start at rest, where the bias has been measured
+  int recent_states = 3;                                 ///< newest states, keyframes or not
+  int keyframes = 8;                                     ///< older keyframes
+  double max_interval_s = 1.0;                           ///< IMU between two keyframes
+  int iterations = 2;                                    ///< of the solver, a packet
+  double cauchy_scale = 1.0;                             ///< robust loss of visual residuals
+  double gyro_bias_sigma = 0.02;                         ///< prior of a start in motion
+  static constexpr double rest_gyro_bias_sigma = 0.005;  ///< prior of a start at rest, where the bias has been measured
   double accel_bias_sigma = 0.15;
-  double zero_velocity_sigma = 0.01;
-  double init_spacing_s = 0.08;  ///< between the views of the start-up buffer, at most
-  double init_turn_deg = 5.0;    ///< a turn by this makes the next view sooner
-  int init_min_views = 8;
+  static constexpr double zero_velocity_sigma = 0.01;
+  static constexpr double init_spacing_s = 0.08;  ///< between the views of the start-up buffer, at most
+  static constexpr double init_turn_deg = 5.0;    ///< a turn by this makes the next view sooner
+  static constexpr int init_min_views = 8;
   int init_max_views = 24;
   double init_max_span_s = 7.0;          ///< tracks last, and biases stay, for so long
   double init_scale_sigma = 0.08;        ///< of ln scale; a wrong start of too large a scale passes more easily
@@ -94,8 +94,8 @@ struct EstimatorConfig {
   double noise_gain = 0.05;              ///< adaptation of each camera's noise to its residuals, a packet
   double noise_inflation = 2.0;          ///< sigma over the spread of what each observation adds to the one before
   double event_noise_inflation = 2.5;    ///< times as much for events beside frames: their drift goes on as it was
-  double min_noise_scale = 0.05;         ///< bounds of the adapted noise over the configured one
-  double max_noise_scale = 4.0;
+  static constexpr double min_noise_scale = 0.05;  ///< bounds of the adapted noise over the configured one
+  static constexpr double max_noise_scale = 4.0;
   double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
   double sigma_inflation =
       1.3;  ///< of what covariance() gives: what features of one image have in common is not modelled
@@ -103,7 +103,7 @@ struct EstimatorConfig {
   CalibrationConfig calibration;
   LandmarkConfig landmarks;
   StandstillConfig standstill;
-  DepthFactorConfig depth_factor;  ///< its options stand beside those of the depth source, not in visit
+  DepthFactorConfig depth_factor;
   void visit(ConfigFields& fields);
 };
 

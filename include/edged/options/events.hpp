@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of event frames: how events are moved, drawn and enhanced.
+// The options of event frames: how events are moved, rendered and enhanced.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <string_view>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 
@@ -64,10 +64,10 @@ struct EnhanceConfig {
   EdgeMethod method = EdgeMethod::None;
   double blur_sigma_px = 0.8;
   double clahe_clip = 2.0;
-  int clahe_tiles = 4;
+  static constexpr int clahe_tiles = 4;
   Sharpening sharpening = Sharpening::None;
   double sharpen_lambda = 0.5;
-  double unsharp_sigma_px = 2.0;
+  static constexpr double unsharp_sigma_px = 2.0;
   double edge_gain = 2.0;
   MagnitudeNorm norm = MagnitudeNorm::L2;
   double canny_low = 8.0;

@@ -89,6 +89,27 @@ class ConfigFields {
     prefix_ = outer;
   }
 
+  /// Two structs of one type as one group. One option sets both, but those named in `separate` have a key for each:
+  /// group.kind.name.
+  template <typename Config>
+  void pair(std::string_view name, std::string_view first_kind, Config& first, std::string_view second_kind,
+            Config& second, std::span<const std::string_view> separate) {
+    const std::size_t prefix = prefix_.size() + name.size() + 1;
+    pair_ = Pair{separate, first_kind, prefix, false};
+    group(name, first);
+    pair_ = Pair{separate, second_kind, prefix, true};
+    group(name, second);
+    pair_.reset();
+  }
+
+  /// What became of a key of an earlier version. `before` and `now` may be a group: both end with a dot. now: "" where
+  /// the option has become a constant.
+  struct Renamed {
+    std::string_view before, now;
+  };
+  /// Keys of the version before, which set() accepts with a warning that names the new key. The first that fits counts.
+  void accept(std::span<const Renamed> renamed) { renamed_ = renamed; }
+
   const std::vector<ConfigField>& all() const { return fields_; }
 
   /// Sets one option from text. Throws InputError that names the key, with the nearest known one for a typing error.
@@ -114,12 +135,25 @@ class ConfigFields {
     std::span<const std::string_view> everyone;  ///< names of options that are not for experts
     std::size_t prefix;                          ///< length of the prefix outside
   };
+  /// What is declared within pair.
+  struct Pair {
+    std::span<const std::string_view> separate;  ///< names of options that each struct has for itself
+    std::string_view kind;
+    std::size_t prefix;  ///< length of the prefix inside
+    bool second;         ///< its shared options are declared already
+  };
+  bool set_known(const std::string& key, const std::string& value);
+  bool is_separate(std::string_view name) const;
+  /// Below all groups, without "expert.".
+  std::string path_of(std::string_view name) const;
   bool is_expert(std::string_view name) const;
   std::string key_of(std::string_view name) const;
   void experts_last();
 
   std::string prefix_;
   std::optional<Audience> audience_;
+  std::optional<Pair> pair_;
+  std::span<const Renamed> renamed_;
   std::vector<ConfigField> fields_;
 };
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 
@@ -20,9 +20,7 @@ struct DepthFilterConfig {
 };
 
 struct LandmarkDepthConfig {
-  int min_landmarks = 5;  ///< in the region, for a measurement
-
-  void visit(ConfigFields& fields);
+  static constexpr int min_landmarks = 5;  ///< in the region, for a measurement
 };
 
 /// What stands for all depths of the region. The paper takes the mean, which a far background pulls away.
@@ -32,8 +30,8 @@ struct NetworkDepthConfig {
   std::string model = "small";  ///< of config/depth, or the path of an ONNX file
   int margin_px = 16;           ///< the network sees that much more than the region on each side
   RegionValue region_value = RegionValue::Median;
-  double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
-  double time_constant_s = 0.5;        ///< of the smoothing, in place of the filter's: best on held-out scenes
+  static constexpr double min_events_per_pixel = 0.05;  ///< in what the network sees, for a measurement
+  double time_constant_s = 0.5;  ///< of the smoothing, in place of the filter's: best on held-out scenes
 
   void visit(ConfigFields& fields);
 };
@@ -44,11 +42,10 @@ enum class Inference { Synchronous, OwnThread };
 
 /// The scale s of a depth source, as ln s: a Kalman filter over one number with a prior and a slow random walk.
 struct ScaleConfig {
-  double prior_sigma = 0.5;         ///< of ln s around 0
-  double walk = 0.05;               ///< random walk of ln s [1/sqrt(s)]
-  double measurement_sigma = 0.35;  ///< of one window's ln ratio: error of the network that changes with time
-
-  void visit(ConfigFields& fields);
+  static constexpr double prior_sigma = 0.5;  ///< of ln s around 0
+  static constexpr double walk = 0.05;        ///< random walk of ln s [1/sqrt(s)]
+  static constexpr double measurement_sigma =
+      0.35;  ///< of one window's ln ratio: error of the network that changes with time
 };
 
 enum class DepthSource { Constant, Landmarks, Network, Fused };
@@ -56,7 +53,7 @@ enum class DepthSource { Constant, Landmarks, Network, Fused };
 struct DepthConfig {
   DepthSource source = DepthSource::Landmarks;
   double constant_m = 2.0;
-  double constant_sigma_ln = 0.7;
+  static constexpr double constant_sigma_ln = 0.7;
   double region_share = 0.5;  ///< of each side of the image, around its middle
   DepthFilterConfig filter;
   LandmarkDepthConfig landmarks;
