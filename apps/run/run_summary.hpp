@@ -15,7 +15,6 @@
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "edged/counters.hpp"
 #include "edged/timing.hpp"
 #include "run/run_statistics.hpp"
 #include "run/verdict.hpp"
