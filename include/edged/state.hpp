@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is estimated: poses, the state of the body, landmarks. Frames: O odometry (of one start of the estimator), M map,
-// B body, C camera; M and O have z up. In the public interface W (world) is another name of M.
+// What is estimated: poses, the state of the body, landmarks. Frames: O odometry (of one start of the estimator), M
+// map, B body, C camera; M and O have z up. In the public interface W (world) is another name of M.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,12 +29,12 @@ struct NavState {
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// Names one corner for as long as it is tracked; never reused, unique over all cameras.
+/// Names one feature for as long as it is tracked; never reused, unique over all cameras.
 using FeatureId = std::uint64_t;
 
-/// A point of the world that the estimator has placed by the observations of a corner.
+/// A point of the world that the estimator has placed by the observations of a feature.
 struct Landmark {
-  FeatureId id = 0;  ///< of the corner
+  FeatureId id = 0;  ///< of the feature
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 

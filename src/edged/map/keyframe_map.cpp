@@ -20,8 +20,8 @@ constexpr double kMinFound = 0.3;  // share of them
 constexpr double kFarthest = 1.5;  // [scene depths]: keyframes that lie farther away see it otherwise
 constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
 constexpr std::size_t kFewestAgreeing = 12;
-constexpr double kAgreement_px = 3.0;   // of a corner with the place recognised
-constexpr double kLeastAgreeing = 0.3;  // share of the corners that look like a point
+constexpr double kAgreement_px = 3.0;   // of a feature with the place recognised
+constexpr double kLeastAgreeing = 0.3;  // share of the features that look like a point
 constexpr double kWidest_deg = 60.0;    // between the optical axes
 
 /// How far it has proved findable.
@@ -89,7 +89,7 @@ void KeyframeMap::note(const Candidate& candidate, Timestamp t) {
   ++candidate.point->tried;
   if (!candidate.found) return;
   ++candidate.point->found;
-  MapKeyframe& keyframe = keyframes_[candidate.sight.keyframe];
+  MapKeyframe& keyframe = keyframes_[candidate.observation.keyframe];
   keyframe.times_found += keyframe.found_at == t ? 0 : 1;
   keyframe.found_at = t;
 }
@@ -131,7 +131,7 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
       const auto A = patch_warp(point, T_C_K, camera, *pixel);
       if (!A) continue;
       const Eigen::Vector3d depth_sigma_K = keyframe.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
-      found.push_back({.sight = {static_cast<std::uint32_t>(k), keyframe.T_B_C * p_K, depth_sigma_K},
+      found.push_back({.observation = {static_cast<std::uint32_t>(k), keyframe.T_B_C * p_K, depth_sigma_K},
                        .point = &point,
                        .pixel = *pixel,
                        .A = *A});

@@ -65,10 +65,10 @@ TEST(KeyframeMap, ExpectsPointsWhereTheyShouldBeAndHowTheyShouldLook) {
   ASSERT_LE(seen.size(), 40U);
   std::set<std::pair<int, int>> cells;
   for (const Candidate& c : seen) {
-    const Eigen::Vector2d expected = *kCamera.project(T_M_C.inverse() * c.sight.p_K);
+    const Eigen::Vector2d expected = *kCamera.project(T_M_C.inverse() * c.observation.p_K);
     EXPECT_LT((c.pixel - expected).norm(), 1e-9);
     EXPECT_LT((c.A - 1.25 * Eigen::Matrix2d::Identity()).norm(), 1e-6) << "2 m then, 1.6 m now";
-    EXPECT_NEAR(c.sight.depth_sigma_K.norm(), 0.01 * c.sight.p_K.norm(), 1e-12);
+    EXPECT_NEAR(c.observation.depth_sigma_K.norm(), 0.01 * c.observation.p_K.norm(), 1e-12);
     EXPECT_TRUE(cells.emplace(static_cast<int>(c.pixel.x()) / 16, static_cast<int>(c.pixel.y()) / 16).second);
   }
 }

@@ -14,11 +14,11 @@ namespace {
 /// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
-/// Of fewer corners than that on frames there is no map, but of those on event frames beside them.
-constexpr double kCornersForMap = 20.0;
+/// Of fewer features than that on frames there is no map, but of those on event frames beside them.
+constexpr double kFeaturesForMap = 20.0;
 
 /// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
-constexpr Duration kReckoned = std::chrono::seconds(10);
+constexpr Duration kDeadReckoning = std::chrono::seconds(10);
 
 TrackedImage without(TrackedImage image, const std::vector<FeatureId>& outliers) {
   std::erase_if(image.tracks, [&](const Track& track) { return std::ranges::count(outliers, track.id) > 0; });
@@ -51,16 +51,16 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
 
 void Localization::begin_time() {
   estimator_ = fresh_estimator();
-  before_ = hindsight();
+  before_ = final_trajectory();
   mapper_.begin_time();
   judge_.lose("a clock was set back");
-  reckoned_until_ = Timestamp::min();
+  dead_reckoning_until_ = Timestamp::min();
   covariance_.reset();
 }
 
 Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
   const auto timer = timings_->measure("predict");
-  Preintegration motion = body_.predict(imu, estimator_.initialized() || imu.back().t < reckoned_until_);
+  Preintegration motion = body_.predict(imu, estimator_.initialized() || imu.back().t < dead_reckoning_until_);
   turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
   gyro_clipped_ = motion.gyro_clipped();
   return motion;
@@ -78,11 +78,11 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.step = describe(t, status, std::move(result));
   output.step.keyframe = seen.keyframe;
   output.step.scene_depth = seen.scene_depth;
-  output.step.found_again = relocalized;
+  output.step.relocalized = relocalized;
   output.correction.ended = status == TrackingStatus::Lost && estimator_.initialized();
   if (output.correction.ended) {
     estimator_ = fresh_estimator();
-    reckoned_until_ = judge_.went_blind() ? t + kReckoned : t;
+    dead_reckoning_until_ = judge_.vision_lost() ? t + kDeadReckoning : t;
   }
   output.correction.provisional = estimator_.provisional();
   return output;
@@ -99,9 +99,9 @@ Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult 
   step.started = std::move(result.started);
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
   step.T_M_O = odom_to_map.T_M_O();
-  step.found = mapper_.found(t);
+  step.map_matches = mapper_.map_matches(t);
   step.landmarks = odom_to_map.in_map(std::move(result.landmarks));
-  step.left = in_map(odom_to_map.T_M_O(), std::move(result.left));
+  step.marginalized_keyframes = in_map(odom_to_map.T_M_O(), std::move(result.marginalized_keyframes));
   step.ln_depth_scale = estimator_.depth_scale();
   return step;
 }
@@ -140,7 +140,7 @@ std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::ve
   const auto frames = std::ranges::find(rig_.cameras, Modality::Frames, &RigCamera::modality);
   const auto first_frames = static_cast<std::size_t>(frames - rig_.cameras.begin());
   if (first_frames == 0 || first_frames == rig_.cameras.size()) return 0;
-  return without(seen.images[first_frames], outliers).carried() >= kCornersForMap ? first_frames : 0;
+  return without(seen.images[first_frames], outliers).carried() >= kFeaturesForMap ? first_frames : 0;
 }
 
 /// True when the body has been found in the map after a loss.
@@ -157,7 +157,7 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
     relocalized = mapper_.localize(t, image, T_O_C);
     if (seen.keyframe) mapper_.keyframe(t, image, T_O_C);
   }
-  for (const KeyframeRecord& record : result.left) mapper_.take(record);
+  for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
   return relocalized;
 }
 
@@ -176,8 +176,8 @@ std::optional<std::string> Localization::save_map() const {
   return to_bytes(*map);
 }
 
-Hindsight Localization::hindsight() const {
-  Hindsight all = before_, now = mapper_.hindsight();
+FinalTrajectory Localization::final_trajectory() const {
+  FinalTrajectory all = before_, now = mapper_.final_trajectory();
   std::ranges::move(now.poses, std::back_inserter(all.poses));
   std::ranges::move(now.keyframes, std::back_inserter(all.keyframes));
   return all;

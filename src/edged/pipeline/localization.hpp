@@ -9,9 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/timing.hpp"
 #include "edged/estimator/estimator.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
@@ -20,6 +19,7 @@
 #include "edged/pipeline/vision.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 
@@ -47,8 +47,8 @@ class Localization {
   /// As of Odometry.
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
-  bool elsewhere() const { return mapper_.elsewhere(); }
-  Hindsight hindsight() const;
+  bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
+  FinalTrajectory final_trajectory() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
 
@@ -68,14 +68,15 @@ class Localization {
   StageTimings* timings_;
   Estimator estimator_;
   Mapper mapper_;
-  Hindsight before_;  ///< of the times before the newest clock
+  FinalTrajectory before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   BodyMotion body_;
   bool gyro_clipped_ = false;   ///< in this packet
   bool turned_unseen_ = false;  ///< it was until this packet
   std::optional<PoseCovariance> covariance_;
   Timestamp covariance_at_;
-  Timestamp reckoned_until_ = Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
+  Timestamp dead_reckoning_until_ =
+      Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
 };
 
 /// The packetizer takes the time offsets out; what is left over is up to the estimator.

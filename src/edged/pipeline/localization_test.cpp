@@ -94,10 +94,10 @@ TEST_F(LocalizationInTheTestWorld, IsLostWithoutObservationsAndGoesOnWhereItWas)
 
 TEST_F(LocalizationInTheTestWorld, EndsTheEstimateWhenAClockWasSetBackButKeepsThePath) {
   run(4.0);
-  const std::size_t poses = localization_.hindsight().poses.size();
+  const std::size_t poses = localization_.final_trajectory().poses.size();
   EXPECT_GT(poses, 10U);
   localization_.begin_time();
-  EXPECT_EQ(localization_.hindsight().poses.size(), poses);
+  EXPECT_EQ(localization_.final_trajectory().poses.size(), poses);
   EXPECT_FALSE(localization_.calibration_covariance("frames"));
   const LocalizationOutput output = step();
   EXPECT_EQ(output.step.status, TrackingStatus::Lost);

@@ -75,11 +75,11 @@ void Mapper::load(const SavedMap& map) {
   }
   record_.load(map.T_M_K);
   filter_.load(map.T_M_K, map.covariance);
-  if (!map.keyframes.empty()) elsewhere_before_ = Timestamp();
+  if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
-  if (elsewhere_before_) return std::nullopt;
+  if (unlocated_before_) return std::nullopt;
   return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
 }
 
@@ -89,33 +89,33 @@ void Mapper::predict(const NavState& now) {
   predicted_ = now.t;
 }
 
-std::vector<MapSight> Mapper::Search::sights() const {
-  std::vector<MapSight> sights;
+std::vector<MapObservation> Mapper::Search::observations() const {
+  std::vector<MapObservation> observations;
   for (const Candidate& candidate : candidates) {
-    if (candidate.found) sights.push_back(candidate.sight);
+    if (candidate.found) observations.push_back(candidate.observation);
   }
-  return sights;
+  return observations;
 }
 
 Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C,
                               Period made) {
   const CameraModel& camera = image.model;
-  Search search{map_.visible({image.camera, made, filter.keyframes()}, T_M_O * T_O_C, camera, config_.max_sights),
+  Search search{map_.visible({image.camera, made, filter.keyframes()}, T_M_O * T_O_C, camera, config_.max_observations),
                 filter.T_M_B().inverse() * T_M_O * T_O_C};
   for (Candidate& candidate : search.candidates) {
-    MapSight& sight = candidate.sight;
-    sight.seen = camera.pixel_to_point(candidate.pixel);
-    const double stretch = camera.stretch(sight.seen);
-    sight.sigma = config_.filter.pixel_sigma / camera.mean_focal() * stretch;
+    MapObservation& observation = candidate.observation;
+    observation.seen = camera.pixel_to_point(candidate.pixel);
+    const double stretch = camera.stretch(observation.seen);
+    observation.sigma = config_.filter.pixel_sigma / camera.mean_focal() * stretch;
     const double expected_px =
-        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(sight, search.T_B_C);
+        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, search.T_B_C);
     const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
     const auto match =
         match_patch(candidate.point->patch, image.image, candidate.pixel, candidate.A, radius, config_.patch);
     candidate.found = match.has_value();
     if (!match) continue;
     candidate.pixel = match->pixel;
-    sight.seen = camera.pixel_to_point(match->pixel);
+    observation.seen = camera.pixel_to_point(match->pixel);
   }
   return search;
 }
@@ -123,26 +123,27 @@ Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const T
 /// The filter takes what was found, where that agrees, and O is placed by it.
 bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t) {
   const SE3 T_O_B = T_M_O.inverse() * filter.T_M_B();
-  std::vector<MapSight> sights = search.sights();
-  const std::optional<SE3> corrected = filter.update(sights, search.candidates.size(), search.T_B_C);
+  std::vector<MapObservation> observations = search.observations();
+  const std::optional<SE3> corrected = filter.update(observations, search.candidates.size(), search.T_B_C);
   if (!corrected) return false;
   odom_to_map_.correct(t, *corrected);
   found_.clear();
   for (const Candidate& candidate : search.candidates) {
     map_.note(candidate, t);
     if (!candidate.found) continue;
-    const MapSight& sight = candidate.sight;
-    found_.push_back(
-        {map_.keyframes()[sight.keyframe].t, candidate.pixel, filter.keyframes()[sight.keyframe] * sight.p_K});
+    const MapObservation& observation = candidate.observation;
+    found_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
+                      filter.keyframes()[observation.keyframe] * observation.p_K});
   }
-  for (MapSight& sight : sights) sight.keyframe = static_cast<std::uint32_t>(map_.keyframes()[sight.keyframe].number);
-  record_.add_sights({t, T_O_B}, search.T_B_C, sights);
+  for (MapObservation& observation : observations)
+    observation.keyframe = static_cast<std::uint32_t>(map_.keyframes()[observation.keyframe].number);
+  record_.add_observations({t, T_O_B}, search.T_B_C, observations);
   return true;
 }
 
 bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
   // In a map of another run no dead reckoning tells right from wrong: two looks that agree must be further apart.
-  const double interval_s = searching_ && !elsewhere_before_ ? kSearchInterval_s : config_.min_interval_s;
+  const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
@@ -150,13 +151,13 @@ bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) 
   const SE3 T_M_O = odom_to_map_.T_M_O();
   const Search here = search(filter_, T_M_O, image, T_O_C, old_enough);
   const auto older = std::ranges::count_if(here.candidates, [&](const Candidate& candidate) {
-    return candidate.found && map_.keyframes()[candidate.sight.keyframe].t < started_;
+    return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < started_;
   });
   const bool agreed = update(filter_, T_M_O, here, t);
-  if (!searching_ && !elsewhere_before_) return false;
-  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_sights;
-  const bool found_by_looks = (elsewhere_before_ || !found_by_guess) && recognise(t, image, T_O_C);
-  if (found_by_looks) elsewhere_before_.reset();
+  if (!searching_ && !unlocated_before_) return false;
+  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
+  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, image, T_O_C);
+  if (found_by_looks) unlocated_before_.reset();
   if (found_by_guess || found_by_looks) searching_ = false;
   return found_by_guess || found_by_looks;
 }
@@ -182,12 +183,12 @@ std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_
 /// By looks alone, of what was there before the newest start, or of the map that was taken up. Two images must agree on
 /// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
 bool Mapper::recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
-  const Period before{Timestamp::min(), elsewhere_before_.value_or(started_)};
+  const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
   const std::optional<SE3> T_M_O = recognised(image, T_O_C, before);
   const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
   if (!T_M_O) return false;
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
-  if (!elsewhere_before_ && !plausible(*T_M_O, T_O_B)) return false;
+  if (!unlocated_before_ && !plausible(*T_M_O, T_O_B)) return false;
   recognised_ = T_M_O;
   if (!last) return false;
   const SE3 between = (*last * T_O_B).inverse() * (*T_M_O * T_O_B);
@@ -196,7 +197,7 @@ bool Mapper::recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C)
   there.restart(*T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
   if (!update(there, *T_M_O, search(there, *T_M_O, image, T_O_C, before), t)) return false;
   odom_to_map_.forget_guess();
-  if (elsewhere_before_) odom_to_map_.move_before(*T_M_O * T_M_O_so_far.inverse());
+  if (unlocated_before_) odom_to_map_.move_before(*T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
@@ -210,7 +211,7 @@ double Mapper::covered_share(const TrackedImage& image) const {
   };
   std::set<std::pair<int, int>> textured, shown;
   for (const Track& track : image.tracks) textured.insert(cell(track.pixel));
-  for (const FoundPoint& point : found_) {
+  for (const MapMatch& point : found_) {
     if (textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
   }
   return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
@@ -229,7 +230,7 @@ void Mapper::keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C) 
 }
 
 void Mapper::take(const KeyframeRecord& record) {
-  record_.settle({record.t, record.T_W_B});
+  record_.refine({record.t, record.T_W_B});
   while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
   if (in_window_.empty() || in_window_.front().t != record.t) return;
   MapKeyframe& keyframe = in_window_.front();
@@ -258,9 +259,9 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
   filter_.remove_keyframe(keyframe);
 }
 
-Hindsight Mapper::hindsight() const {
-  FlightRecord::Path path = record_.path(odom_to_map_);
-  Hindsight known{std::move(path.poses), {}};
+FinalTrajectory Mapper::final_trajectory() const {
+  TrajectorySmoother::Path path = record_.path(odom_to_map_);
+  FinalTrajectory known{std::move(path.poses), {}};
   for (const MapKeyframe& keyframe : map_.keyframes()) {
     known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
   }

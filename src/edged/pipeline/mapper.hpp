@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
-#include "edged/estimator/keyframe_record.hpp"
-#include "edged/hindsight.hpp"
-#include "edged/map/flight_record.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/map/odom_to_map.hpp"
 #include "edged/map/saved_map.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 #include "edged/pipeline/tracked_image.hpp"
 
 namespace edged {
@@ -44,9 +44,9 @@ class Mapper {
 
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
   /// What was found in the image of that instant.
-  std::vector<FoundPoint> found(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<FoundPoint>(); }
+  std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
   /// In M.
-  Hindsight hindsight() const;
+  FinalTrajectory final_trajectory() const;
 
   /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
   /// of it has been recognised: so long M is a frame of this run's own.
@@ -55,17 +55,17 @@ class Mapper {
   /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
   /// in another frame than that.
   std::optional<SavedMap> save() const;
-  bool elsewhere() const { return elsewhere_before_.has_value(); }
+  bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
 
  private:
   /// Points that should be in view, and what was found of them.
   struct Search {
     std::vector<Candidate> candidates;
     SE3 T_B_C;
-    std::vector<MapSight> sights() const;
+    std::vector<MapObservation> observations() const;
   };
   /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
-  Period known() const { return {.since = elsewhere_before_.value_or(Timestamp::min())}; }
+  Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   void begin_start(const NavState& now);
   Search search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C, Period made);
   bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t);
@@ -78,10 +78,10 @@ class Mapper {
   MapConfig config_;
   KeyframeMap map_;
   MapFilter filter_;
-  FlightRecord record_;
+  TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< what keyframes look like whose poses and depths the window still refines
-  std::vector<FoundPoint> found_;      ///< in the newest image that was looked at
+  std::vector<MapMatch> found_;        ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;     ///< newest word of the odometry
   Timestamp started_;       ///< the estimator's newest start
@@ -89,7 +89,7 @@ class Mapper {
   double blind_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
   bool searching_ = false;  ///< since then nothing older has been found again
   /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
-  std::optional<Timestamp> elsewhere_before_;
+  std::optional<Timestamp> unlocated_before_;
   std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
 };
 

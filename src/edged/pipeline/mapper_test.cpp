@@ -95,7 +95,7 @@ TEST_F(MapperBeforeAWall, RelocalizesAfterALoss) {
   const SE3 T_M_B = mapper.odom_to_map().T_M_O() * T_new_old * off;
   EXPECT_LT(T_M_B.translation().norm(), 0.01) << "dead reckoning was off by 0.022";
   EXPECT_FALSE(localize(mapper, 11.0, T_new_old * off, SE3())) << "only once";
-  EXPECT_EQ(mapper.hindsight().keyframes.size(), 1U);
+  EXPECT_EQ(mapper.final_trajectory().keyframes.size(), 1U);
 }
 
 TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
@@ -106,13 +106,13 @@ TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
   saved->cameras = {{"cam", 240, 180, 200.0}};
   Mapper mapper{MapConfig{}};
   mapper.load(saved_map_from_bytes(to_bytes(*saved)));
-  EXPECT_TRUE(mapper.elsewhere());
+  EXPECT_TRUE(mapper.awaiting_relocalization());
   EXPECT_FALSE(mapper.save());
   const SE3 T_O_B(so3::exp({0, 0, -0.8}), {1.0, 2.0, 0.3});
   mapper.restart(SE3(), now(0.0, T_O_B));
   EXPECT_FALSE(localize(mapper, 0.3, T_O_B, SE3()));
   EXPECT_TRUE(localize(mapper, 0.6, T_O_B, SE3()));
-  EXPECT_FALSE(mapper.elsewhere());
+  EXPECT_FALSE(mapper.awaiting_relocalization());
   const SE3 T_M_B = mapper.odom_to_map().T_M_O() * T_O_B;
   EXPECT_LT(T_M_B.translation().norm(), 0.02);
   EXPECT_LT(so3::log(T_M_B.rotation()).norm(), 0.01);

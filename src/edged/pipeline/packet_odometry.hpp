@@ -3,7 +3,6 @@
 // The method, packet by packet: `process` is the paper's data flow.
 #pragma once
 
-#include "edged/core/timing.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/localization.hpp"
@@ -11,6 +10,7 @@
 #include "edged/pipeline/vision.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/frontend/track.hpp"
 #include "edged/rig.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 
@@ -17,7 +17,7 @@ struct TrackedImage {
   CameraModel model;               ///< of the image: the ideal pinhole for undistorted event frames
   cv::Mat image = {};              ///< that features were tracked on; empty: the packet has brought none of this camera
   std::vector<Track> tracks = {};  ///< the live ones by id, in the newest image
-  double survival = 1.0;           ///< share of tracks that live through an image, 0 .. 1
+  double survival_rate = 1.0;      ///< share of tracks that live through an image, 0 .. 1
 
   /// Tracks as they count: as many as are likely to be there in the next image.
   double carried() const { return survival * static_cast<double>(tracks.size()); }

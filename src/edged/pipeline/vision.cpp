@@ -22,7 +22,7 @@ Vision::Vision(const Rig& cameras, const OdometryConfig& config, Inference infer
     if (camera.modality == Modality::Events) {
       event_views_.emplace_back(camera.model, config_);
     } else {
-      dim_frames_.emplace_back(config_.dim_frames);
+      low_light_.emplace_back(config_.low_light);
     }
   }
   make_channels();
@@ -95,10 +95,10 @@ std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& outp
     const Channel& channel = channels_[i];
     CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
     camera.tracks = channel.tracker.tracks();
-    camera.survival = channel.survival();
+    camera.survival_rate = channel.survival_rate();
     if (i < event_views_.size()) {
       camera.image = output.event_images[i].frame;
-      camera.drawn = output.event_images[i].drawn;
+      camera.rendered = output.event_images[i].rendered;
       camera.events = std::move(packet.events[i].events);
       camera.event_rate_hz = packet.events[i].event_rate_hz;
     } else if (const Frame* frame = packet.find_frame(camera.name)) {
@@ -123,11 +123,11 @@ std::vector<EventImage> Vision::render(const VisionInput& input, double scene_de
   for (std::size_t i = 0; i < images.size(); ++i) {
     const auto timer = timings_->measure("event_frame");
     EventView& view = event_views_[i];
-    const EventsToDraw events =
-        view.drawn_events(input.packet.events[i], input.body, scene_depth, frames_carry(input.body.now().t));
+    const EventsToRender events =
+        view.rendered_events(input.packet.events[i], input.body, scene_depth, frames_carry(input.body.now().t));
     if (events.events.empty()) continue;
     const std::optional<DepthGrid> depths = event_depths(i, input.body, scene_depth);
-    images[i] = view.draw(events, channels_[i].camera, input.body, scene_depth, depths ? &*depths : nullptr);
+    images[i] = view.render(events, channels_[i].camera, input.body, scene_depth, depths ? &*depths : nullptr);
   }
   return images;
 }
@@ -170,7 +170,7 @@ std::vector<ChannelView> Vision::views_of(const Packet& packet, std::span<const 
   for (std::size_t i = event_images.size(); i < channels_.size(); ++i) {
     const Frame* frame = packet.find_frame(channels_[i].camera.name);
     if (frame == nullptr) continue;
-    const cv::Mat image = dim_frames_[i - event_images.size()](frame->image);
+    const cv::Mat image = low_light_[i - event_images.size()](frame->image);
     views.push_back({&channels_[i], image, image});
     last_frame_ = packet.t;
   }
@@ -189,7 +189,7 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
   };
   // Against one look all errors of a track hang together, and the thresholds of a start do not know that: with events
   // alone 3 of 72 starts are wrong by their scale, 1 without.
-  prediction.first_looks = !provisional_;
+  prediction.reference_patches = !provisional_;
   channel.track(view.track, input.packet.t, T_O_B_of(channel, input.body), std::move(prediction));
 }
 
@@ -210,7 +210,7 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   since.any = last_keyframe_.has_value();
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe_;
-  // Only the camera that carries the most: corners on event frames drift and end sooner, and would ask for keyframes
+  // Only the camera that carries the most: features on event frames drift and end sooner, and would ask for keyframes
   // that good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_O_B_of(*leader, input.body));
   since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
@@ -223,7 +223,7 @@ void Vision::mark_keyframe(const VisionInput& input, std::span<const ChannelView
   for (const ChannelView& view : views) {
     Channel& channel = *view.channel;
     channel.mark_keyframe(view.detect, T_O_B_of(channel, input.body), next_feature_,
-                          corners_wanted(channel, input.body.now().t));
+                          features_wanted(channel, input.body.now().t));
   }
   last_keyframe_ = input.packet.t;
   gyro_saturated_ = false;
@@ -239,20 +239,20 @@ bool Vision::frames_at_work(Timestamp t) const {
   return is_fused() && last_frame_ && t - *last_frame_ < kFramesMissing;
 }
 
-/// As many corners as event frames keep beside them.
+/// As many features as event frames keep beside them.
 bool Vision::frames_carry(Timestamp t) const {
-  return frames_at_work(t) && carried_by_frames() >= config_.health.min_event_corners;
+  return frames_at_work(t) && carried_by_frames() >= config_.health.min_event_features;
 }
 
-/// Frames tell more about a corner than events do, where they see it at all: in good light a few corners on the event
+/// Frames tell more about a feature than events do, where they see it at all: in good light a few features on the event
 /// frame are enough, in the dark, in glare and without frames it takes all it can get. Cameras of a kind share what one
 /// alone would have: more views of the same scene should not cost more.
-int Vision::corners_wanted(const Channel& channel, Timestamp t) const {
+int Vision::features_wanted(const Channel& channel, Timestamp t) const {
   if (channel.camera.modality == Modality::Frames)
-    return config_.frame_tracker.detector.max_features / static_cast<int>(dim_frames_.size());
+    return config_.frame_tracker.detector.max_features / static_cast<int>(low_light_.size());
   const int all = config_.event_tracker.detector.max_features, cameras = static_cast<int>(event_views_.size());
   if (!frames_at_work(t)) return all / cameras;
-  return std::max(config_.health.min_event_corners, all - static_cast<int>(carried_by_frames())) / cameras;
+  return std::max(config_.health.min_event_features, all - static_cast<int>(carried_by_frames())) / cameras;
 }
 
 bool Vision::is_quiet(const Packet& packet) const {
@@ -265,7 +265,7 @@ std::vector<TrackedImage> Vision::images_of(std::span<const ChannelView> views) 
   std::vector<TrackedImage> images;
   for (const Channel& channel : channels_) {
     const FeatureTracker& tracker = channel.tracker;
-    images.push_back({channel.camera.name, tracker.camera(), {}, tracker.tracks(), channel.survival()});
+    images.push_back({channel.camera.name, tracker.camera(), {}, tracker.tracks(), channel.survival_rate()});
     const auto view = std::ranges::find(views, &channel, &ChannelView::channel);
     if (view != views.end()) images.back().image = view->track;
   }

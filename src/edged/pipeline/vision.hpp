@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/timing.hpp"
-#include "edged/frontend/dim_image.hpp"
+#include "edged/frontend/low_light.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/channel.hpp"
@@ -19,6 +18,7 @@
 #include "edged/pipeline/tracked_image.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 
@@ -87,7 +87,7 @@ class Vision {
   double carried_by_frames() const;
   bool frames_at_work(Timestamp t) const;
   bool frames_carry(Timestamp t) const;
-  int corners_wanted(const Channel& channel, Timestamp t) const;
+  int features_wanted(const Channel& channel, Timestamp t) const;
   bool is_quiet(const Packet& packet) const;
   std::vector<TrackedImage> images_of(std::span<const ChannelView> views) const;
 
@@ -95,9 +95,9 @@ class Vision {
   Inference inference_;
   Rig rig_;  ///< as calibrated so far
   StageTimings* timings_;
-  std::vector<EventView> event_views_;       ///< of the event cameras, the first of the rig
-  std::vector<DimImageStretch> dim_frames_;  ///< of the frame cameras, the others
-  std::vector<Channel> channels_;            ///< as in rig_
+  std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
+  std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
+  std::vector<Channel> channels_;              ///< as in rig_
   SceneDepth depth_;
   FeatureId next_feature_ = 1;
   std::optional<Timestamp> last_keyframe_, last_frame_;

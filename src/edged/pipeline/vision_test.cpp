@@ -143,7 +143,7 @@ TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
   const std::vector<CameraStep> cameras = vision.describe(few, output);
   ASSERT_EQ(cameras.size(), 1U);
   EXPECT_EQ(cameras.front().events.size(), 1U);
-  EXPECT_EQ(cameras.front().drawn, 0U);
+  EXPECT_EQ(cameras.front().rendered, 0U);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "edged/map/map_config.hpp"
 #include "edged/map/map_errors.hpp"
 #include "edged/map/odom_to_map.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 
@@ -18,9 +18,9 @@ namespace edged {
 
 /// Calls come in order of time, `load` or `restart` first. Where each start's O lies in M is known to OdomToMap, which
 /// sees the same starts. Half a megabyte a minute; path() takes six times that while it works.
-class FlightRecord {
+class TrajectorySmoother {
  public:
-  explicit FlightRecord(const MapFilterConfig& config) : config_(config) {}
+  explicit TrajectorySmoother(const MapFilterConfig& config) : config_(config) {}
 
   /// Nothing has started yet.
   bool empty() const { return sessions_.empty(); }
@@ -32,11 +32,11 @@ class FlightRecord {
   /// A pose that was given out: one of the path.
   void add(const StampedPose& T_O_B);
   /// A keyframe has left the odometry's window: where it was at an instant that was added is now better known.
-  void settle(const StampedPose& T_O_K);
-  /// The map keeps that keyframe. Returns its number, by which sights speak of it from now on.
+  void refine(const StampedPose& T_O_K);
+  /// The map keeps that keyframe. Returns its number, by which observations speak of it from now on.
   std::size_t add_keyframe(const StampedPose& T_O_K);
   /// Points were found in an image, and OdomToMap has been corrected by them.
-  void add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights);
+  void add_observations(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapObservation> observations);
 
   struct Path {
     Trajectory poses;            ///< T_M_B of all that were added
@@ -49,17 +49,17 @@ class FlightRecord {
   struct View {
     StampedPose T_O_B;
     SE3 T_B_C;
-    double sigma;                                 ///< the smallest
-    std::vector<MapObservationOf<float>> sights;  ///< their sigmas as multiples of that one
+    double sigma;                                       ///< the smallest
+    std::vector<MapObservationOf<float>> observations;  ///< their sigmas as multiples of that one
   };
   /// From one start of the odometry to the next.
   struct Session {
     StampedPose start;  ///< T_O_B
     double position_sigma, yaw_sigma;
     std::size_t first_keyframe;  ///< the number of the first of `keyframes`; they are numbered on
-    Trajectory told;             ///< T_O_B
-    Trajectory settled;          ///< T_settled_told, on the left: what was told of that instant has to be moved by it
-    Trajectory keyframes;        ///< T_O_K
+    Trajectory causal;           ///< T_O_B
+    Trajectory refined;    ///< T_refined_causal, on the left: what was causal of that instant has to be moved by it
+    Trajectory keyframes;  ///< T_O_K
     std::vector<View> views;
   };
   /// Number in the graph and T_O_B of the instants of a session that something is known of.
@@ -71,7 +71,7 @@ class FlightRecord {
   using Nodes = std::map<Timestamp, Node>;
   class Fit;
 
-  bool found_again() const;
+  bool relocalized() const;
   static SE3 between(const Trajectory& moved, Timestamp t);
 
   MapFilterConfig config_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/map/flight_record.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -13,7 +13,7 @@ namespace edged {
 namespace {
 
 // Of the odometry's drift as the filter has it: looks at both ends of a stretch tell more of it than those behind.
-constexpr double kDriftInHindsight = 3.0;
+constexpr double kFinalDriftScale = 3.0;
 constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
 // Looks that are fitted with the keyframes: each hangs together with the one before and with most keyframes, and time
@@ -31,23 +31,24 @@ Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
 }  // namespace
 
 /// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
-class FlightRecord::Fit {
+class TrajectorySmoother::Fit {
  public:
   /// One look of so many. together: keyframes stay where that has found them, which leaves a chain, of which time and
   /// memory are linear.
-  Fit(const FlightRecord& record, const OdomToMap& odom_to_map, std::size_t of, const Fit* together = nullptr)
+  Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, std::size_t of, const Fit* together = nullptr)
       : config_(record.config_),
         odom_to_map_(odom_to_map),
         of_(of),
         together_(together),
         keyframes_(record.keyframes_) {
-    config_.drift_m *= kDriftInHindsight;
-    config_.drift_yaw_deg *= kDriftInHindsight;
-    config_.drift_tilt_deg *= kDriftInHindsight;
+    config_.drift_m *= kFinalDriftScale;
+    config_.drift_yaw_deg *= kFinalDriftScale;
+    config_.drift_tilt_deg *= kFinalDriftScale;
     for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
     for (const Session& session : record.sessions_) add_session(session);
-    for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
-    if (record.found_again()) graph_.solve();
+    for (const Session& session : record.sessions_)
+      add_observations(session, nodes_[&session - record.sessions_.data()]);
+    if (record.relocalized()) graph_.solve();
   }
 
   const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
@@ -66,8 +67,8 @@ class FlightRecord::Fit {
 
   void add_session(const Session& session) {
     Nodes nodes;
-    for (const StampedPose* told : instants(session))
-      nodes[told->t].T_O_B = between(session.settled, told->t) * told->T;
+    for (const StampedPose* causal : instants(session))
+      nodes[causal->t].T_O_B = between(session.refined, causal->t) * causal->T;
     for (std::size_t k = 0; k < session.keyframes.size(); ++k) {
       Node& node = nodes[session.keyframes[k].t];
       node.T_O_B = session.keyframes[k].T;
@@ -92,21 +93,21 @@ class FlightRecord::Fit {
   }
 
   std::vector<const StampedPose*> instants(const Session& session) const {
-    std::vector<const StampedPose*> told = {&session.start};
-    for (std::size_t i = 0; i < session.views.size(); i += of_) told.push_back(&session.views[i].T_O_B);
-    return told;
+    std::vector<const StampedPose*> causal = {&session.start};
+    for (std::size_t i = 0; i < session.views.size(); i += of_) causal.push_back(&session.views[i].T_O_B);
+    return causal;
   }
 
-  void add_sights(const Session& session, const Nodes& nodes) {
+  void add_observations(const Session& session, const Nodes& nodes) {
     for (std::size_t i = 0; i < session.views.size(); i += of_) {
       const View& view = session.views[i];
-      std::vector<MapSight> sights;
-      for (const MapObservationOf<float>& kept : view.sights) {
-        MapSight& sight = sights.emplace_back(kept.cast<double>());
-        sight.keyframe = static_cast<std::uint32_t>(keyframes_[kept.keyframe]);
-        sight.sigma *= view.sigma;
+      std::vector<MapObservation> observations;
+      for (const MapObservationOf<float>& kept : view.observations) {
+        MapObservation& observation = observations.emplace_back(kept.cast<double>());
+        observation.keyframe = static_cast<std::uint32_t>(keyframes_[kept.keyframe]);
+        observation.sigma *= view.sigma;
       }
-      graph_.add_sights(nodes.at(view.T_O_B.t).number, view.T_B_C, sights);
+      graph_.add_observations(nodes.at(view.T_O_B.t).number, view.T_B_C, observations);
     }
   }
 
@@ -119,12 +120,12 @@ class FlightRecord::Fit {
   std::vector<Nodes> nodes_;            ///< by session
 };
 
-bool FlightRecord::found_again() const {
+bool TrajectorySmoother::relocalized() const {
   return std::ranges::any_of(sessions_, [](const Session& session) { return !session.views.empty(); });
 }
 
 /// Between the two around t; the first and the last hold beyond.
-SE3 FlightRecord::between(const Trajectory& moved, Timestamp t) {
+SE3 TrajectorySmoother::between(const Trajectory& moved, Timestamp t) {
   const auto after = std::ranges::upper_bound(moved, t, {}, &StampedPose::t);
   if (after == moved.begin()) return after->T;
   const auto before = std::prev(after);
@@ -132,39 +133,40 @@ SE3 FlightRecord::between(const Trajectory& moved, Timestamp t) {
   return interpolate(before->T, after->T, to_seconds(t - before->t) / to_seconds(after->t - before->t));
 }
 
-void FlightRecord::load(std::span<const SE3> T_M_K) {
+void TrajectorySmoother::load(std::span<const SE3> T_M_K) {
   loaded_.assign(T_M_K.begin(), T_M_K.end());
   keyframes_ = loaded_.size();
 }
 
-void FlightRecord::restart(const StampedPose& T_O_B, double position_sigma, double yaw_sigma) {
+void TrajectorySmoother::restart(const StampedPose& T_O_B, double position_sigma, double yaw_sigma) {
   sessions_.push_back({T_O_B, position_sigma, yaw_sigma, keyframes_, {}, {{T_O_B.t, SE3()}}, {}, {}});
 }
 
-void FlightRecord::add(const StampedPose& T_O_B) { sessions_.back().told.push_back(T_O_B); }
+void TrajectorySmoother::add(const StampedPose& T_O_B) { sessions_.back().causal.push_back(T_O_B); }
 
-void FlightRecord::settle(const StampedPose& T_O_K) {
+void TrajectorySmoother::refine(const StampedPose& T_O_K) {
   Session& session = sessions_.back();
-  const auto told = std::ranges::lower_bound(session.told, T_O_K.t, {}, &StampedPose::t);
-  if (told == session.told.end() || told->t != T_O_K.t || session.settled.back().t >= T_O_K.t) return;
-  session.settled.push_back({T_O_K.t, T_O_K.T * told->T.inverse()});
+  const auto causal = std::ranges::lower_bound(session.causal, T_O_K.t, {}, &StampedPose::t);
+  if (causal == session.causal.end() || causal->t != T_O_K.t || session.refined.back().t >= T_O_K.t) return;
+  session.refined.push_back({T_O_K.t, T_O_K.T * causal->T.inverse()});
 }
 
-std::size_t FlightRecord::add_keyframe(const StampedPose& T_O_K) {
+std::size_t TrajectorySmoother::add_keyframe(const StampedPose& T_O_K) {
   sessions_.back().keyframes.push_back(T_O_K);
   return keyframes_++;
 }
 
-void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights) {
-  View view{T_O_B, T_B_C, std::ranges::min(sights, {}, &MapSight::sigma).sigma, {}};
-  for (MapSight sight : sights) {
-    sight.sigma /= view.sigma;
-    view.sights.push_back(sight.cast<float>());
+void TrajectorySmoother::add_observations(const StampedPose& T_O_B, const SE3& T_B_C,
+                                          std::span<const MapObservation> observations) {
+  View view{T_O_B, T_B_C, std::ranges::min(observations, {}, &MapObservation::sigma).sigma, {}};
+  for (MapObservation observation : observations) {
+    observation.sigma /= view.sigma;
+    view.observations.push_back(observation.cast<float>());
   }
   sessions_.back().views.push_back(std::move(view));
 }
 
-FlightRecord::Path FlightRecord::path(const OdomToMap& odom_to_map) const {
+TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map) const {
   std::size_t looks = 0;
   for (const Session& session : sessions_) looks += session.views.size();
   const std::size_t of = looks / kMostTogether + 1;
@@ -172,14 +174,14 @@ FlightRecord::Path FlightRecord::path(const OdomToMap& odom_to_map) const {
   const std::optional<Fit> chain =
       of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
-  const bool as_told = !found_again();
+  const bool as_given = !relocalized();
   Path path;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const Session& session = sessions_[i];
     const Trajectory T_M_O = fit.T_M_O(i);
-    for (const auto& [t, T_O_B] : session.told) {
+    for (const auto& [t, T_O_B] : session.causal) {
       path.poses.push_back(
-          {t, as_told ? odom_to_map.T_M_O(i, t) * T_O_B : between(T_M_O, t) * between(session.settled, t) * T_O_B});
+          {t, as_given ? odom_to_map.T_M_O(i, t) * T_O_B : between(T_M_O, t) * between(session.refined, t) * T_O_B});
     }
   }
   for (std::size_t k = 0; k < keyframes_; ++k) path.keyframes.push_back(fit.keyframe(k));
