@@ -185,7 +185,7 @@ void RunMcap::describe_cameras(Timestamp t) {
 void RunMcap::put_pose(const Step& step) {
   const SE3& T_W_B = step.state.T_W_B;
   put("/tf", kFrameTransforms, step.t,
-      foxglove::frame_transforms(step.t, {{kWorld, kOdom, step.T_W_O}, {kOdom, kBody, step.T_W_O.inverse() * T_W_B}}));
+      foxglove::frame_transforms(step.t, {{kWorld, kOdom, step.T_M_O}, {kOdom, kBody, step.T_M_O.inverse() * T_W_B}}));
   put("/pose", "foxglove.PoseInFrame", step.t, foxglove::pose_in_frame(step.t, kWorld, T_W_B));
   path_.add({step.t, T_W_B});
   if (step.keyframe) keyframes_.add({step.t, T_W_B});

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is estimated: poses, the state of the body, landmarks. Plain structs; finished results are not changed any more.
+// What is estimated: poses, the state of the body, landmarks. Frames: O odometry (of one start of the estimator), M
+// map, B body, C camera; M and O have z up. In the public interface W (world) is another name of M.
 #pragma once
 
 #include <Eigen/Core>

@@ -64,9 +64,9 @@ struct Step {
   /// against has gone along.
   bool relocalized = false;
 
-  /// Where the estimator's own frame O lies in W: state.T_W_B = T_W_O * T_O_B. T_O_B goes on without jumps from one
-  /// start to the next; T_W_O is what the map moves.
-  SE3 T_W_O;
+  /// The odometry frame O in the map frame M (W above is M): state.T_W_B = T_M_O * T_O_B. T_O_B goes on without jumps
+  /// from one start of the estimator to the next; T_M_O is what the map corrects.
+  SE3 T_M_O;
   std::vector<MapMatch> map_matches;  ///< of the map, in an image of this packet; the pose has been held to them
 
   std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers

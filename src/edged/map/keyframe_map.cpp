@@ -85,11 +85,11 @@ void KeyframeMap::remove(std::size_t keyframe) {
   keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(keyframe));
 }
 
-void KeyframeMap::note(const Candidate& candidate, bool found, Timestamp t) {
+void KeyframeMap::note(const Candidate& candidate, Timestamp t) {
   ++candidate.point->tried;
-  if (!found) return;
+  if (!candidate.found) return;
   ++candidate.point->found;
-  MapKeyframe& keyframe = keyframes_[candidate.keyframe];
+  MapKeyframe& keyframe = keyframes_[candidate.observation.keyframe];
   keyframe.times_found += keyframe.found_at == t ? 0 : 1;
   keyframe.found_at = t;
 }
@@ -131,7 +131,10 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
       const auto A = patch_warp(point, T_C_K, camera, *pixel);
       if (!A) continue;
       const Eigen::Vector3d depth_sigma_K = keyframe.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
-      found.push_back({k, &point, keyframe.T_B_C * p_K, depth_sigma_K, *pixel, *A});
+      found.push_back({.observation = {static_cast<std::uint32_t>(k), keyframe.T_B_C * p_K, depth_sigma_K},
+                       .point = &point,
+                       .pixel = *pixel,
+                       .A = *A});
     }
   }
   std::ranges::stable_sort(found, std::ranges::greater{}, [](const Candidate& c) { return reliability(*c.point); });

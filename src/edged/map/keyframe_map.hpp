@@ -12,6 +12,7 @@
 
 #include "edged/final_trajectory.hpp"
 #include "edged/frontend/patch.hpp"
+#include "edged/map/map_errors.hpp"
 #include "edged/map/place.hpp"
 #include "edged/options/map.hpp"
 #include "edged/rig.hpp"
@@ -22,6 +23,7 @@ namespace edged {
 
 /// A point in its keyframe's camera: when keyframes are moved, their points move along.
 struct MapPoint {
+  FeatureId id = 0;                                 ///< that it had in its own run; 0 in a map that was loaded
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< on the unit plane
   double inverse_depth = 0.0;                       ///< of z [1/m]
   double sigma = 0.0;                               ///< of inverse_depth
@@ -57,13 +59,14 @@ struct MapQuery {
   std::span<const SE3> T_M_K;  ///< where the body was at each keyframe of the map, in their order
 };
 
-/// A point that should be in view.
+/// A point that should be in view, and once it has been found, where.
 struct Candidate {
-  std::size_t keyframe;  ///< index into KeyframeMap::keyframes
+  MapObservation
+      observation;  ///< its keyframe as an index into KeyframeMap::keyframes; what was seen and how well: when found
   MapPoint* point;
-  Eigen::Vector3d p_K, depth_sigma_K;  ///< as in MapObservation
-  Eigen::Vector2d pixel;               ///< where it is expected
-  Eigen::Matrix2d A;                   ///< pixels of the image by pixels of its patch
+  Eigen::Vector2d pixel;  ///< where it is expected
+  Eigen::Matrix2d A;      ///< pixels of the image by pixels of its patch
+  bool found = false;
 };
 
 class KeyframeMap {
@@ -83,8 +86,8 @@ class KeyframeMap {
   /// What should be in view of the camera at T_M_C, spread over the image, the most reliable first: at most `most`.
   std::vector<Candidate> visible(const MapQuery& query, const SE3& T_M_C, const CameraModel& camera, int most);
 
-  /// The points of that keyframe and image were looked for, and found.
-  void note(const Candidate& candidate, bool found, Timestamp t);
+  /// The point was looked for in the image of t.
+  void note(const Candidate& candidate, Timestamp t);
 
   /// Where the camera is that sees features with these descriptors at those points of the unit plane. R_O_C as in
   /// pose_by_gravity; focal: of the camera [px]. Nothing where no place of the map looks like that.

@@ -65,10 +65,10 @@ TEST(KeyframeMap, ExpectsPointsWhereTheyShouldBeAndHowTheyShouldLook) {
   ASSERT_LE(seen.size(), 40U);
   std::set<std::pair<int, int>> cells;
   for (const Candidate& c : seen) {
-    const Eigen::Vector2d expected = *kCamera.project(T_M_C.inverse() * c.p_K);
+    const Eigen::Vector2d expected = *kCamera.project(T_M_C.inverse() * c.observation.p_K);
     EXPECT_LT((c.pixel - expected).norm(), 1e-9);
     EXPECT_LT((c.A - 1.25 * Eigen::Matrix2d::Identity()).norm(), 1e-6) << "2 m then, 1.6 m now";
-    EXPECT_NEAR(c.depth_sigma_K.norm(), 0.01 * c.p_K.norm(), 1e-12);
+    EXPECT_NEAR(c.observation.depth_sigma_K.norm(), 0.01 * c.observation.p_K.norm(), 1e-12);
     EXPECT_TRUE(cells.emplace(static_cast<int>(c.pixel.x()) / 16, static_cast<int>(c.pixel.y()) / 16).second);
   }
 }
@@ -89,8 +89,10 @@ TEST(KeyframeMap, GivesUpPointsThatAreNeverFound) {
   KeyframeMap map({});
   map.add(keyframe(5.0));
   for (int i = 0; i < 12; ++i) {
-    for (const Candidate& c : map.visible(asked(10.0), SE3(), kCamera, 1000))
-      map.note(c, c.pixel.x() > 120.0, at(10.0 + i));
+    for (Candidate& c : map.visible(asked(10.0), SE3(), kCamera, 1000)) {
+      c.found = c.pixel.x() > 120.0;
+      map.note(c, at(10.0 + i));
+    }
   }
   for (const Candidate& c : map.visible(asked(30.0), SE3(), kCamera, 1000)) EXPECT_GT(c.pixel.x(), 120.0);
   EXPECT_EQ(map.keyframes().front().found_at, at(21.0));
@@ -102,8 +104,9 @@ TEST(KeyframeMap, LetsGoWhatWasNotFoundForLongest) {
   KeyframeMap map(config);
   for (const double t_s : {5.0, 6.0}) map.add(keyframe(t_s));
   EXPECT_FALSE(map.superfluous());
-  map.note(map.visible(asked(7.5), SE3(), kCamera, 1).front(), true,
-           at(7.5));  // of the first: only that is old enough
+  Candidate of_first = map.visible(asked(7.5), SE3(), kCamera, 1).front();  // only the first is old enough
+  of_first.found = true;
+  map.note(of_first, at(7.5));
   map.add(keyframe(8.0));
   ASSERT_TRUE(map.superfluous());
   EXPECT_EQ(*map.superfluous(), 1U);

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "edged/options/map.hpp"
@@ -13,14 +13,25 @@
 
 namespace edged {
 
-/// A point of a keyframe that was found again in an image.
-struct MapObservation {
-  std::size_t keyframe = 0;                                 ///< by its number where the keyframes are
-  Eigen::Vector3d p_K = Eigen::Vector3d::Zero();            ///< in the body frame of the keyframe
-  Eigen::Vector3d depth_sigma_K = Eigen::Vector3d::Zero();  ///< by how much p_K moves with one sigma of its depth
-  Eigen::Vector2d seen = Eigen::Vector2d::Zero();           ///< on the unit plane of the camera
-  double sigma = 0.0;                                       ///< of seen, each coordinate
+/// A map point's observation in an image, expected or found. In floats where many are kept.
+template <typename Scalar>
+struct MapObservationOf {
+  using Vector2 = Eigen::Matrix<Scalar, 2, 1>;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+
+  std::uint32_t keyframe = 0;               ///< by its number where the keyframes are
+  Vector3 p_K = Vector3::Zero();            ///< in the body frame of the keyframe
+  Vector3 depth_sigma_K = Vector3::Zero();  ///< by how much p_K moves with one sigma of its depth
+  Vector2 seen = Vector2::Zero();           ///< on the unit plane of the camera
+  Scalar sigma = 0;                         ///< of seen, each coordinate
+
+  template <typename Other>
+  MapObservationOf<Other> cast() const {
+    return {keyframe, p_K.template cast<Other>(), depth_sigma_K.template cast<Other>(), seen.template cast<Other>(),
+            static_cast<Other>(sigma)};
+  }
 };
+using MapObservation = MapObservationOf<double>;
 
 /// Of a observation: residual, Jacobians by the errors of the body and of its keyframe, and noise.
 struct LinearizedObservation {

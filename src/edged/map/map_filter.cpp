@@ -24,35 +24,36 @@ Eigen::Index block_of(std::size_t keyframe) { return 6 * static_cast<Eigen::Inde
 }  // namespace
 
 void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma) {
-  T_M_O_ = T_M_O;
   T_O_B_ = T_O_B;
+  T_M_B_ = T_M_O * T_O_B;
   t_ = t;
-  const Eigen::Vector3d up_B = T_M_B().R().transpose() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up_B = T_M_B_.R().transpose() * Eigen::Vector3d::UnitZ();
   P_.topRows<6>().setZero();
   P_.leftCols<6>().setZero();
   P_.topLeftCorner<3, 3>() = position_sigma * position_sigma * Eigen::Matrix3d::Identity();
   P_.block<3, 3>(3, 3) = yaw_sigma * yaw_sigma * up_B * up_B.transpose();
 }
 
-void MapFilter::predict(const SE3& T_O_B, Timestamp t, double drift) {
-  const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_B);
+void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift) {
+  const Matrix6d F = transport(T_M_B_, T_O_B_.inverse() * T_O_B);
   const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = P_.leftCols<6>() * F.transpose();
   P_.leftCols<6>() = moved;
   P_.topRows<6>() = moved.transpose();
   T_O_B_ = T_O_B;
+  T_M_B_ = T_M_O * T_O_B;
   P_.topLeftCorner<6, 6>() =
-      F * moved.topRows<6>() + drift * drift * drift_covariance(config_, T_M_B(), std::max(to_seconds(t - t_), 0.0));
+      F * moved.topRows<6>() + drift * drift * drift_covariance(config_, T_M_B_, std::max(to_seconds(t - t_), 0.0));
   t_ = t;
 }
 
-void MapFilter::add_keyframe(const SE3& T_O_K, Timestamp t) {
-  const Matrix6d F = transport(T_M_B(), T_O_B_.inverse() * T_O_K);
+void MapFilter::add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t) {
+  const Matrix6d F = transport(T_M_B_, T_O_B_.inverse() * T_O_K);
   const Eigen::Index n = P_.rows();
   MatrixXd grown(n + 6, n + 6);
   grown.topLeftCorner(n, n) = P_;
   grown.bottomLeftCorner(6, n) = F * P_.topRows<6>();
   grown.topRightCorner(n, 6) = grown.bottomLeftCorner(6, n).transpose();
-  T_M_K_.push_back(T_M_O_ * T_O_K);
+  T_M_K_.push_back(T_M_O * T_O_K);
   grown.bottomRightCorner<6, 6>() = F * P_.topLeftCorner<6, 6>() * F.transpose() +
                                     drift_covariance(config_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
   P_ = std::move(grown);
@@ -75,7 +76,7 @@ void MapFilter::remove_keyframe(std::size_t keyframe) {
 }
 
 std::optional<LinearizedObservation> MapFilter::linearise(const MapObservation& observation, const SE3& T_B_C) const {
-  return linearised(observation, T_M_B(), T_M_K_[observation.keyframe], T_B_C);
+  return linearised(observation, T_M_B_, T_M_K_[observation.keyframe], T_B_C);
 }
 
 Eigen::Matrix2d MapFilter::expected_covariance(const LinearizedObservation& row, std::size_t keyframe) const {
@@ -90,9 +91,12 @@ double MapFilter::expected_error(const MapObservation& observation, const SE3& T
   return row ? std::sqrt(expected_covariance(*row, observation.keyframe).trace()) : 0.0;
 }
 
-void MapFilter::correct(const VectorXd& error) {
-  T_M_O_ = corrected(T_M_B(), error.head<6>()) * T_O_B_.inverse();
+/// Returns T_M_O.
+SE3 MapFilter::correct(const VectorXd& error) {
+  const SE3 T_M_O = corrected(T_M_B_, error.head<6>()) * T_O_B_.inverse();
+  T_M_B_ = T_M_O * T_O_B_;
   for (std::size_t k = 0; k < T_M_K_.size(); ++k) T_M_K_[k] = corrected(T_M_K_[k], error.segment<6>(block_of(k)));
+  return T_M_O;
 }
 
 /// The rows' part of the normal equations on the body and the keyframes that they touch, far ones weighed down.
@@ -133,14 +137,15 @@ double MapFilter::misfit(std::span<const MapObservation> observations, std::span
   return std::sqrt(median(std::move(squared)) / kMedianOfSquares);
 }
 
-bool MapFilter::update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C) {
+std::optional<SE3> MapFilter::update(std::span<const MapObservation> observations, std::size_t expected,
+                                     const SE3& T_B_C) {
   if (static_cast<int>(observations.size()) < config_.min_observations ||
       static_cast<double>(observations.size()) < config_.min_found_share * static_cast<double>(expected))
-    return false;
+    return std::nullopt;
   std::vector<LinearizedObservation> rows;
   for (const MapObservation& observation : observations) {
     std::optional<LinearizedObservation> row = linearise(observation, T_B_C);
-    if (!row) return false;
+    if (!row) return std::nullopt;
     rows.push_back(*row);
   }
   const auto [place, H, g] = gather(observations, rows);
@@ -160,10 +165,9 @@ bool MapFilter::update(std::span<const MapObservation> observations, std::size_t
   const MatrixXd P_m = P_t(moved, Eigen::all);
   VectorXd error = VectorXd::Zero(P_.rows());
   error(moved) = -P_m * (inverse * g);
-  if (!(misfit(observations, rows, error) < config_.max_misfit)) return false;
-  correct(error);
+  if (!(misfit(observations, rows, error) < config_.max_misfit)) return std::nullopt;
   shrink(moved, P_m, inverse * H);
-  return true;
+  return correct(error);
 }
 
 /// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that.

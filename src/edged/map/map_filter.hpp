@@ -19,6 +19,7 @@
 
 namespace edged {
 
+/// T_M_O is OdomToMap's: the filter takes it and gives its correction.
 class MapFilter {
  public:
   explicit MapFilter(const MapFilterConfig& config) : config_(config) {}
@@ -26,19 +27,18 @@ class MapFilter {
   /// A new frame O of the odometry: where it lies in M is a guess with these sigmas [m], [rad] of position and yaw.
   void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
   /// The odometry has come to T_O_B. drift: how much more it drifts than the options say.
-  void predict(const SE3& T_O_B, Timestamp t, double drift = 1.0);
+  void predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift = 1.0);
   /// A keyframe of the odometry, at T_O_K: it comes last in keyframes().
-  void add_keyframe(const SE3& T_O_K, Timestamp t);
+  void add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t);
   /// The keyframes of another run, in place of those there are, and how well they are known: six rows each.
   void load(std::vector<SE3> T_M_K, const Eigen::MatrixXd& covariance);
   /// The others' order stays.
   void remove_keyframe(std::size_t keyframe);
-  /// Fits all poses to the observations; expected: how many could have been found. False where they do not agree:
-  /// nothing has changed then.
-  bool update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C);
+  /// Fits all poses to the observations; expected: how many could have been found. Returns T_M_O as corrected; nothing
+  /// where they do not agree, and nothing has changed then.
+  std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C);
 
-  const SE3& T_M_O() const { return T_M_O_; }
-  SE3 T_M_B() const { return T_M_O_ * T_O_B_; }
+  const SE3& T_M_B() const { return T_M_B_; }
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
   /// Of the body against the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
@@ -58,11 +58,11 @@ class MapFilter {
   Information gather(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows) const;
   double misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
                 const Eigen::VectorXd& error) const;
-  void correct(const Eigen::VectorXd& error);
+  SE3 correct(const Eigen::VectorXd& error);
   void shrink(std::span<const Eigen::Index> m, const Eigen::MatrixXd& P_m, const Eigen::MatrixXd& A);
 
   MapFilterConfig config_;
-  SE3 T_M_O_, T_O_B_;
+  SE3 T_O_B_, T_M_B_;
   Timestamp t_;
   std::vector<SE3> T_M_K_;
   Eigen::MatrixXd P_ = Eigen::MatrixXd::Zero(6, 6);  ///< body first, then the keyframes

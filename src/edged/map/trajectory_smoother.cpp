@@ -35,8 +35,12 @@ class TrajectorySmoother::Fit {
  public:
   /// One look of so many. together: keyframes stay where that has found them, which leaves a chain, of which time and
   /// memory are linear.
-  Fit(const TrajectorySmoother& record, std::size_t of, const Fit* together = nullptr)
-      : config_(record.config_), of_(of), together_(together), keyframes_(record.keyframes_) {
+  Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, std::size_t of, const Fit* together = nullptr)
+      : config_(record.config_),
+        odom_to_map_(odom_to_map),
+        of_(of),
+        together_(together),
+        keyframes_(record.keyframes_) {
     config_.drift_m *= kFinalDriftScale;
     config_.drift_yaw_deg *= kFinalDriftScale;
     config_.drift_tilt_deg *= kFinalDriftScale;
@@ -48,8 +52,8 @@ class TrajectorySmoother::Fit {
   }
 
   const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
-  std::vector<Moved> T_M_O(std::size_t session) const {
-    std::vector<Moved> found;
+  Trajectory T_M_O(std::size_t session) const {
+    Trajectory found;
     for (const auto& [t, node] : nodes_[session])
       found.push_back({t, graph_.poses()[node.number] * node.T_O_B.inverse()});
     return found;
@@ -65,14 +69,14 @@ class TrajectorySmoother::Fit {
     Nodes nodes;
     for (const StampedPose* causal : instants(session))
       nodes[causal->t].T_O_B = between(session.refined, causal->t) * causal->T;
-    for (const Keyframe& keyframe : session.keyframes) {
-      Node& node = nodes[keyframe.T_O_K.t];
-      node.T_O_B = keyframe.T_O_K.T;
-      if (together_) node.known = &together_->keyframe(keyframe.number);
+    for (std::size_t k = 0; k < session.keyframes.size(); ++k) {
+      Node& node = nodes[session.keyframes[k].t];
+      node.T_O_B = session.keyframes[k].T;
+      if (together_) node.known = &together_->keyframe(session.first_keyframe + k);
     }
     for (auto node = nodes.begin(); node != nodes.end(); ++node) {
       const auto& [t, at] = *node;
-      const SE3 T_M_B = at.known ? *at.known : newest(session.T_M_O, t) * at.T_O_B;
+      const SE3 T_M_B = at.known ? *at.known : odom_to_map_.T_M_O(nodes_.size(), t) * at.T_O_B;
       const std::size_t number = node->second.number = at.known ? graph_.add_known_pose(T_M_B) : graph_.add_pose(T_M_B);
       if (node != nodes.begin()) {
         const auto& [t_before, before] = *std::prev(node);
@@ -83,7 +87,8 @@ class TrajectorySmoother::Fit {
                         start_covariance(session.position_sigma, session.yaw_sigma));
       }
     }
-    for (const Keyframe& keyframe : session.keyframes) keyframes_[keyframe.number] = nodes[keyframe.T_O_K.t].number;
+    for (std::size_t k = 0; k < session.keyframes.size(); ++k)
+      keyframes_[session.first_keyframe + k] = nodes[session.keyframes[k].t].number;
     nodes_.push_back(std::move(nodes));
   }
 
@@ -97,14 +102,17 @@ class TrajectorySmoother::Fit {
     for (std::size_t i = 0; i < session.views.size(); i += of_) {
       const View& view = session.views[i];
       std::vector<MapObservation> observations;
-      for (const Observation& s : view.observations)
-        observations.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
-                                s.seen.cast<double>(), s.stretch * view.sigma});
+      for (const MapObservationOf<float>& kept : view.observations) {
+        MapObservation& observation = observations.emplace_back(kept.cast<double>());
+        observation.keyframe = static_cast<std::uint32_t>(keyframes_[kept.keyframe]);
+        observation.sigma *= view.sigma;
+      }
       graph_.add_observations(nodes.at(view.T_O_B.t).number, view.T_B_C, observations);
     }
   }
 
   MapFilterConfig config_;
+  const OdomToMap& odom_to_map_;
   std::size_t of_;
   const Fit* together_;
   PoseGraph graph_;
@@ -117,18 +125,12 @@ bool TrajectorySmoother::relocalized() const {
 }
 
 /// Between the two around t; the first and the last hold beyond.
-SE3 TrajectorySmoother::between(const std::vector<Moved>& moved, Timestamp t) {
-  const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
+SE3 TrajectorySmoother::between(const Trajectory& moved, Timestamp t) {
+  const auto after = std::ranges::upper_bound(moved, t, {}, &StampedPose::t);
   if (after == moved.begin()) return after->T;
   const auto before = std::prev(after);
   if (after == moved.end()) return before->T;
   return interpolate(before->T, after->T, to_seconds(t - before->t) / to_seconds(after->t - before->t));
-}
-
-/// The newest at t, without one the first.
-SE3 TrajectorySmoother::newest(const std::vector<Moved>& moved, Timestamp t) {
-  const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
-  return after == moved.begin() ? after->T : std::prev(after)->T;
 }
 
 void TrajectorySmoother::load(std::span<const SE3> T_M_K) {
@@ -136,19 +138,8 @@ void TrajectorySmoother::load(std::span<const SE3> T_M_K) {
   keyframes_ = loaded_.size();
 }
 
-void TrajectorySmoother::restart(const StampedPose& T_O_B, const SE3& T_M_O, double position_sigma, double yaw_sigma) {
-  sessions_.push_back({T_O_B, position_sigma, yaw_sigma, {{T_O_B.t, T_M_O}}, {}, {{T_O_B.t, SE3()}}, {}, {}});
-}
-
-void TrajectorySmoother::forget_guess() {
-  std::vector<Moved>& T_M_O = sessions_.back().T_M_O;
-  T_M_O.erase(T_M_O.begin(), std::prev(T_M_O.end()));
-}
-
-void TrajectorySmoother::move_before(const SE3& T_M_before) {
-  for (auto session = sessions_.begin(); session != std::prev(sessions_.end()); ++session) {
-    for (Moved& moved : session->T_M_O) moved.T = T_M_before * moved.T;
-  }
+void TrajectorySmoother::restart(const StampedPose& T_O_B, double position_sigma, double yaw_sigma) {
+  sessions_.push_back({T_O_B, position_sigma, yaw_sigma, keyframes_, {}, {{T_O_B.t, SE3()}}, {}, {}});
 }
 
 void TrajectorySmoother::add(const StampedPose& T_O_B) { sessions_.back().causal.push_back(T_O_B); }
@@ -161,36 +152,36 @@ void TrajectorySmoother::refine(const StampedPose& T_O_K) {
 }
 
 std::size_t TrajectorySmoother::add_keyframe(const StampedPose& T_O_K) {
-  sessions_.back().keyframes.push_back({T_O_K, keyframes_});
+  sessions_.back().keyframes.push_back(T_O_K);
   return keyframes_++;
 }
 
 void TrajectorySmoother::add_observations(const StampedPose& T_O_B, const SE3& T_B_C,
-                                          std::span<const MapObservation> observations, const SE3& T_M_O) {
+                                          std::span<const MapObservation> observations) {
   View view{T_O_B, T_B_C, std::ranges::min(observations, {}, &MapObservation::sigma).sigma, {}};
-  for (const MapObservation& s : observations)
-    view.observations.push_back({static_cast<std::uint32_t>(s.keyframe), s.p_K.cast<float>(),
-                                 s.depth_sigma_K.cast<float>(), s.seen.cast<float>(),
-                                 static_cast<float>(s.sigma / view.sigma)});
-  sessions_.back().T_M_O.push_back({T_O_B.t, T_M_O});
+  for (MapObservation observation : observations) {
+    observation.sigma /= view.sigma;
+    view.observations.push_back(observation.cast<float>());
+  }
   sessions_.back().views.push_back(std::move(view));
 }
 
-TrajectorySmoother::Path TrajectorySmoother::path() const {
+TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map) const {
   std::size_t looks = 0;
   for (const Session& session : sessions_) looks += session.views.size();
   const std::size_t of = looks / kMostTogether + 1;
-  const Fit together(*this, of);
-  const std::optional<Fit> chain = of > 1 ? std::optional<Fit>(std::in_place, *this, 1, &together) : std::nullopt;
+  const Fit together(*this, odom_to_map, of);
+  const std::optional<Fit> chain =
+      of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
   const bool as_given = !relocalized();
   Path path;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const Session& session = sessions_[i];
-    const std::vector<Moved> T_M_O = fit.T_M_O(i);
+    const Trajectory T_M_O = fit.T_M_O(i);
     for (const auto& [t, T_O_B] : session.causal) {
       path.poses.push_back(
-          {t, as_given ? newest(session.T_M_O, t) * T_O_B : between(T_M_O, t) * between(session.refined, t) * T_O_B});
+          {t, as_given ? odom_to_map.T_M_O(i, t) * T_O_B : between(T_M_O, t) * between(session.refined, t) * T_O_B});
     }
   }
   for (std::size_t k = 0; k < keyframes_; ++k) path.keyframes.push_back(fit.keyframe(k));

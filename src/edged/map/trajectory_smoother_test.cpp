@@ -25,7 +25,9 @@ class FlightRecordTest : public testing::Test {
   void restart(double t, const SE3& T_M_O) {
     T_O_B_ = T_M_O.inverse() * true_pose(t);
     T_M_O_ = T_M_O;
-    record_.restart({instant(t), T_O_B_}, T_M_O, 0.1, 0.05);
+    record_.restart({instant(t), T_O_B_}, 0.1, 0.05);
+    odom_to_map_.restart(instant(t));
+    odom_to_map_.correct(instant(t), T_M_O);
   }
   /// Steps of odometry that drifts to the side, up to that time.
   void fly(double from, double to, double drift_m = 0.001) {
@@ -46,10 +48,11 @@ class FlightRecordTest : public testing::Test {
       for (const double y : {-1.1, 0.0, 1.0}) {
         const Eigen::Vector3d p(x, y, 3.0 + x + 0.8 * y);  // no plane across: turns are told from shifts
         const Eigen::Vector3d p_K = true_pose(made_at).inverse() * p, p_B = true_pose(t).inverse() * p;
-        observations.push_back({keyframe, p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
+        observations.push_back({static_cast<std::uint32_t>(keyframe), p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
       }
     }
-    record_.add_observations({instant(t), T_O_B_}, SE3(), observations, T_M_O_);
+    record_.add_observations({instant(t), T_O_B_}, SE3(), observations);
+    odom_to_map_.correct(instant(t), T_M_O_);
   }
   static double error(const StampedPose& pose) {
     const double t = to_seconds(pose.t - Timestamp{});
@@ -57,6 +60,7 @@ class FlightRecordTest : public testing::Test {
   }
 
   TrajectorySmoother record_{MapFilterConfig{}};
+  OdomToMap odom_to_map_;
   SE3 T_O_B_, T_M_O_;
   Trajectory causal_;
 };
@@ -68,7 +72,7 @@ TEST_F(FlightRecordTest, GivesBackWhatWasToldWhereNothingWasFoundAgain) {
   record_.add_keyframe({instant(2.0), causal_[19].T});
   restart(5.0, SE3(so3::exp({0, 0, 0.3}), {0.1, 0.2, 0.3}));
   fly(5.0, 7.0);
-  const TrajectorySmoother::Path path = record_.path();
+  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   ASSERT_EQ(path.poses.size(), causal_.size());
   for (std::size_t i = 0; i < causal_.size(); ++i) {
     EXPECT_EQ(path.poses[i].t, causal_[i].t);
@@ -79,9 +83,9 @@ TEST_F(FlightRecordTest, GivesBackWhatWasToldWhereNothingWasFoundAgain) {
 }
 
 TEST_F(FlightRecordTest, IsEmptyBeforeAnything) {
-  EXPECT_TRUE(record_.path().poses.empty());
+  EXPECT_TRUE(record_.path(odom_to_map_).poses.empty());
   restart(0.0, SE3());
-  EXPECT_TRUE(record_.path().poses.empty());
+  EXPECT_TRUE(record_.path(odom_to_map_).poses.empty());
 }
 
 TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) {
@@ -91,7 +95,7 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
   fly(0.5, 8.5);
   ASSERT_GT(error(causal_.back()), 0.06);
   look(8.5, 0.5, keyframe);
-  const Trajectory poses = record_.path().poses;
+  const Trajectory poses = record_.path(odom_to_map_).poses;
   EXPECT_LT(error(poses.back()), 0.005);
   for (const StampedPose& pose : poses) EXPECT_LT(error(pose), 0.01);
 }
@@ -114,7 +118,7 @@ TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes
     }
   }
   ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is found again";
-  const TrajectorySmoother::Path path = record_.path();
+  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   ASSERT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
 }
@@ -130,7 +134,7 @@ TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
   fly(4.1, 8.5, 0.0);
   for (const double t : {4.0, 4.1, 4.2}) record_.refine({instant(t), true_pose(t)});
   look(8.5, 0.5, keyframe);
-  for (const StampedPose& pose : record_.path().poses) EXPECT_LT(error(pose), 1e-3);
+  for (const StampedPose& pose : record_.path(odom_to_map_).poses) EXPECT_LT(error(pose), 1e-3);
 }
 
 TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
@@ -143,14 +147,16 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   const SE3 off(Eigen::Quaterniond::Identity(), {0.5, -0.2, 0.0}), O(so3::exp({0, 0, 1.0}), {1.0, 2.0, 0.5});
   T_O_B_ = O.inverse() * true_pose(5.0);
   T_M_O_ = off * O;
-  record_.restart({instant(5.0), T_O_B_}, T_M_O_, 0.1, 0.05);
+  record_.restart({instant(5.0), T_O_B_}, 0.1, 0.05);
+  odom_to_map_.restart(instant(5.0));
+  odom_to_map_.correct(instant(5.0), T_M_O_);
   fly(5.0, 8.0, 0.0);
   EXPECT_GT(error(causal_.back()), 0.5);
   T_M_O_ = O;
   look(8.0, 0.5, keyframe);
-  record_.forget_guess();
+  odom_to_map_.forget_guess();
   fly(8.0, 8.5, 0.0);
-  for (const StampedPose& pose : record_.path().poses)
+  for (const StampedPose& pose : record_.path(odom_to_map_).poses)
     EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
@@ -164,8 +170,8 @@ TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   restart(5.0, own);
   fly(5.0, 8.0, 0.0);
   look(8.0, 7.5, 1);
-  record_.forget_guess();
-  const TrajectorySmoother::Path path = record_.path();
+  odom_to_map_.forget_guess();
+  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   EXPECT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
   for (std::size_t k = 0; k < loaded.size(); ++k) {
@@ -179,8 +185,8 @@ TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
   fly(0.0, 1.0, 0.0);
   restart(2.0, own);
   fly(2.0, 3.0, 0.0);
-  record_.move_before(own.inverse());
-  const Trajectory moved = record_.path().poses;
+  odom_to_map_.move_before(own.inverse());
+  const Trajectory moved = record_.path(odom_to_map_).poses;
   EXPECT_LT((moved.front().T.inverse() * own.inverse() * causal_.front().T).log().norm(), 1e-12);
   EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the present start has been moved by the map";
 }

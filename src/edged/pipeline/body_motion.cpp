@@ -8,19 +8,19 @@ Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool start
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
   const Timestamp t = motion.end();
   started_ = started;
-  std::erase_if(T_W_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
+  std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
-    for (const NavState& state : propagate_all(now_, imu)) T_W_B_.push_back({state.t, state.T_W_B});
+    for (const NavState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_W_B});
     now_ = propagate(now_, motion);
   } else {
     // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
     SE3& pose = now_.T_W_B;
-    T_W_B_.push_back({imu.front().t, pose});
+    T_O_B_.push_back({imu.front().t, pose});
     for (std::size_t i = 1; i < imu.size(); ++i) {
       const double dt = to_seconds(imu[i].t - imu[i - 1].t);
       const Eigen::Vector3d rate = 0.5 * (imu[i].gyro_B + imu[i - 1].gyro_B);
       pose = pose * SE3(so3::exp(rate * dt), Eigen::Vector3d::Zero());
-      T_W_B_.push_back({imu[i].t, pose});
+      T_O_B_.push_back({imu[i].t, pose});
     }
   }
   now_.t = t;
@@ -36,7 +36,7 @@ SE3 BodyMotion::moved_on(Duration time) const {
 SE3 BodyMotion::correct(const NavState& estimate) {
   SE3 correction = estimate.T_W_B * now_.T_W_B.inverse();
   now_ = estimate;
-  for (StampedPose& pose : T_W_B_) pose.T = correction * pose.T;
+  for (StampedPose& pose : T_O_B_) pose.T = correction * pose.T;
   return correction;
 }
 

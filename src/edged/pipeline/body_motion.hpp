@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the body is now and was while the events of the packet came: IMU propagation from the newest estimate.
+// Where the body is in O, now and while the events of the packet came: IMU propagation from the newest estimate.
 #pragma once
 
 #include <vector>
@@ -21,16 +21,16 @@ class BodyMotion {
   /// else attitude by gyro only.
   Preintegration predict(const std::vector<ImuSample>& imu, bool started);
 
-  /// The estimator's word on `now`: the history moves along. Returns old to new world frame, T_new_old.
+  /// `now` as estimated: the history moves along. Returns from the old odometry frame to the new one, T_new_old.
   SE3 correct(const NavState& estimate);
 
   const NavState& now() const { return now_; }
   /// Whether speed and tilt of `now` mean anything.
   bool started() const { return started_; }
-  /// T_W_B a few milliseconds after now, turning and moving on as it does now.
+  /// T_O_B a few milliseconds after now, turning and moving on as it does now.
   SE3 moved_on(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
-  const std::vector<StampedPose>& poses() const { return T_W_B_; }
+  const std::vector<StampedPose>& poses() const { return T_O_B_; }
 
  private:
   ImuNoise noise_;
@@ -38,7 +38,7 @@ class BodyMotion {
   NavState now_;
   bool started_ = false;
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
-  std::vector<StampedPose> T_W_B_;
+  std::vector<StampedPose> T_O_B_;
 };
 
 }  // namespace edged

@@ -16,14 +16,14 @@ void HealthConfig::visit(ConfigFields& fields) {
       {"", 0, 1000, "Number of features kept in event frames while the frames have all of theirs (fused mode)."});
 }
 
-Eigen::Matrix3d Channel::since_keyframe(const SE3& T_W_B) const {
-  const Eigen::Quaterniond R_Bkf_B = T_W_Bkeyframe.rotation().conjugate() * T_W_B.rotation();
+Eigen::Matrix3d Channel::since_keyframe(const SE3& T_O_B) const {
+  const Eigen::Quaterniond R_Bkf_B = T_O_Bkeyframe.rotation().conjugate() * T_O_B.rotation();
   const Eigen::Matrix3d R_B_C = camera.T_B_C.R();
   return R_B_C.transpose() * R_Bkf_B.toRotationMatrix() * R_B_C;
 }
 
-void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, TrackPrediction prediction) {
-  prediction.T_cur_prev = T_W_C(T_W_B).inverse() * T_W_C(T_W_Blast);
+void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction) {
+  prediction.T_cur_prev = T_O_C(T_O_B).inverse() * T_O_C(T_O_Blast);
   prediction.offset_px = alignment_px_;
   const TrackSummary summary = tracker.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
   align(summary);
@@ -58,25 +58,25 @@ CameraObservations Channel::observations() const {
   return observations;
 }
 
-void Channel::reject(const SE3& T_W_B, bool trust_gyro) {
-  const auto rotation = trust_gyro ? std::optional(since_keyframe(T_W_B)) : std::nullopt;
+void Channel::reject(const SE3& T_O_B, bool trust_gyro) {
+  const auto rotation = trust_gyro ? std::optional(since_keyframe(T_O_B)) : std::nullopt;
   tracker.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
-void Channel::mark_keyframe(const cv::Mat& image, const SE3& T_W_B, FeatureId& next_feature, int most) {
+void Channel::mark_keyframe(const cv::Mat& image, const SE3& T_O_B, FeatureId& next_feature, int most) {
   tracker.detect(image, next_feature, most);
   tracker.mark_keyframe();
-  T_W_Bkeyframe = T_W_B;
+  T_O_Bkeyframe = T_O_B;
 }
 
-void Channel::settle(const SE3& T_W_B, bool keyframe) {
-  T_W_Blast = T_W_B;
-  if (keyframe) T_W_Bkeyframe = T_W_B;
+void Channel::settle(const SE3& T_O_B, bool keyframe) {
+  T_O_Blast = T_O_B;
+  if (keyframe) T_O_Bkeyframe = T_O_B;
 }
 
 void Channel::move(const SE3& T_new_old) {
-  T_W_Blast = T_new_old * T_W_Blast;
-  T_W_Bkeyframe = T_new_old * T_W_Bkeyframe;
+  T_O_Blast = T_new_old * T_O_Blast;
+  T_O_Bkeyframe = T_new_old * T_O_Bkeyframe;
 }
 
 const Channel* leading_channel(std::span<const ChannelView> views) {

@@ -19,17 +19,17 @@ class Channel {
           const AlignmentConfig& alignment, const HealthConfig& health)
       : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
 
-  SE3 T_W_C(const SE3& T_W_B) const { return T_W_B * camera.T_B_C; }
+  SE3 T_O_C(const SE3& T_O_B) const { return T_O_B * camera.T_B_C; }
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
-  Eigen::Matrix3d since_keyframe(const SE3& T_W_B) const;
+  Eigen::Matrix3d since_keyframe(const SE3& T_O_B) const;
 
-  /// Follows the tracks into the image. T_W_B: the body now, as predicted; prediction: what else is known, without its
+  /// Follows the tracks into the image. T_O_B: the body now, as predicted; prediction: what else is known, without its
   /// pose and offset.
-  void track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, TrackPrediction prediction);
+  void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
-  void reject(const SE3& T_W_B, bool trust_gyro);
+  void reject(const SE3& T_O_B, bool trust_gyro);
   /// Finds new features in the image, up to `most` live ones, and makes it the keyframe.
-  void mark_keyframe(const cv::Mat& image, const SE3& T_W_B, FeatureId& next_feature, int most);
+  void mark_keyframe(const cv::Mat& image, const SE3& T_O_B, FeatureId& next_feature, int most);
 
   /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
   double survival_rate() const { return survival_rate_; }
@@ -38,15 +38,16 @@ class Channel {
   /// The observations of the present image, less sure the fewer tracks survive; none when the camera is ignored.
   CameraObservations observations() const;
 
+  bool has_image_of(Timestamp t) const { return any_image_ && last_image_ == t; }
   /// The body at the present image (and keyframe), now better known.
-  void settle(const SE3& T_W_B, bool keyframe);
-  /// Everything remembered moves into another world frame.
+  void settle(const SE3& T_O_B, bool keyframe);
+  /// Everything remembered moves into another odometry frame.
   void move(const SE3& T_new_old);
 
   RigCamera camera;  ///< as the estimator has calibrated it
   FeatureTracker tracker;
-  SE3 T_W_Blast;      ///< at the last image
-  SE3 T_W_Bkeyframe;  ///< at the last keyframe
+  SE3 T_O_Blast;      ///< at the last image
+  SE3 T_O_Bkeyframe;  ///< at the last keyframe
 
  private:
   void align(const TrackSummary& summary);

@@ -19,21 +19,14 @@ constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;              // of an odometry that has just started, whose scale is still poor
 constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to say how much of it the map shows
 
-/// The live features of a camera, and what they look like.
-struct Features {
+/// One a track.
+std::vector<std::optional<Descriptor>> descriptors_of(const TrackedImage& image, const SE3& T_O_C) {
   std::vector<Eigen::Vector2d> pixels, points;
-  std::vector<std::optional<Descriptor>> descriptors;
-};
-
-Features corners_of(const ChannelView& view, const SE3& T_O_C) {
-  Features features;
-  for (const Track& track : view.channel->tracker.tracks()) {
-    features.pixels.push_back(track.pixel);
-    features.points.push_back(track.point);
+  for (const Track& track : image.tracks) {
+    pixels.push_back(track.pixel);
+    points.push_back(track.point);
   }
-  const Eigen::Vector3d up_C = T_O_C.R().transpose() * Eigen::Vector3d::UnitZ();
-  features.descriptors = describe(view.track, features.pixels, features.points, up_C);
-  return features;
+  return describe(image.image, pixels, points, T_O_C.R().transpose() * Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace
@@ -45,18 +38,35 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       filter_(config.filter),
       record_(config.filter) {}
 
-void Mapper::restart(const SE3& T_M_O, const NavState& now) {
+void Mapper::restart(const SE3& T_new_old, const NavState& now) {
+  odom_to_map_.restart(T_new_old, now);
+  begin_start(now);
+}
+
+void Mapper::doubt(const NavState& now) {
+  odom_to_map_.restart(now.t);
+  begin_start(now);
+}
+
+void Mapper::begin_start(const NavState& now) {
   const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
   const double position_sigma = first ? 0.0 : kRestartPosition_m, yaw_sigma = first ? 0.0 : kRestartYaw_rad;
-  filter_.restart(T_M_O, now.T_W_B, now.t, position_sigma, yaw_sigma);
-  record_.restart({now.t, now.T_W_B}, T_M_O, kRestartPosition_m, kRestartYaw_rad);
+  T_M_O_guess_ = odom_to_map_.T_M_O();
+  filter_.restart(T_M_O_guess_, now.T_W_B, now.t, position_sigma, yaw_sigma);
+  record_.restart({now.t, now.T_W_B}, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
   blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
-  T_M_O_guess_ = T_M_O;
   recognised_.reset();
-  looks_.clear();
+  in_window_.clear();
   found_.clear();
+}
+
+void Mapper::begin_time() {
+  OdomToMap odom_to_map = std::move(odom_to_map_);
+  odom_to_map.forget_history();
+  *this = Mapper(config_);
+  odom_to_map_ = std::move(odom_to_map);
 }
 
 void Mapper::load(const SavedMap& map) {
@@ -78,69 +88,78 @@ std::optional<SavedMap> Mapper::save() const {
 
 void Mapper::predict(const NavState& now) {
   const bool young = blind_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
-  filter_.predict(now.T_W_B, now.t, young ? kYoungDrift : 1.0);
+  filter_.predict(odom_to_map_.T_M_O(), now.T_W_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
 }
 
-Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Period made) {
-  const CameraModel& camera = view.channel->tracker.camera();
-  Search search;
-  search.T_B_C = filter.T_M_B().inverse() * filter.T_M_O() * T_O_C;
-  search.candidates = map_.visible({view.channel->camera.name, made, filter.keyframes()}, filter.T_M_O() * T_O_C,
-                                   camera, config_.max_observations);
-  for (const Candidate& candidate : search.candidates) {
-    MapObservation observation{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K,
-                               camera.pixel_to_point(candidate.pixel),
-                               config_.filter.pixel_sigma / camera.mean_focal()};
+std::vector<MapObservation> Mapper::Search::observations() const {
+  std::vector<MapObservation> observations;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.found) observations.push_back(candidate.observation);
+  }
+  return observations;
+}
+
+Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C,
+                              Period made) {
+  const CameraModel& camera = image.model;
+  Search search{map_.visible({image.camera, made, filter.keyframes()}, T_M_O * T_O_C, camera, config_.max_observations),
+                filter.T_M_B().inverse() * T_M_O * T_O_C};
+  for (Candidate& candidate : search.candidates) {
+    MapObservation& observation = candidate.observation;
+    observation.seen = camera.pixel_to_point(candidate.pixel);
     const double stretch = camera.stretch(observation.seen);
-    observation.sigma *= stretch;
+    observation.sigma = config_.filter.pixel_sigma / camera.mean_focal() * stretch;
     const double expected_px =
         kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, search.T_B_C);
     const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
     const auto match =
-        match_patch(candidate.point->patch, view.track, candidate.pixel, candidate.A, radius, config_.patch);
-    search.found.push_back(match.has_value());
+        match_patch(candidate.point->patch, image.image, candidate.pixel, candidate.A, radius, config_.patch);
+    candidate.found = match.has_value();
     if (!match) continue;
+    candidate.pixel = match->pixel;
     observation.seen = camera.pixel_to_point(match->pixel);
-    search.observations.push_back(observation);
-    search.pixels.push_back(match->pixel);
   }
   return search;
 }
 
-/// The filter takes what was found, where that agrees.
-bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
-  const SE3 T_O_B = filter.T_M_O().inverse() * filter.T_M_B();
-  if (!filter.update(search.observations, search.candidates.size(), search.T_B_C)) return false;
-  for (std::size_t i = 0; i < search.candidates.size(); ++i) map_.note(search.candidates[i], search.found[i], t);
-  std::vector<MapObservation> observations = search.observations;
+/// The filter takes what was found, where that agrees, and O is placed by it.
+bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t) {
+  const SE3 T_O_B = T_M_O.inverse() * filter.T_M_B();
+  std::vector<MapObservation> observations = search.observations();
+  const std::optional<SE3> corrected = filter.update(observations, search.candidates.size(), search.T_B_C);
+  if (!corrected) return false;
+  odom_to_map_.correct(t, *corrected);
   found_.clear();
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    const MapKeyframe& keyframe = map_.keyframes()[observations[i].keyframe];
-    found_.push_back(
-        {keyframe.t, search.pixels[i], filter.keyframes()[observations[i].keyframe] * observations[i].p_K});
-    observations[i].keyframe = keyframe.number;
+  for (const Candidate& candidate : search.candidates) {
+    map_.note(candidate, t);
+    if (!candidate.found) continue;
+    const MapObservation& observation = candidate.observation;
+    found_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
+                      filter.keyframes()[observation.keyframe] * observation.p_K});
   }
-  record_.add_observations({t, T_O_B}, search.T_B_C, observations, filter.T_M_O());
+  for (MapObservation& observation : observations)
+    observation.keyframe = static_cast<std::uint32_t>(map_.keyframes()[observation.keyframe].number);
+  record_.add_observations({t, T_O_B}, search.T_B_C, observations);
   return true;
 }
 
-bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
+bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
   // In a map of another run no dead reckoning tells right from wrong: two looks that agree must be further apart.
   const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
-  const SE3 T_O_C = view.channel->T_W_C(T_O_B);
   const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
-  const Search here = search(filter_, view, T_O_C, old_enough);
-  const auto older = std::ranges::count_if(here.observations, [&](const MapObservation& observation) {
-    return map_.keyframes()[observation.keyframe].t < started_;
+  const SE3 T_M_O = odom_to_map_.T_M_O();
+  const Search here = search(filter_, T_M_O, image, T_O_C, old_enough);
+  const auto older = std::ranges::count_if(here.candidates, [&](const Candidate& candidate) {
+    return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < started_;
   });
-  const bool agreed = update(filter_, here, t);
+  const bool agreed = update(filter_, T_M_O, here, t);
   if (!searching_ && !unlocated_before_) return false;
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
-  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, view, T_O_C);
+  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, image, T_O_C);
   if (found_by_looks) unlocated_before_.reset();
   if (found_by_guess || found_by_looks) searching_ = false;
   return found_by_guess || found_by_looks;
@@ -154,76 +173,87 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
          so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * blind_s_;
 }
 
+/// T_M_O by looks alone, of keyframes made then.
+std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const {
+  std::vector<Eigen::Vector2d> points;
+  for (const Track& track : image.tracks) points.push_back(track.point);
+  const std::optional<SE3> T_M_C =
+      map_.recognise({image.camera, made, filter_.keyframes()}, descriptors_of(image, T_O_C), points, T_O_C.rotation(),
+                     image.model.mean_focal());
+  return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
+}
+
 /// By looks alone, of what was there before the newest start, or of the map that was taken up. Two images must agree on
 /// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
-bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
-  const Features features = corners_of(view, T_O_C);
-  const double focal = view.channel->tracker.camera().mean_focal();
+bool Mapper::recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
   const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
-  const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, before, filter_.keyframes()},
-                                                  features.descriptors, features.points, T_O_C.rotation(), focal);
+  const std::optional<SE3> T_M_O = recognised(image, T_O_C, before);
   const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
-  if (!T_M_C) return false;
-  const SE3 T_M_O = *T_M_C * T_O_C.inverse(), T_O_B = filter_.T_M_O().inverse() * filter_.T_M_B();
-  if (!unlocated_before_ && !plausible(T_M_O, T_O_B)) return false;
+  if (!T_M_O) return false;
+  const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
+  if (!unlocated_before_ && !plausible(*T_M_O, T_O_B)) return false;
   recognised_ = T_M_O;
   if (!last) return false;
-  const SE3 between = (*last * T_O_B).inverse() * (T_M_O * T_O_B);
+  const SE3 between = (*last * T_O_B).inverse() * (*T_M_O * T_O_B);
   if (between.translation().norm() > kSamePlace_m || so3::log(between.rotation()).norm() > kSamePlace_rad) return false;
   MapFilter there = filter_;
-  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
-  if (!update(there, search(there, view, T_O_C, before), t)) return false;
-  record_.forget_guess();
-  if (unlocated_before_) record_.move_before(T_M_O * filter_.T_M_O().inverse());
+  there.restart(*T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  if (!update(there, *T_M_O, search(there, *T_M_O, image, T_O_C, before), t)) return false;
+  odom_to_map_.forget_guess();
+  if (unlocated_before_) odom_to_map_.move_before(*T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
 }
 
-double Mapper::covered_share(const FeatureTracker& tracker) const {
-  const CameraModel& camera = tracker.camera();
+double Mapper::covered_share(const TrackedImage& image) const {
+  const CameraModel& camera = image.model;
   const auto cell = [&](const Eigen::Vector2d& pixel) {
     return std::pair(static_cast<int>(pixel.x() * kCellsAcross / camera.width()),
                      static_cast<int>(pixel.y() * kCellsDown / camera.height()));
   };
   std::set<std::pair<int, int>> textured, shown;
-  for (const Track& track : tracker.tracks()) textured.insert(cell(track.pixel));
+  for (const Track& track : image.tracks) textured.insert(cell(track.pixel));
   for (const MapMatch& point : found_) {
     if (textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
   }
   return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
 }
 
-void Mapper::keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
-  const FeatureTracker& tracker = view.channel->tracker;
+void Mapper::keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
   if (to_seconds(t - started_) < config_.keyframes.min_known_s) return;
-  if (!map_.wants(covered_share(tracker))) return;
-  Look look{t, view.channel->camera.name, {}};
-  const Features features = corners_of(view, view.channel->T_W_C(T_O_B));
-  for (std::size_t i = 0; i < features.pixels.size(); ++i) {
-    if (const auto patch = cut_patch(view.track, features.pixels[i]))
-      look.features[tracker.tracks()[i].id] = {*patch, features.descriptors[i], features.pixels[i]};
+  if (!map_.wants(covered_share(image))) return;
+  MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, image.camera, SE3(), {}});
+  const std::vector<std::optional<Descriptor>> descriptors = descriptors_of(image, T_O_C);
+  for (std::size_t i = 0; i < image.tracks.size(); ++i) {
+    const Track& track = image.tracks[i];
+    if (const auto patch = cut_patch(image.image, track.pixel))
+      keyframe.points.push_back({.id = track.id, .patch = *patch, .descriptor = descriptors[i], .pixel = track.pixel});
   }
-  looks_.push_back(std::move(look));
 }
 
 void Mapper::take(const KeyframeRecord& record) {
   record_.refine({record.t, record.T_W_B});
-  while (!looks_.empty() && looks_.front().t < record.t) looks_.pop_front();
-  if (looks_.empty() || looks_.front().t != record.t) return;
-  const Look& look = looks_.front();
-  const auto view = std::ranges::find(record.views, look.camera, &KeyframeView::camera);
-  MapKeyframe keyframe{record.t, record.t, look.camera, view->T_B_C, {}};
-  for (const KeyframePoint& point : view->points) {
-    const auto feature = look.features.find(point.id);
-    if (feature == look.features.end()) continue;
-    keyframe.points.push_back({point.point, point.inverse_depth, point.sigma, feature->second.patch,
-                               feature->second.descriptor, feature->second.pixel, 0, 0});
+  while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
+  if (in_window_.empty() || in_window_.front().t != record.t) return;
+  MapKeyframe& keyframe = in_window_.front();
+  const auto view = std::ranges::find(record.views, keyframe.camera, &KeyframeView::camera);
+  keyframe.T_B_C = view->T_B_C;
+  std::vector<MapPoint> points;
+  for (const KeyframePoint& placed : view->points) {
+    const auto looks = std::ranges::find(keyframe.points, placed.id, &MapPoint::id);
+    if (looks == keyframe.points.end()) continue;
+    MapPoint& point = points.emplace_back(*looks);
+    point.point = placed.point;
+    point.inverse_depth = placed.inverse_depth;
+    point.sigma = placed.sigma;
   }
+  keyframe.points = std::move(points);
   if (!map_.gains_by(keyframe)) return;
   keyframe.number = record_.add_keyframe({record.t, record.T_W_B});
   map_.add(std::move(keyframe));
-  filter_.add_keyframe(record.T_W_B, record.t);
+  in_window_.pop_front();
+  filter_.add_keyframe(odom_to_map_.T_M_O(), record.T_W_B, record.t);
   if (const auto superfluous = map_.superfluous(known())) remove_keyframe(*superfluous);
 }
 
@@ -233,7 +263,7 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
 }
 
 FinalTrajectory Mapper::final_trajectory() const {
-  TrajectorySmoother::Path path = record_.path();
+  TrajectorySmoother::Path path = record_.path(odom_to_map_);
   FinalTrajectory known{std::move(path.poses), {}};
   for (const MapKeyframe& keyframe : map_.keyframes()) {
     known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));

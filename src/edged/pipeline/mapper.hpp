@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The odometry's joint with the map: what its keyframes looked like, where it is by what was seen before, and what the
-// map keeps of a keyframe that leaves the window. The odometry's frame is O here, W of the estimator; the map's is M.
+// map keeps of a keyframe that leaves the window.
 #pragma once
 
 #include <deque>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -13,9 +12,10 @@
 #include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
+#include "edged/map/odom_to_map.hpp"
 #include "edged/map/saved_map.hpp"
 #include "edged/map/trajectory_smoother.hpp"
-#include "edged/pipeline/channel.hpp"
+#include "edged/pipeline/tracked_image.hpp"
 
 namespace edged {
 
@@ -24,15 +24,19 @@ class Mapper {
   /// lost_after_s: StatusConfig's. The last estimate may have been without landmarks for so long.
   Mapper(const MapConfig& config, double lost_after_s);
 
-  /// The estimator has started anew: T_M_O is where dead reckoning puts it.
-  void restart(const SE3& T_M_O, const NavState& now);
+  /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
+  void restart(const SE3& T_new_old, const NavState& now);
+  /// O goes on, but how the body turned until now nobody knows: where it is in M is a guess, as after a start.
+  void doubt(const NavState& now);
+  /// What follows is of a new time: the map of the time before is let go, the body goes on from where it is.
+  void begin_time();
   /// The odometry has come to `now`.
   void predict(const NavState& now);
   /// Looks for the map in the image, and after a new start, until it has been found again, everywhere: true when it has
-  /// been just now. T_O_B: of the image's instant.
-  bool localize(Timestamp t, const ChannelView& view, const SE3& T_O_B);
+  /// been just now. T_O_C: of the image's camera and instant.
+  bool localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
   /// The packet has become a keyframe, which looks like this.
-  void keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B);
+  void keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
   /// A keyframe has left the window: kept where the map gains by it.
   void take(const KeyframeRecord& record);
 
@@ -43,7 +47,7 @@ class Mapper {
   /// find the body.
   double dead_reckoning_s() const { return blind_s_; }
 
-  const SE3& T_M_O() const { return filter_.T_M_O(); }
+  const OdomToMap& odom_to_map() const { return odom_to_map_; }
   /// What was found in the image of that instant.
   std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
   /// In M.
@@ -59,32 +63,21 @@ class Mapper {
   bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
 
  private:
-  /// How a keyframe of the window looked.
-  struct Look {
-    struct Feature {
-      Patch patch;
-      std::optional<Descriptor> descriptor;
-      Eigen::Vector2d pixel;
-    };
-    Timestamp t;
-    std::string camera;
-    std::map<FeatureId, Feature> features;
-  };
   /// Points that should be in view, and what was found of them.
   struct Search {
     std::vector<Candidate> candidates;
-    std::vector<bool> found;  ///< one a candidate
-    std::vector<MapObservation> observations;
-    std::vector<Eigen::Vector2d> pixels;  ///< one a observation
     SE3 T_B_C;
+    std::vector<MapObservation> observations() const;
   };
   /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
-  Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Period made);
-  bool update(MapFilter& filter, const Search& search, Timestamp t);
-  bool recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C);
+  void begin_start(const NavState& now);
+  Search search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C, Period made);
+  bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t);
+  std::optional<SE3> recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const;
+  bool recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
-  double covered_share(const FeatureTracker& tracker) const;
+  double covered_share(const TrackedImage& image) const;
   void remove_keyframe(std::size_t keyframe);
 
   MapConfig config_;
@@ -92,8 +85,9 @@ class Mapper {
   KeyframeMap map_;
   MapFilter filter_;
   TrajectorySmoother record_;
-  std::deque<Look> looks_;
-  std::vector<MapMatch> found_;  ///< in the newest image that was looked at
+  OdomToMap odom_to_map_;
+  std::deque<MapKeyframe> in_window_;  ///< what keyframes look like whose poses and depths the window still refines
+  std::vector<MapMatch> found_;        ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;     ///< newest word of the odometry
   Timestamp started_;       ///< the estimator's newest start

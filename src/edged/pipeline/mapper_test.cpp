@@ -1,15 +1,139 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
+// The mapper before a wall, with odometry that is off by a known shift.
 #include "edged/pipeline/mapper.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "edged/frontend/test_scene.hpp"
 #include "edged/options.hpp"
 
 namespace edged {
 namespace {
+
+const double kLostAfter_s = StatusConfig().lost_after_s;
+
+Timestamp second(double t_s) { return timestamp_from_seconds(t_s); }
+
+class MapperBeforeAWall : public testing::Test {
+ protected:
+  /// x of the body looks at the wall, z is up.
+  const SE3 T_B_C_{Eigen::Quaterniond(Eigen::Matrix3d{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}}), Eigen::Vector3d::Zero()};
+
+  static SE3 shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+  static NavState now(double t_s, const SE3& T_O_B) {
+    NavState state;
+    state.t = second(t_s);
+    state.T_W_B = T_O_B;
+    return state;
+  }
+
+  /// The wall lies 2 m before the origin of M. Features lie in a grid, not necessarily on the same points of the wall.
+  TrackedImage image(const SE3& T_M_B) const {
+    TrackedImage image{"cam", scene_.camera(), scene_.image(T_B_C_.inverse() * T_M_B * T_B_C_), {}};
+    for (int x = 24; x < 220; x += 16) {
+      for (int y = 24; y < 160; y += 16) {
+        Track track;
+        track.id = image.tracks.size() + 1;
+        track.pixel = {x, y};
+        track.point = scene_.camera().pixel_to_point(track.pixel);
+        image.tracks.push_back(track);
+      }
+    }
+    return image;
+  }
+
+  /// A keyframe at the origin of M, that has left the window.
+  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B) const {
+    const TrackedImage seen = image(SE3());
+    mapper.predict(now(t_s, T_O_B));
+    mapper.keyframe(second(t_s), seen, T_O_B * T_B_C_);
+    KeyframeRecord record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
+    for (const Track& track : seen.tracks) record.views.front().points.push_back({track.id, track.point, 0.5, 0.005});
+    mapper.take(record);
+  }
+
+  bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B) const {
+    mapper.predict(now(t_s, T_O_B));
+    return mapper.localize(second(t_s), image(T_M_B), T_O_B * T_B_C_);
+  }
+
+  PlaneScene scene_{davis_like_pinhole(), 2.0};
+};
+
+TEST_F(MapperBeforeAWall, CorrectsTheDriftByWhatWasSeenBefore) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  EXPECT_FALSE(mapper.started());
+  mapper.restart(SE3(), now(0.0, SE3()));
+  EXPECT_TRUE(mapper.started());
+  add_keyframe(mapper, 5.0, SE3());
+  const SE3 T_M_B = shift(0.05, 0.02, 0.0), T_O_B = shift(0.05, 0.03, 0.0);
+  EXPECT_FALSE(localize(mapper, 12.0, T_O_B, T_M_B)) << "there was no loss";
+  EXPECT_GT(mapper.map_matches(second(12.0)).size(), 20U);
+  EXPECT_TRUE(mapper.map_matches(second(11.0)).empty());
+  const SE3 corrected = mapper.odom_to_map().T_M_O() * T_O_B;
+  EXPECT_LT((corrected.translation() - T_M_B.translation()).norm(), 0.006) << "it was off by 0.01";
+}
+
+TEST_F(MapperBeforeAWall, KeepsNoKeyframeSoonAfterAStart) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.restart(SE3(), now(0.0, SE3()));
+  add_keyframe(mapper, 1.0, SE3());
+  EXPECT_TRUE(mapper.save()->keyframes.empty()) << "its scale is poor";
+  add_keyframe(mapper, 5.0, SE3());
+  ASSERT_EQ(mapper.save()->keyframes.size(), 1U);
+  const MapPoint& point = mapper.save()->keyframes.front().points.front();
+  EXPECT_EQ(point.inverse_depth, 0.5);
+  EXPECT_EQ(point.point, scene_.camera().pixel_to_point(point.pixel));
+}
+
+TEST_F(MapperBeforeAWall, RelocalizesAfterALoss) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.restart(SE3(), now(0.0, SE3()));
+  add_keyframe(mapper, 5.0, SE3());
+  mapper.note(now(6.0, SE3()));
+  const SE3 T_new_old(so3::exp({0, 0, 0.5}), {3, 2, 1}), off = shift(0.0, 0.02, 0.01);
+  mapper.restart(T_new_old, now(10.0, T_new_old * off));
+  EXPECT_TRUE(localize(mapper, 10.1, T_new_old * off, SE3()));
+  const SE3 T_M_B = mapper.odom_to_map().T_M_O() * T_new_old * off;
+  EXPECT_LT(T_M_B.translation().norm(), 0.01) << "dead reckoning was off by 0.022";
+  EXPECT_FALSE(localize(mapper, 11.0, T_new_old * off, SE3())) << "only once";
+  EXPECT_EQ(mapper.final_trajectory().keyframes.size(), 1U);
+}
+
+TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
+  Mapper before{MapConfig{}, kLostAfter_s};
+  before.restart(SE3(), now(0.0, SE3()));
+  add_keyframe(before, 5.0, SE3());
+  std::optional<SavedMap> saved = before.save();
+  saved->cameras = {{"cam", 240, 180, 200.0}};
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.load(saved_map_from_bytes(to_bytes(*saved)));
+  EXPECT_TRUE(mapper.awaiting_relocalization());
+  EXPECT_FALSE(mapper.save());
+  const SE3 T_O_B(so3::exp({0, 0, -0.8}), {1.0, 2.0, 0.3});
+  mapper.restart(SE3(), now(0.0, T_O_B));
+  EXPECT_FALSE(localize(mapper, 0.3, T_O_B, SE3()));
+  EXPECT_TRUE(localize(mapper, 0.6, T_O_B, SE3()));
+  EXPECT_FALSE(mapper.awaiting_relocalization());
+  const SE3 T_M_B = mapper.odom_to_map().T_M_O() * T_O_B;
+  EXPECT_LT(T_M_B.translation().norm(), 0.02);
+  EXPECT_LT(so3::log(T_M_B.rotation()).norm(), 0.01);
+  EXPECT_TRUE(mapper.save());
+}
+
+TEST_F(MapperBeforeAWall, GoesOnFromWhereTheBodyIsInANewTime) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.restart(SE3(), now(0.0, SE3()));
+  mapper.restart(shift(1.0, 0.0, 0.0), now(3.0, SE3()));
+  const SE3 T_M_O = mapper.odom_to_map().T_M_O();
+  EXPECT_NEAR(T_M_O.translation().x(), -1.0, 1e-12);
+  mapper.begin_time();
+  EXPECT_FALSE(mapper.started());
+  EXPECT_EQ(mapper.odom_to_map().T_M_O().translation(), T_M_O.translation());
+}
 
 /// Dead reckoning until a start at 12 s, after an estimate that ended at 11 s.
 double dead_reckoning_of_a_restart(double lost_after_s) {

@@ -7,6 +7,7 @@
 #include "edged/pipeline/intake.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
+#include "edged/pipeline/packetizer.hpp"
 #include "edged/pipeline/state_prediction.hpp"
 
 namespace edged {
@@ -82,13 +83,15 @@ std::optional<Step> Odometry::next() {
 
 std::optional<NavState> Odometry::newest_state() const { return impl_->prediction.newest(); }
 std::optional<NavState> Odometry::state_at(Timestamp t) const { return impl_->prediction.at(t); }
-void Odometry::load_map(std::string_view bytes) { impl_->packet_odometry.load_map(bytes); }
-bool Odometry::awaiting_relocalization() const { return impl_->packet_odometry.awaiting_relocalization(); }
-std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.save_map(); }
-FinalTrajectory Odometry::final_trajectory() const { return impl_->packet_odometry.final_trajectory(); }
-Rig Odometry::rig() const { return impl_->packet_odometry.rig(); }
+void Odometry::load_map(std::string_view bytes) { impl_->packet_odometry.localization().load_map(bytes); }
+bool Odometry::awaiting_relocalization() const {
+  return impl_->packet_odometry.localization().awaiting_relocalization();
+}
+std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.localization().save_map(); }
+FinalTrajectory Odometry::final_trajectory() const { return impl_->packet_odometry.localization().final_trajectory(); }
+Rig Odometry::rig() const { return impl_->packet_odometry.localization().rig(); }
 std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) const {
-  return impl_->packet_odometry.calibration_covariance(camera);
+  return impl_->packet_odometry.localization().calibration_covariance(camera);
 }
 OdometryCounters Odometry::counters() const { return {impl_->intake.counters(), impl_->packetizer.counters()}; }
 const StageTimings& Odometry::timings() const { return impl_->packet_odometry.timings(); }

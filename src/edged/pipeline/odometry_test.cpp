@@ -14,6 +14,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
+#include "edged/pipeline/packetizer.hpp"
 
 namespace edged {
 namespace {

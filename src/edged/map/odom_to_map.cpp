@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/map/odom_to_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace edged {
+
+void OdomToMap::restart(const SE3& T_new_old, const NavState& now) {
+  if (started_) {
+    const SE3 T_Oold_Onew = T_new_old.inverse();
+    const Eigen::Matrix3d R = (T_M_O_ * T_Oold_Onew).R();
+    const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+    const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
+    const Eigen::Vector3d p_M_B = T_M_O_ * (T_Oold_Onew * now.T_W_B.translation());
+    T_M_O_ = SE3(q, p_M_B - q * now.T_W_B.translation());
+  }
+  started_ = true;
+  restart(now.t);
+}
+
+void OdomToMap::restart(Timestamp t) { starts_.push_back({{t, T_M_O_}}); }
+
+void OdomToMap::correct(Timestamp t, const SE3& T_M_O) {
+  T_M_O_ = T_M_O;
+  starts_.back().push_back({t, T_M_O});
+}
+
+void OdomToMap::forget_guess() {
+  Trajectory& placed = starts_.back();
+  placed.erase(placed.begin(), std::prev(placed.end()));
+}
+
+void OdomToMap::move_before(const SE3& T_M_before) {
+  for (auto start = starts_.begin(); start != std::prev(starts_.end()); ++start) {
+    for (StampedPose& placed : *start) placed.T = T_M_before * placed.T;
+  }
+}
+
+const SE3& OdomToMap::T_M_O(std::size_t start, Timestamp t) const {
+  const Trajectory& placed = starts_[start];
+  const auto after = std::ranges::upper_bound(placed, t, {}, &StampedPose::t);
+  return after == placed.begin() ? after->T : std::prev(after)->T;
+}
+
+NavState OdomToMap::in_map(NavState in_O) const {
+  in_O.T_W_B = T_M_O_ * in_O.T_W_B;
+  in_O.v_W = T_M_O_.rotation() * in_O.v_W;
+  return in_O;
+}
+
+std::vector<Landmark> OdomToMap::in_map(std::vector<Landmark> in_O) const {
+  for (Landmark& landmark : in_O) landmark.p_W = T_M_O_ * landmark.p_W;
+  return in_O;
+}
+
+}  // namespace edged

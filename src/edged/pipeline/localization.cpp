@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/localization.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+/// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
+constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
+
+/// Of fewer features than that on frames there is no map, but of those on event frames beside them.
+constexpr double kFeaturesForMap = 20.0;
+
+/// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
+constexpr Duration kDeadReckoning = std::chrono::seconds(10);
+
+TrackedImage without(TrackedImage image, const std::vector<FeatureId>& outliers) {
+  std::erase_if(image.tracks, [&](const Track& track) { return std::ranges::count(outliers, track.id) > 0; });
+  return image;
+}
+
+std::vector<KeyframeRecord> in_map(const SE3& T_M_O, std::vector<KeyframeRecord> in_O) {
+  for (KeyframeRecord& record : in_O) record.T_W_B = T_M_O * record.T_W_B;
+  return in_O;
+}
+
+}  // namespace
+
+Rig without_offsets(Rig rig) {
+  for (RigCamera& camera : rig.cameras) camera.time_offset = Duration(0);
+  return rig;
+}
+
+Localization::Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config,
+                           StageTimings& timings)
+    : config_(config),
+      noise_(noise),
+      given_rig_(cameras),
+      rig_(without_offsets(given_rig_)),
+      timings_(&timings),
+      estimator_(fresh_estimator()),
+      mapper_(config.map, config.status.lost_after_s),
+      judge_(config.status),
+      body_(noise, duration_from_seconds(config.packets.max_age_s)) {}
+
+void Localization::begin_time() {
+  estimator_ = fresh_estimator();
+  before_ = final_trajectory();
+  mapper_.begin_time();
+  judge_.lose("a clock was set back");
+  dead_reckoning_until_ = Timestamp::min();
+  covariance_.reset();
+}
+
+Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
+  const auto timer = timings_->measure("predict");
+  Preintegration motion = body_.predict(imu, estimator_.initialized() || imu.back().t < dead_reckoning_until_);
+  turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
+  gyro_clipped_ = motion.gyro_clipped();
+  return motion;
+}
+
+LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen) {
+  const Timestamp t = motion.end();
+  LocalizationOutput output;
+  EstimatorResult result = estimate(
+      {t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet, seen.depth}, output.correction);
+  const TrackingStatus status = judge_.judge(result, estimator_.initialized(), t);
+  const bool relocalized = follow_map(t, seen, result);
+  update_covariance(t);
+  if (is_tracking(status)) mapper_.note(body_.now());
+  output.step = describe(t, status, std::move(result));
+  output.step.keyframe = seen.keyframe;
+  output.step.scene_depth = seen.scene_depth;
+  output.step.relocalized = relocalized;
+  output.correction.ended = status == TrackingStatus::Lost && estimator_.initialized();
+  if (output.correction.ended) {
+    estimator_ = fresh_estimator();
+    dead_reckoning_until_ = judge_.vision_lost() ? t + kDeadReckoning : t;
+  }
+  output.correction.provisional = estimator_.provisional();
+  return output;
+}
+
+Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult result) const {
+  const OdomToMap& odom_to_map = mapper_.odom_to_map();
+  Step step;
+  step.t = t;
+  step.status = status;
+  step.state = odom_to_map.in_map(body_.now());
+  step.covariance = covariance_;
+  step.waiting_for = std::move(result.waiting_for);
+  step.started = std::move(result.started);
+  if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
+  step.T_M_O = odom_to_map.T_M_O();
+  step.map_matches = mapper_.map_matches(t);
+  step.landmarks = odom_to_map.in_map(std::move(result.landmarks));
+  step.marginalized_keyframes = in_map(odom_to_map.T_M_O(), std::move(result.marginalized_keyframes));
+  step.ln_depth_scale = estimator_.depth_scale();
+  return step;
+}
+
+EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrection& correction) {
+  const auto timer = timings_->measure("estimate");
+  EstimatorResult result = estimator_.add(input);
+  correction.outliers = result.outliers;
+  if (!estimator_.initialized()) return result;
+  const SE3 T_new_old = body_.correct(estimator_.newest());
+  if (result.new_frame) correction.T_new_old = T_new_old;
+  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera)
+    rig_.cameras[camera] = estimator_.window().calibrated(camera);
+  correction.cameras = rig_.cameras;
+  correction.landmarks = landmark_depths();
+  // The map filter's drift is that of an odometry with a gyro: without, its pose is a guess as after a loss.
+  if (result.new_frame) {
+    mapper_.restart(T_new_old, body_.now());
+  } else if (turned_unseen_) {
+    mapper_.doubt(body_.now());
+  }
+  return result;
+}
+
+LandmarkDepths Localization::landmark_depths() const {
+  LandmarkDepths depths;
+  for (const auto& [id, feature] : estimator_.window().features()) {
+    if (const std::optional<double> z = estimator_.depth(id)) depths.emplace_hint(depths.end(), id, *z);
+  }
+  return depths;
+}
+
+/// Frames are what the map is of, where they see enough: the look of an event frame changes with the motion; those of
+/// the first camera of the kind.
+std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const {
+  const auto frames = std::ranges::find(rig_.cameras, Modality::Frames, &RigCamera::modality);
+  const auto first_frames = static_cast<std::size_t>(frames - rig_.cameras.begin());
+  if (first_frames == 0 || first_frames == rig_.cameras.size()) return 0;
+  return without(seen.images[first_frames], outliers).carried() >= kFeaturesForMap ? first_frames : 0;
+}
+
+/// True when the body has been found in the map after a loss.
+bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result) {
+  if (!estimator_.initialized() || !config_.map.enabled) return false;
+  const auto timer = timings_->measure("map");
+  bool relocalized = false;
+  mapper_.predict(body_.now());
+  const std::size_t camera = mapping_camera(seen, result.outliers);
+  if (!seen.images[camera].image.empty()) {
+    const TrackedImage image = without(seen.images[camera], result.outliers);
+    const RigCamera& calibrated = rig_.cameras[camera];
+    const SE3 T_O_C = body_.moved_on(calibrated.time_offset) * calibrated.T_B_C;
+    relocalized = mapper_.localize(t, image, T_O_C);
+    if (seen.keyframe) mapper_.keyframe(t, image, T_O_C);
+  }
+  for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
+  return relocalized;
+}
+
+void Localization::load_map(std::string_view bytes) {
+  if (mapper_.started()) throw InputError("a map can be loaded only before the first pose");
+  const SavedMap map = saved_map_from_bytes(bytes);
+  check_fits(map, given_rig_);
+  mapper_.load(map);
+}
+
+std::optional<std::string> Localization::save_map() const {
+  std::optional<SavedMap> map = mapper_.save();
+  if (!map) return std::nullopt;
+  for (const auto& [name, modality, model, T_B_C, time_offset] : given_rig_.cameras)
+    map->cameras.push_back({name, model.width(), model.height(), model.mean_focal()});
+  return to_bytes(*map);
+}
+
+FinalTrajectory Localization::final_trajectory() const {
+  FinalTrajectory all = before_, now = mapper_.final_trajectory();
+  std::ranges::move(now.poses, std::back_inserter(all.poses));
+  std::ranges::move(now.keyframes, std::back_inserter(all.keyframes));
+  return all;
+}
+
+void Localization::update_covariance(Timestamp t) {
+  if (covariance_ && t - covariance_at_ < kCovarianceEvery && estimator_.initialized()) return;
+  const auto timer = timings_->measure("covariance");
+  covariance_.reset();
+  covariance_at_ = t;
+  if (const std::optional<Matrix15d> P = estimator_.covariance()) {
+    const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
+    covariance_ = {R_M_O * P->topLeftCorner<3, 3>() * R_M_O.transpose(), P->block<3, 3>(3, 3)};
+  }
+}
+
+Rig Localization::rig() const {
+  Rig rig = rig_;
+  for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
+    rig.cameras[camera].time_offset += given_rig_.cameras[camera].time_offset;
+  }
+  return rig;
+}
+
+std::optional<Eigen::Matrix4d> Localization::calibration_covariance(const std::string& camera) const {
+  const auto found = std::ranges::find(rig_.cameras, camera, &RigCamera::name);
+  if (found == rig_.cameras.end()) return std::nullopt;
+  return estimator_.calibration_covariance(static_cast<std::size_t>(found - rig_.cameras.begin()));
+}
+
+}  // namespace edged

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Localization: from observations and IMU to states, in the estimator's window and in the map. Renders and tracks
+// nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edged/estimator/estimator.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/imu_noise.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/body_motion.hpp"
+#include "edged/pipeline/mapper.hpp"
+#include "edged/pipeline/status_judge.hpp"
+#include "edged/pipeline/vision.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
+#include "edged/timing.hpp"
+
+namespace edged {
+
+struct LocalizationOutput {
+  Step step;  ///< without its cameras
+  VisionCorrection correction;
+};
+
+/// A cycle is predict, then process. Deterministic.
+class Localization {
+ public:
+  /// cameras: those of the run, event cameras first; config: validated.
+  Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config, StageTimings& timings);
+
+  /// Moves the body on to the last of the samples, which begin where it is, and gives that motion.
+  Preintegration predict(const std::vector<ImuSample>& imu);
+  /// In O: as predicted, and after process as estimated.
+  const BodyMotion& body() const { return body_; }
+  /// motion: as predicted; seen: at its end.
+  LocalizationOutput process(Preintegration motion, const VisionOutput& seen);
+  /// A clock was set back, and what follows is of a new time: the estimate ends. The next start goes on from where the
+  /// body was, as after a loss.
+  void begin_time();
+
+  /// As of Odometry.
+  void load_map(std::string_view bytes);
+  std::optional<std::string> save_map() const;
+  bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
+  FinalTrajectory final_trajectory() const;
+  Rig rig() const;
+  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
+
+ private:
+  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
+  EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
+  LandmarkDepths landmark_depths() const;
+  bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
+  std::size_t mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const;
+  void update_covariance(Timestamp t);
+  Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
+
+  OdometryConfig config_;
+  ImuNoise noise_;
+  Rig given_rig_;  ///< the cameras of the run
+  Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
+  StageTimings* timings_;
+  Estimator estimator_;
+  Mapper mapper_;
+  FinalTrajectory before_;  ///< of the times before the newest clock
+  StatusJudge judge_;
+  BodyMotion body_;
+  bool gyro_clipped_ = false;   ///< in this packet
+  bool turned_unseen_ = false;  ///< it was until this packet
+  std::optional<PoseCovariance> covariance_;
+  Timestamp covariance_at_;
+  Timestamp dead_reckoning_until_ =
+      Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
+};
+
+/// The packetizer takes the time offsets out; what is left over is up to the estimator.
+Rig without_offsets(Rig rig);
+
+}  // namespace edged

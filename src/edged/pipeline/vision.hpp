@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Vision: from a packet and the body's predicted motion to images and observations of features. Knows no estimator.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/frontend/low_light.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/body_motion.hpp"
+#include "edged/pipeline/channel.hpp"
+#include "edged/pipeline/event_view.hpp"
+#include "edged/pipeline/packet.hpp"
+#include "edged/pipeline/scene_depth.hpp"
+#include "edged/pipeline/tracked_image.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
+#include "edged/timing.hpp"
+
+namespace edged {
+
+struct VisionInput {
+  const Packet& packet;
+  const BodyMotion& body;    ///< as predicted, up to the packet
+  bool gyro_trusted = true;  ///< since the packet before
+};
+
+struct VisionOutput {
+  double scene_depth = 0.0;                      ///< z-depth [m] used by the warp
+  std::vector<EventImage> event_images;          ///< one an event camera, empty where there were too few events
+  std::vector<TrackedImage> images;              ///< one a camera of the run
+  std::vector<CameraObservations> observations;  ///< of those cameras that the packet has brought an image of
+  bool keyframe = false;                         ///< the packet should become one, and vision has made it its own
+  bool events_quiet = false;                     ///< nothing moves before any event camera
+  std::optional<RegionDepth> depth;              ///< for Eq. 5
+};
+
+/// z-depths of landmarks, each in its own camera at the newest state [m].
+using LandmarkDepths = std::map<FeatureId, double>;
+
+/// What localization has made of the output.
+struct VisionCorrection {
+  std::vector<FeatureId> outliers;          ///< tracks that are wrong and should end
+  std::optional<LandmarkDepths> landmarks;  ///< nothing without an estimate, and then nothing below either
+  std::vector<RigCamera> cameras = {};      ///< as calibrated
+  std::optional<SE3> T_new_old = {};        ///< from the old odometry frame to the new one, where the estimator started
+  bool ended = false;                       ///< the estimate has ended with this packet
+  bool provisional = true;                  ///< there is no estimate, or its scale is not known well yet
+};
+
+/// One object for all cameras of a run. A cycle is process, then correct. Deterministic, but for a depth network that
+/// has a thread of its own.
+class Vision {
+ public:
+  /// cameras: those of the run, event cameras first, without time offsets: packets have none; config: validated.
+  Vision(const Rig& cameras, const OdometryConfig& config, Inference inference, StageTimings& timings);
+
+  VisionOutput process(const VisionInput& input);
+  /// body: as estimated, at the time of the packet.
+  void correct(const VisionCorrection& correction, const BodyMotion& body);
+  /// A clock was set back: the packets that follow are of a new time, and tracks end.
+  void begin_time();
+
+  /// For those who look on; output: of that packet.
+  std::vector<CameraStep> describe(Packet packet, const VisionOutput& output) const;
+
+ private:
+  /// One depth for all cameras, as the first sees it, of the event cameras where there is one: a depth network looks
+  /// through one camera only.
+  SceneDepth fresh_depth() const {
+    return {config_.depth, rig_.cameras.front(), config_.estimator.depth_factor.enabled, inference_};
+  }
+  void make_channels();
+  double measure_depth(const Packet& packet);
+  std::vector<EventImage> render(const VisionInput& input, double scene_depth);
+  std::optional<DepthGrid> event_depths(std::size_t camera, const BodyMotion& body, double scene_depth) const;
+  std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const;
+  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> event_images);
+  void track(const ChannelView& view, const VisionInput& input, double scene_depth);
+  void reject(const ChannelView& view, const BodyMotion& body);
+  bool is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const;
+  void mark_keyframe(const VisionInput& input, std::span<const ChannelView> views);
+  bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
+  double carried_by_frames() const;
+  bool frames_at_work(Timestamp t) const;
+  bool frames_carry(Timestamp t) const;
+  int features_wanted(const Channel& channel, Timestamp t) const;
+  bool is_quiet(const Packet& packet) const;
+  std::vector<TrackedImage> images_of(std::span<const ChannelView> views) const;
+
+  OdometryConfig config_;
+  Inference inference_;
+  Rig rig_;  ///< as calibrated so far
+  StageTimings* timings_;
+  std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
+  std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
+  std::vector<Channel> channels_;              ///< as in rig_
+  SceneDepth depth_;
+  FeatureId next_feature_ = 1;
+  std::optional<Timestamp> last_keyframe_, last_frame_;
+  bool gyro_saturated_ = false;              ///< since the last keyframe
+  std::optional<LandmarkDepths> landmarks_;  ///< by the last correction
+  bool provisional_ = true;
+};
+
+}  // namespace edged
