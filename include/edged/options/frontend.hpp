@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of what looks at images: features, optical flow, outliers, keyframes, frames in the dark.
+// The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
 #pragma once
 
 #include "edged/config.hpp"
@@ -17,10 +17,10 @@ enum class CornerKind {
 };
 
 struct DetectorConfig {
-  CornerKind features = CornerKind::FastHarris;
+  CornerKind corners = CornerKind::FastHarris;
   int max_features = 120;
   double cell_px = 20.0;
-  int levels = 1;  ///< scales the features are found at, each kLevelFactor coarser than the one before
+  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
   double separation_px = 8.0;
   int border_px = 8;
   int fast_threshold = 20;
@@ -61,7 +61,7 @@ struct PatchConfig {
   void visit(ConfigFields& fields);
 };
 
-/// The reference patch of a feature, which images are aligned to.
+/// The reference patch of a corner, which images are aligned to.
 struct TemplateConfig {
   bool enabled = true;
   PatchConfig patch;
