@@ -17,6 +17,7 @@
 #include "edged/io/trajectory_io.hpp"
 #include "log.hpp"
 #include "packet_pace.hpp"
+#include "external_log.hpp"
 #include "report_rows.hpp"
 #include "run_hindsight.hpp"
 #include "version.hpp"
@@ -252,6 +253,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
   if (run.poses.evaluation) json["evaluation"] = to_json(*run.poses.evaluation);
   json["rows"] = rows_json(run.states, run.poses, origin, rows);
   json["claimed"] = claimed_json(run.poses.claimed, origin, rows);
+  json["external"] = run.given ? external_json(run.path, origin, rows) : Json::object();
   json["truth"] = path_json(run.poses.true_path, rows);
   json["final"] = path_json(final_path(run), rows);
   json["map_keyframes"] = map_keyframes_json(run, origin);

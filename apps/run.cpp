@@ -150,6 +150,7 @@ Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& c
                            {"calibration", to_yaml(source_.calibration)}});
   writer_.emplace(folder_, frame_, headed("causal: each as it was known at its time"));
   pace_writer_.emplace(folder_);
+  external_log_.emplace(folder_);
 }
 
 /// Comments at the head of a trajectory file.
@@ -230,6 +231,7 @@ std::optional<Measurement> Run::next_measurement() {
   std::optional<Measurement> measurement = read();
   if (!measurement) return measurement;
   check(*measurement);
+  external_log_->add(*measurement);
   statistics_.add_visual(*measurement, used_);
   return measurement;
 }
@@ -306,6 +308,9 @@ RunSummary Run::summarize() {
         LiveSummary{live_->latency(), live_->shed(), odometry_.counters().packets.packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
+  external_log_->flush();
+  summary.external = external_log_->counts();
+  summary.external_in_packets = odometry_.counters().packets.external;
   const Hindsight known = hindsight();
   write_hindsight(folder_, frame_, known, headed("final: each by all that was found again before and after"));
   const StatesTable states = read_states(folder_);

@@ -11,6 +11,7 @@
 #include "config_source.hpp"
 #include "edged/live/live_source.hpp"
 #include "edged/odometry.hpp"
+#include "external_log.hpp"
 #include "live_page.hpp"
 #include "overview.hpp"
 #include "packet_pace.hpp"
@@ -83,6 +84,7 @@ class Run {
   CalibrationConfig calibration_config_;
   std::optional<RunWriter> writer_;
   std::optional<PaceWriter> pace_writer_;
+  std::optional<ExternalLog> external_log_;
   PacketPace pace_;  ///< of the newest packet
   RunStatistics statistics_;
   LiveliestMoment moment_;

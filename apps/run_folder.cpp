@@ -35,7 +35,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "keyframes.csv",
                                   "map.ply",
                                   "pace.csv",
-                                  "results.mcap"};
+                                  "results.mcap",
+                                  "external.csv"};
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"

@@ -60,11 +60,13 @@ int run_simulate(const SimulateOptions& options) {
     const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},
                                          {"seed", config.seed},       {"duration_s", config.duration_s},
                                          {"events", counts.events},   {"frames", counts.frames},
-                                         {"imu", counts.imu},         {"poses", counts.poses}};
+                                         {"imu", counts.imu},         {"poses", counts.poses},
+                                         {"external", counts.external}};
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses\n", folder.string(),
-               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses);
+    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses{}\n", folder.string(),
+               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses,
+               external_text(counts.external));
   }
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

@@ -46,7 +46,7 @@ class Sequencer {
  private:
   template <typename T>
   struct Line {
-    std::string camera;
+    std::string camera;  ///< or sensor
     Duration delay;
     std::deque<T> waiting = {};
     std::size_t events_out = 0;  ///< of the first batch that waits
@@ -67,6 +67,7 @@ class Sequencer {
   std::vector<Line<EventBatch>> events_;  // one a camera, no batch empty
   std::vector<Line<Frame>> frames_;       // one a camera
   Line<ImuSample> imu_;
+  std::vector<Line<ExternalSample>> external_;  // one a sensor, as in ExternalSample; their stamps move no other line
   std::size_t bytes_ = 0;  // of the events and frames that wait
   std::optional<Timestamp> newest_;
   bool finished_ = false;
