@@ -44,21 +44,20 @@ std::string left_out_text(const WriteCounts& counts, std::string_view format) {
 void print_summary(const ConvertOptions& options, const WritableFormat& format, const WriteCounts& counts,
                    const std::map<std::string, std::size_t>& repairs) {
   if (options.json) {
-    const nlohmann::ordered_json json = {
-        {"from", options.source.recording},
-        {"to", options.target.string()},
-        {"format", format.name},
-        {"events", counts.events},
-        {"frames", counts.frames},
-        {"imu", counts.imu},
-        {"poses", counts.poses},
-        {"external", counts.external},
-        {"left_out",
-         {{"frames", counts.frames_left_out},
-          {"imu", counts.imu_left_out},
-          {"poses", counts.poses_left_out},
-          {"external", counts.external_left_out}}},
-        {"repairs", repairs}};
+    const nlohmann::ordered_json json = {{"from", options.source.recording},
+                                         {"to", options.target.string()},
+                                         {"format", format.name},
+                                         {"events", counts.events},
+                                         {"frames", counts.frames},
+                                         {"imu", counts.imu},
+                                         {"poses", counts.poses},
+                                         {"external", counts.external},
+                                         {"left_out",
+                                          {{"frames", counts.frames_left_out},
+                                           {"imu", counts.imu_left_out},
+                                           {"poses", counts.poses_left_out},
+                                           {"external", counts.external_left_out}}},
+                                         {"repairs", repairs}};
     fmt::print("{}\n", json_text(json));
     return;
   }

@@ -57,10 +57,10 @@ int run_simulate(const SimulateOptions& options) {
       write_recording(dataset, writable_format("ecd", folder), folder, simulator.calibration(), write);
   status.clear();
   if (options.json) {
-    const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},
-                                         {"seed", config.seed},       {"duration_s", config.duration_s},
-                                         {"events", counts.events},   {"frames", counts.frames},
-                                         {"imu", counts.imu},         {"poses", counts.poses},
+    const nlohmann::ordered_json json = {{"folder", folder.string()},  {"preset", options.preset},
+                                         {"seed", config.seed},        {"duration_s", config.duration_s},
+                                         {"events", counts.events},    {"frames", counts.frames},
+                                         {"imu", counts.imu},          {"poses", counts.poses},
                                          {"external", counts.external}};
     fmt::print("{}\n", json.dump(2));
   } else {

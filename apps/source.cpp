@@ -97,7 +97,8 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   command
       .add_option("--topic", options.topics,
-                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height or velocity; NAME none leaves "
+                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height or "
+                  "velocity; NAME none leaves "
                   "it out; may be repeated "
                   "[the only topic of a fitting type]")
       ->allow_extra_args(false);

@@ -21,9 +21,9 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;                        ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;            ///< calibration file; "" where not given
-  std::filesystem::path imu;              ///< file with IMU samples; "" where not given
+  std::string rig;                                             ///< name of a shipped rig; "" where not given
+  std::filesystem::path calib;                                 ///< calibration file; "" where not given
+  std::filesystem::path imu;                                   ///< file with IMU samples; "" where not given
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                   ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given

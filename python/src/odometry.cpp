@@ -21,11 +21,14 @@ OdometryConfig with_options(const OptionValues& options) {
 
 SensorDelays delays_of(const std::map<std::string, double>& given, bool in_order) {
   SensorDelays delays = in_order ? kInOrder : SensorDelays{};
-  const std::map<std::string, double*> known = {
-      {"events", &delays.events_s}, {"frames", &delays.frames_s}, {"imu", &delays.imu_s}, {"external", &delays.external_s}};
+  const std::map<std::string, double*> known = {{"events", &delays.events_s},
+                                                {"frames", &delays.frames_s},
+                                                {"imu", &delays.imu_s},
+                                                {"external", &delays.external_s}};
   for (const auto& [sensor, seconds] : given) {
     const auto found = known.find(sensor);
-    if (found == known.end()) throw InputError::format("delays: '{}' is none of events, frames, imu and external", sensor);
+    if (found == known.end())
+      throw InputError::format("delays: '{}' is none of events, frames, imu and external", sensor);
     *found->second = seconds;
   }
   return delays;
@@ -66,7 +69,8 @@ void add_imu(PyOdometry& self, const py::array& samples) {
 }
 
 /// One number for all columns, or one each.
-std::vector<double> each_column(const ExternalSensor& sensor, const char* what, const std::variant<double, std::vector<double>>& given) {
+std::vector<double> each_column(const ExternalSensor& sensor, const char* what,
+                                const std::variant<double, std::vector<double>>& given) {
   const std::size_t n = sensor.columns.size();
   if (const auto* one = std::get_if<double>(&given)) {
     if (n == 1 || std::string_view(what) == "sigma") return std::vector<double>(n, *one);
@@ -87,7 +91,8 @@ void bind_external(py::class_<PyOdometry>& odometry) {
       const py::gil_scoped_release free;
       self.odometry.add(sample);
     };
-    odometry.def(("add_" + name).c_str(), add, py::arg("t"), py::arg(sensor.name.data()), py::arg("sigma") = Numbers(0.0));
+    odometry.def(("add_" + name).c_str(), add, py::arg("t"), py::arg(sensor.name.data()),
+                 py::arg("sigma") = Numbers(0.0));
   }
 }
 

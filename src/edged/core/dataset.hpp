@@ -47,8 +47,8 @@ struct DatasetInfo {
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
-/// ties broken external samples, IMU, events, frame. Streams: holds a bounded part of the recording in memory at any time; where that
-/// does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
+/// ties broken external samples, IMU, events, frame. Streams: holds a bounded part of the recording in memory at any
+/// time; where that does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
 class Dataset {
  public:
   virtual ~Dataset() = default;

@@ -131,7 +131,8 @@ void Intake::pass_on(Measurement measurement) {
 std::array<JumpGate<ExternalSample>, kExternalSensors> Intake::fresh_gates() {
   return []<std::size_t... I>(std::index_sequence<I...>) {
     return std::array{(static_cast<void>(I), JumpGate<ExternalSample>(false))...};
-  }(std::make_index_sequence<kExternalSensors>());
+  }
+  (std::make_index_sequence<kExternalSensors>());
 }
 
 void Intake::begin_time() {

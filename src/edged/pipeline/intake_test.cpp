@@ -173,7 +173,6 @@ TEST(Intake, EventsUnderTheMaskNeverComeIn) {
   EXPECT_EQ(intake.counters().events_outside, 0U);
 }
 
-
 Measurement height_at(int ms, double height_m = 1.0) { return ExternalSample(HeightSample{at_ms(ms), height_m, 0.1}); }
 
 TEST(Intake, ExternalSamplesThatNoSensorMeasuresAreCounted) {

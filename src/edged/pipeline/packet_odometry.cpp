@@ -299,7 +299,7 @@ bool PacketOdometry::is_quiet(const Packet& packet) const {
 EstimatorResult PacketOdometry::estimate(const Packet& packet, Preintegration motion,
                                          std::span<const ChannelView> views, bool keyframe) {
   const auto timer = timings_.measure("estimate");
-  EstimatorInput input{packet.t, std::move(motion), {}, keyframe, is_quiet(packet), depth_.for_factor(packet.t),
+  EstimatorInput input{packet.t,       std::move(motion), {}, keyframe, is_quiet(packet), depth_.for_factor(packet.t),
                        packet.external};
   for (const ChannelView& view : views) {
     view.channel->T_W_Blast = T_W_B_of(*view.channel);

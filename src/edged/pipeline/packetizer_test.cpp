@@ -397,7 +397,6 @@ TEST(Packetizer, GivesNothingForAnEmptyRecording) {
   EXPECT_TRUE(run(Stream().events(0, 100, 1).frames(0, 100, 10), Mode::Fused).packets.empty());
 }
 
-
 Measurement height_at(double ms) { return ExternalSample(HeightSample{at_ms(ms), ms, 0.1}); }
 
 Stream with_heights(Stream stream, double from, double to, double step) {

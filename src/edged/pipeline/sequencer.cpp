@@ -34,10 +34,8 @@ auto& line_of(Lines& lines, const std::string& camera) {
 }  // namespace
 
 void SensorDelays::validate() const {
-  for (const auto& [name, delay] : {std::pair("events_s", events_s),
-                                   {"frames_s", frames_s},
-                                   {"imu_s", imu_s},
-                                   {"external_s", external_s}}) {
+  for (const auto& [name, delay] :
+       {std::pair("events_s", events_s), {"frames_s", frames_s}, {"imu_s", imu_s}, {"external_s", external_s}}) {
     if (!(delay >= 0.0 && delay <= 10.0))
       throw InputError::format("delay {} is {}, outside its range 0 .. 10 s", name, delay);
   }
@@ -135,9 +133,8 @@ std::optional<Measurement> Sequencer::next() {
   Line<EventBatch>* const events = first_of(events_);
   Line<Frame>* const frames = first_of(frames_);
   Line<ExternalSample>* const external = first_of(external_);
-  const NextStream next =
-      next_stream(earliest(imu_), events ? earliest(*events) : Timestamp::max(),
-                  frames ? earliest(*frames) : Timestamp::max(), earliest(*external));
+  const NextStream next = next_stream(earliest(imu_), events ? earliest(*events) : Timestamp::max(),
+                                      frames ? earliest(*frames) : Timestamp::max(), earliest(*external));
   switch (next.stream) {
     case NextStream::Stream::External:
       return pop(*external);

@@ -68,7 +68,7 @@ class Sequencer {
   std::vector<Line<Frame>> frames_;       // one a camera
   Line<ImuSample> imu_;
   std::vector<Line<ExternalSample>> external_;  // one a sensor, as in ExternalSample; their stamps move no other line
-  std::size_t bytes_ = 0;  // of the events and frames that wait
+  std::size_t bytes_ = 0;                       // of the events and frames that wait
   std::optional<Timestamp> newest_;
   bool finished_ = false;
 };

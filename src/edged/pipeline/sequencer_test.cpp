@@ -197,7 +197,6 @@ TEST(SensorDelays, AreRefusedWhereTheyAreNone) {
   EXPECT_THROW(SensorDelays{.imu_s = 11}.validate(), InputError);
 }
 
-
 Measurement height(int ms) { return ExternalSample(HeightSample{millisecond(ms), 1.0, 0.1}); }
 
 TEST(Sequencer, AnExternalSampleComesBeforeAllElseOfItsStamp) {

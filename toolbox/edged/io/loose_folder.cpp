@@ -23,8 +23,7 @@ namespace {
 std::vector<std::string> files_in(const SourcePath& folder) {
   std::vector<std::string> files = folder.names();
   const std::set<std::string> external = external_file_names();  // four numbers a line look like an event
-  std::erase_if(files,
-                [&](const std::string& name) { return external.contains(name) || !(folder / name).is_file(); });
+  std::erase_if(files, [&](const std::string& name) { return external.contains(name) || !(folder / name).is_file(); });
   return files;
 }
 

@@ -26,8 +26,13 @@ namespace {
 constexpr Duration kMicrosecond = std::chrono::microseconds(1);
 
 constexpr std::array kWritable = {
-    WritableFormat{
-        .name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .external = true, .open = write_ecd},
+    WritableFormat{.name = "ecd",
+                   .extension = "",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .external = true,
+                   .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
     WritableFormat{.name = "aedat4",

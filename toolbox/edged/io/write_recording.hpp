@@ -17,10 +17,10 @@
 namespace edged {
 
 struct WritableFormat {
-  std::string_view name;                                   ///< "ecd"
-  std::string_view extension;                              ///< of files, with its dot; "" for a folder
+  std::string_view name;       ///< "ecd"
+  std::string_view extension;  ///< of files, with its dot; "" for a folder
   bool frames = false, imu = false, ground_truth = false, external = false;  ///< held besides events
-  Duration tick = Duration(1);                             ///< stamps of events are multiples of it
+  Duration tick = Duration(1);                                               ///< stamps of events are multiples of it
   std::unique_ptr<RecordingWriter> (*open)(const WriterSetup& setup) = nullptr;
 };
 

@@ -137,7 +137,8 @@ std::optional<Measurement> MeasurementQueue::pop() {
 }
 
 std::optional<Measurement> MeasurementQueue::take() {
-  const std::uint64_t batch = place_of_first(batches_), frame = place_of_first(frames_), sample = place_of_first(samples_);
+  const std::uint64_t batch = place_of_first(batches_), frame = place_of_first(frames_),
+                      sample = place_of_first(samples_);
   if (batch < std::min(frame, sample)) {
     events_ -= batches_.front().second.events.size();
     return take_first(batches_);

@@ -90,7 +90,7 @@ class MeasurementQueue {
   std::condition_variable more_, less_;  ///< to pop; waits, for push to go on
   Line<EventBatch> batches_;             // none empty
   Line<Frame> frames_;
-  Line<Measurement> samples_;            // of the IMU and of external sensors
+  Line<Measurement> samples_;  // of the IMU and of external sensors
   std::uint64_t next_place_ = 0;
   std::size_t events_ = 0, frame_bytes_ = 0;
   Timestamp newest_ = Timestamp::min();

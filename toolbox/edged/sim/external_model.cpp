@@ -20,7 +20,8 @@ const ExternalErrors& errors_of(const ExternalModelConfig& config, std::size_t i
 void ExternalErrors::visit(ConfigFields& fields, const char* unit) {
   fields.add("rate_hz", rate_hz, {"Hz", 0, 1000, "samples per second; 0: there is no such sensor"});
   fields.add("noise", noise, {unit, 0, 100, "standard deviation of a sample, which it tells"});
-  fields.add("walk", walk, {unit, 0, 100, "random walk of its offset, per square root of a second; it tells nothing of it"});
+  fields.add("walk", walk,
+             {unit, 0, 100, "random walk of its offset, per square root of a second; it tells nothing of it"});
   fields.add("scale_error", scale_error, {"1", -0.9, 9, "reads 1 + this times the truth"});
   fields.add("outlier_share", outlier_share, {"1", 0, 1, "share of the samples that are wrong"});
   fields.add("outlier", outlier, {unit, 0, 1000, "standard deviation of these"});
@@ -56,7 +57,8 @@ double ExternalModel::sample_s() const {
 
 ExternalNumbers ExternalModel::true_numbers(const Kinematics& truth) const {
   if (index_ == 0) return {{truth.T_W_B.translation().z() + config_.height.zero_m}, {errors_.noise}};
-  const Eigen::Vector3d v_B = truth.T_W_B.rotation().conjugate() * truth.v_W + truth.omega_B.cross(config_.velocity.p_B_S);
+  const Eigen::Vector3d v_B =
+      truth.T_W_B.rotation().conjugate() * truth.v_W + truth.omega_B.cross(config_.velocity.p_B_S);
   return {{v_B.x(), v_B.y(), v_B.z()}, std::vector<double>(3, errors_.noise)};
 }
 

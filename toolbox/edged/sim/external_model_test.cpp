@@ -108,11 +108,13 @@ TEST(ExternalModel, TheSimulatorGivesItsSamplesInOrderAndChangesNothingElse) {
   std::size_t heights = 0, velocities = 0;
   Timestamp last = Timestamp::min();
   while (const auto m = plain.next())
-    if (const auto* batch = std::get_if<EventBatch>(&*m)) events.insert(events.end(), batch->events.begin(), batch->events.end());
+    if (const auto* batch = std::get_if<EventBatch>(&*m))
+      events.insert(events.end(), batch->events.begin(), batch->events.end());
   while (const auto m = with.next()) {
     EXPECT_GE(*first_stamp(*m), last);
     last = *last_stamp(*m);
-    if (const auto* batch = std::get_if<EventBatch>(&*m)) same.insert(same.end(), batch->events.begin(), batch->events.end());
+    if (const auto* batch = std::get_if<EventBatch>(&*m))
+      same.insert(same.end(), batch->events.begin(), batch->events.end());
     if (const auto* sample = std::get_if<ExternalSample>(&*m)) ++(sample->index() == 0 ? heights : velocities);
   }
   EXPECT_EQ(heights, 38U);

@@ -37,8 +37,8 @@ struct CameraCheck {
   std::optional<GyroAgreement> agreement;  ///< nothing where there was too little to compare
 };
 
-/// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs. calibrated: there
-/// is a calibration, though maybe of no camera that is recorded.
+/// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs.
+/// calibrated: there is a calibration, though maybe of no camera that is recorded.
 std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras);
 
 }  // namespace edged

@@ -44,8 +44,9 @@ void judge_external(const ExternalSurveys& surveys, const StreamSurvey& imu, std
       out.push_back({Severity::Error, fmt::format("{}: none of its time is covered by the IMU", name),
                      "stamp it on the clock of the IMU, or shift its stamps"});
     if (s.constant >= kFrozen)
-      out.push_back({Severity::Warning, fmt::format("{}: the same numbers for {:.1f} s", name, to_seconds(s.constant)),
-                     "a sensor that is frozen or out of range: leave these samples out; one at rest for that long has noise"});
+      out.push_back(
+          {Severity::Warning, fmt::format("{}: the same numbers for {:.1f} s", name, to_seconds(s.constant)),
+           "a sensor that is frozen or out of range: leave these samples out; one at rest for that long has noise"});
     const bool speed = sensor.unit == "m/s";
     double most = 0.0;
     for (std::size_t i = 0; i < s.most.size(); ++i) most = std::max({most, s.most[i], -s.least[i]});

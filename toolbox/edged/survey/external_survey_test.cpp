@@ -16,8 +16,7 @@ namespace {
 /// Heights at 10 Hz for 20 s.
 ExternalSurvey survey_of(const std::function<double(double)>& height_m, double sigma_m = 0.0) {
   ExternalSurveyor surveyor;
-  for (int i = 0; i < 200; ++i)
-    surveyor.add(HeightSample{timestamp_from_seconds(0.1 * i), height_m(0.1 * i), sigma_m});
+  for (int i = 0; i < 200; ++i) surveyor.add(HeightSample{timestamp_from_seconds(0.1 * i), height_m(0.1 * i), sigma_m});
   return surveyor.result();
 }
 
@@ -49,7 +48,8 @@ TEST(ExternalSurvey, FindsRateRangeAndNoiseOfAClimb) {
 }
 
 TEST(ExternalSurvey, AFrozenSensorIsFound) {
-  EXPECT_TRUE(says(survey_of([](double t) { return t < 8.0 ? noisy(t, 0.1) : 3.0; }), Severity::Warning, "the same numbers"));
+  EXPECT_TRUE(
+      says(survey_of([](double t) { return t < 8.0 ? noisy(t, 0.1) : 3.0; }), Severity::Warning, "the same numbers"));
 }
 
 TEST(ExternalSurvey, MillimetresAreFoundByTheSpeedOfTheClimb) {

@@ -64,7 +64,8 @@ StampedPose pose_from(Timestamp t, WireReader& message) {
   return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
 }
 
-/// ICAO standard atmosphere below 11 km, with the pressure at sea level that it assumes: heights have a zero of their own.
+/// ICAO standard atmosphere below 11 km, with the pressure at sea level that it assumes: heights have a zero of their
+/// own.
 HeightSample height_of_pressure(Timestamp t, double pressure_pa, double variance_pa2) {
   constexpr double kSeaLevel_pa = 101325.0, kScale_m = 44330.77, kExponent = 0.190263;
   if (!(pressure_pa > 2e4 && pressure_pa < 1.2e5)) throw Damage("no pressure of the air in Pa");

@@ -32,7 +32,8 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
       {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
   for (std::size_t role = 0; role < kRoleNames.size(); ++role)
-    if (choice_.topics[role] && external_sensor_of(static_cast<Role>(role))) info_.external.emplace_back(kRoleNames[role]);
+    if (choice_.topics[role] && external_sensor_of(static_cast<Role>(role)))
+      info_.external.emplace_back(kRoleNames[role]);
   info_.pose_frame = truth_frame();
 }
 

@@ -35,7 +35,9 @@ std::optional<Role> role_of(const std::string& type) {
   return found == roles.end() ? std::nullopt : std::optional(found->second);
 }
 
-const ExternalSensor* external_sensor_of(Role role) { return find_external_sensor(kRoleNames[static_cast<std::size_t>(role)]); }
+const ExternalSensor* external_sensor_of(Role role) {
+  return find_external_sensor(kRoleNames[static_cast<std::size_t>(role)]);
+}
 
 namespace {
 
@@ -44,9 +46,7 @@ bool fits(const std::string& type, Role role) {
 }
 
 /// Without being asked for: a bag may hold several barometers, and twists that are commands.
-bool is_chosen_by_itself(Role role, std::size_t fitting) {
-  return fitting == 1 && role != Role::Velocity;
-}
+bool is_chosen_by_itself(Role role, std::size_t fitting) { return fitting == 1 && role != Role::Velocity; }
 
 std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
   std::vector<std::size_t> found;
@@ -112,7 +112,8 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& 
       return std::ranges::any_of(wanted, [&](const auto& other) { return other.second == topics[i].name; });
     });
     if (is_chosen_by_itself(role, fitting.size())) choice.topics[r] = fitting.front();
-    if (fitting.size() > 1 && !external_sensor_of(role)) ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
+    if (fitting.size() > 1 && !external_sensor_of(role))
+      ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
   }
   if (!ties.empty())
     throw InputError::format("{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none){}", file,

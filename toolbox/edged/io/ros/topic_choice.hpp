@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "edged/io/ros/message_source.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/io/ros/message_source.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
@@ -39,10 +39,10 @@ struct TopicChoice {
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// The only topic of a fitting type takes its role, but for velocity: a twist may be a command, and its axes are those of
-/// whatever sensor it is, so that its topic has to be named (an Odometry, too). Throws InputError that lists them where there are several, where
-/// the bag lacks a wanted one, where no sensor is left, and for
-/// the event messages of 2015.
+/// The only topic of a fitting type takes its role, but for velocity: a twist may be a command, and its axes are those
+/// of whatever sensor it is, so that its topic has to be named (an Odometry, too). Throws InputError that lists them
+/// where there are several, where the bag lacks a wanted one, where no sensor is left, and for the event messages of
+/// 2015.
 TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
 
 }  // namespace edged

@@ -33,8 +33,8 @@ struct ExternalForm {
 
 /// To the sensor's unit; nothing for a unit that is not known.
 std::optional<double> external_scale(std::string_view unit, std::string_view wanted) {
-  static const std::map<std::string_view, double> lengths = {{"m", 1.0},      {"cm", 0.01},   {"mm", 0.001},
-                                                             {"km", 1000.0},  {"ft", 0.3048}, {"feet", 0.3048}};
+  static const std::map<std::string_view, double> lengths = {{"m", 1.0},     {"cm", 0.01},   {"mm", 0.001},
+                                                             {"km", 1000.0}, {"ft", 0.3048}, {"feet", 0.3048}};
   static const std::map<std::string_view, double> speeds = {
       {"m/s", 1.0}, {"cm/s", 0.01}, {"mm/s", 0.001}, {"ft/s", 0.3048}, {"km/h", 1.0 / 3.6}, {"kn", 1852.0 / 3600.0}};
   const auto& known = wanted == "m" ? lengths : speeds;
@@ -213,7 +213,8 @@ std::unique_ptr<Dataset> with_external_file(std::unique_ptr<Dataset> recording, 
 std::unique_ptr<Dataset> with_external_files(std::unique_ptr<Dataset> recording, const SourcePath& folder) {
   for (const ExternalSensor& sensor : external_sensors()) {
     const std::string name(sensor.name);
-    for (const SourcePath& file : {folder / (name + ".txt"), folder / (name + ".csv"), folder / (name + "0") / "data.csv"}) {
+    for (const SourcePath& file :
+         {folder / (name + ".txt"), folder / (name + ".csv"), folder / (name + "0") / "data.csv"}) {
       if (!file.is_file()) continue;
       recording = with_external_file(std::move(recording), sensor, file);
       break;

@@ -70,7 +70,8 @@ TEST_F(ExternalText, ColumnsAndUnitsMayBeNamed) {
 
 TEST_F(ExternalText, AnEurocFolderHasItsOwnPlaceAndNanoseconds) {
   std::string imu = "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n";
-  for (int i = 0; i < 11; ++i) imu += std::to_string(1'400'000'000'000'000'000 + 100'000'000L * i) + ",0,0,0,0,0,9.81\n";
+  for (int i = 0; i < 11; ++i)
+    imu += std::to_string(1'400'000'000'000'000'000 + 100'000'000L * i) + ",0,0,0,0,0,9.81\n";
   folder_.write("mav0/imu0/data.csv", imu);
   folder_.write("mav0/height0/data.csv", "#timestamp [ns],height [m]\n1400000000150000000,7\n1400000000250000000,8\n");
   const Recording recording = open_recording(folder_.path());
@@ -81,7 +82,8 @@ TEST_F(ExternalText, AnEurocFolderHasItsOwnPlaceAndNanoseconds) {
 }
 
 TEST_F(ExternalText, DamagedLinesAreCountedAndLeftOut) {
-  const auto all = read("height.txt", "1.05 2.5\n1.06 x\n1.07 1e9\n1.08 1 -0.5\n1.15 2.6 0.1 0.2\n1.14\n1.25 2.7\n1.24 2.7\n1.35 2");
+  const auto all =
+      read("height.txt", "1.05 2.5\n1.06 x\n1.07 1e9\n1.08 1 -0.5\n1.15 2.6 0.1 0.2\n1.14\n1.25 2.7\n1.24 2.7\n1.35 2");
   EXPECT_EQ(all.size(), 2U);
   EXPECT_EQ(repairs_["height: unreadable line"], 5U);
   EXPECT_EQ(repairs_["height: out of order, dropped"], 1U);

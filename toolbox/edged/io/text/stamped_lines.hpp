@@ -61,7 +61,8 @@ class StampedLines {
       } else if (time_of(*item) == time_of(*held_)) {
         damage_.mended(line_, "duplicate stamp", "same stamp as the line above; the first is kept");
       } else {
-        const bool held_is_wrong = time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
+        const bool held_is_wrong =
+            time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
         damage_.bad(line_, "out of order, dropped", "stamp goes back in time");
         if (held_is_wrong) held_ = std::move(item);
       }
