@@ -7,23 +7,11 @@
 #include <vector>
 
 #include "edged/rig.hpp"
+#include "edged/survey/finding.hpp"
 #include "edged/survey/gyro_agreement.hpp"
 #include "edged/survey/survey.hpp"
 
 namespace edged {
-
-enum class Severity {
-  Good,     ///< looked at and found in order
-  Note,     ///< worth knowing
-  Warning,  ///< costs accuracy
-  Error     ///< a run fails or is wrong
-};
-
-struct Finding {
-  Severity severity = Severity::Good;
-  std::string text;    ///< one line with numbers
-  std::string remedy;  ///< what to do; empty where nothing is
-};
 
 /// What to do about a camera whose inverse transform fits, whoever found that.
 inline constexpr const char* kTurnRound =

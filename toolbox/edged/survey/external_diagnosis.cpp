@@ -5,6 +5,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "edged/core/external_sensor.hpp"
 
 namespace edged {

@@ -5,7 +5,8 @@
 
 #include <vector>
 
-#include "edged/survey/diagnosis.hpp"
+#include "edged/survey/external_survey.hpp"
+#include "edged/survey/finding.hpp"
 
 namespace edged {
 
