@@ -4,8 +4,8 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
+#include <utility>
 
 #include "edged/core/config.hpp"
 #include "edged/core/external_sensor.hpp"

@@ -3,6 +3,7 @@
 // A recording with the samples of a text file among its own measurements. Internal to io.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>

@@ -24,7 +24,7 @@ constexpr double kNotMeasured = std::numeric_limits<double>::infinity();
 /// Where the numbers of a line stand, and what turns them into our units.
 struct ExternalForm {
   std::size_t t = 0;
-  TimeUnit unit = TimeUnit::Seconds;
+  std::optional<TimeUnit> unit = std::nullopt;  ///< of the stamps, where it is known
   std::vector<std::size_t> values;
   std::vector<double> scales;
   std::vector<std::size_t> sigmas;  ///< none, one for all values, or one each
@@ -97,7 +97,6 @@ std::optional<ExternalForm> form_by_heading(const std::string& heading, const Ex
   };
   ExternalForm form;
   std::optional<std::size_t> t;
-  std::optional<TimeUnit> unit;
   std::map<std::string, std::pair<std::size_t, std::string>> places;
   std::size_t place = 0;
   for (const std::string& column : heading_fields(heading)) {
@@ -105,7 +104,7 @@ std::optional<ExternalForm> form_by_heading(const std::string& heading, const Ex
     if (name.empty()) continue;  // a '#' by itself
     if (is_time(name) && !t) {
       t = place;
-      unit = parse_time_unit(column_unit);
+      form.unit = parse_time_unit(column_unit);
     }
     places.try_emplace(name, place++, column_unit);
   }
@@ -132,8 +131,6 @@ std::optional<ExternalForm> form_by_heading(const std::string& heading, const Ex
   if (const auto one = places.find("sigma"); form.sigmas.empty() && one != places.end())
     form.sigmas = {one->second.first};
   form.t = *t;
-  if (unit) form.unit = *unit;
-  if (!unit) form.unit = TimeUnit::Seconds;
   return form;
 }
 
@@ -146,9 +143,9 @@ ExternalForm external_form(const ExternalSensor& sensor, const SourcePath& file)
     named->scales.assign(sensor.columns.size(), 1.0);
     named->open_end = true;
   }
-  const bool said = heading.find('[') != std::string::npos && !named->open_end;
-  if (const auto stamp = parse_number(FieldReader(first).next()); stamp && !said && named->t == 0)
-    named->unit = unit_by_size(*stamp);
+  FieldReader fields(first);
+  for (std::size_t i = 0; i < named->t; ++i) fields.next();
+  if (!named->unit) named->unit = unit_by_size(parse_number(fields.next()).value_or(0.0));
   return *named;
 }
 
@@ -169,7 +166,7 @@ std::optional<ExternalSample> parse_external(std::string_view line, const Extern
     for (std::size_t i = n + 1; i < fields.size(); ++i) sigmas.push_back(i);
   if (!sigmas.empty() && sigmas.size() != 1 && sigmas.size() != n) return std::nullopt;
   const auto field = [&fields](std::size_t i) { return i < fields.size() ? fields[i] : std::string_view(); };
-  const std::optional<Timestamp> t = parse_stamp(field(form.t), form.unit);
+  const std::optional<Timestamp> t = parse_stamp(field(form.t), form.unit.value_or(TimeUnit::Seconds));
   if (!t) return std::nullopt;
   ExternalNumbers numbers{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
   for (std::size_t i = 0; i < n; ++i) {
