@@ -183,9 +183,10 @@ TEST(Intake, ExternalSamplesThatNoSensorMeasuresAreCounted) {
   intake.add(height_at(3, 1e7));
   intake.add(ExternalSample(HeightSample{Timestamp::max(), 1.0, 0.1}));
   intake.add(ExternalSample(VelocitySample{at_ms(4), {1, 0, 0}, {0.1, -0.1, 0.1}}));
+  intake.add(ImuSample{at_ms(5), {0, 0, 0}, {0, 0, 9.81}});
   Received all;
   all.take(intake);
-  EXPECT_EQ(all.stamps, (std::vector<Timestamp>{at_ms(0), at_ms(1)}));
+  EXPECT_EQ(all.stamps, (std::vector<Timestamp>{at_ms(0), at_ms(1), at_ms(5)}));
   EXPECT_EQ(intake.counters().external_unfit, 3U);
   EXPECT_EQ(intake.counters().absurd_stamps, 1U);
 }
@@ -193,7 +194,9 @@ TEST(Intake, ExternalSamplesThatNoSensorMeasuresAreCounted) {
 TEST(Intake, AnotherClockOfAnExternalSensorTouchesNoOtherSensor) {
   for (const int offset_ms : {-kHour, kHour}) {
     Intake plain(two_cameras(), two_cameras(), {}), intake(two_cameras(), two_cameras(), {});
-    const Received expected = received(plain, 0, 2000, right);
+    Received expected = received(plain, 0, 2000, right);
+    plain.finish();
+    expected.take(plain);
     Received all;
     for (int ms = 0; ms < 2000; ms += 20) {
       intake.add(height_at(ms + offset_ms));
@@ -201,6 +204,8 @@ TEST(Intake, AnotherClockOfAnExternalSensorTouchesNoOtherSensor) {
       all.events += some.events, all.frames += some.frames, all.samples += some.samples;
       EXPECT_TRUE(some.begins.empty());
     }
+    intake.finish();
+    all.take(intake);
     EXPECT_EQ(all.events, expected.events);
     EXPECT_EQ(all.frames, expected.frames);
     EXPECT_EQ(all.samples, expected.samples);

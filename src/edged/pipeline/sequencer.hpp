@@ -17,8 +17,8 @@ namespace edged {
 
 /// Each sensor's own measurements in order, those of different sensors as they come. What a sensor may still precede is
 /// held back; what comes later than its delay goes out at once, out of order, for the packetizer to use or to count.
-/// With kInOrder all goes out as it came. The order that comes out does not depend on how the sensors lag, as long as
-/// they keep to their delays.
+/// With kInOrder all goes out as it came, a sample of an external sensor with the next measurement of another. The
+/// order that comes out does not depend on how the sensors lag, as long as they keep to their delays.
 ///
 /// When half of most_bytes waits, no sensor is waited for any longer; beyond most_bytes of events and frames, or a
 /// million IMU samples, nothing more is taken.
