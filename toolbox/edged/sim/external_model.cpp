@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-constexpr std::uint64_t kStream = 20;  // and one more a sensor
+constexpr std::uint64_t kFirstExternalStream = 20;  // and one more a sensor
 
 const ExternalErrors& errors_of(const ExternalModelConfig& config, std::size_t index) {
   return index == 0 ? config.height.errors : config.velocity.errors;
@@ -47,7 +47,7 @@ ExternalModel::ExternalModel(const ExternalModelConfig& config, std::size_t inde
       index_(index),
       errors_(errors_of(config, index)),
       shift_(shift + duration_from_seconds(1e-3 * errors_.late_ms)),
-      random_(seed, kStream + index) {}
+      random_(seed, kFirstExternalStream + index) {}
 
 /// Between the samples of the IMU, as a sensor that nothing is in step with.
 double ExternalModel::sample_s() const {
