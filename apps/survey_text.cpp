@@ -96,7 +96,7 @@ nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
   return json;
 }
 
-std::string external_text(const std::string& name, const ExternalSurvey& s) {
+std::string external_survey_text(const std::string& name, const ExternalSurvey& s) {
   const ExternalSensor& sensor = *find_external_sensor(name);
   std::string text = survey_line(name, stream_text(s.stream)) + survey_line("", gap_text(s.stream));
   std::string range;
@@ -139,7 +139,7 @@ std::string to_text(const Survey& s) {
         survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
   }
   if (s.imu.count > 0) text += imu_text(s);
-  for (const auto& [name, survey] : s.external) text += external_text(name, survey);
+  for (const auto& [name, survey] : s.external) text += external_survey_text(name, survey);
   if (s.truth && s.truth->stream.count > 0)
     text += survey_line("ground truth", fmt::format("{}, path {:.2f} m, of {}", stream_text(s.truth->stream),
                                                     s.truth->path_m, s.truth->frame));
