@@ -42,7 +42,7 @@ TEST(ExternalSurvey, FindsRateRangeAndNoiseOfAClimb) {
   EXPECT_NEAR(survey.stream.rate_hz(), 10.0, 0.1);
   EXPECT_NEAR(survey.most[0] - survey.least[0], 10.0, 1.5);
   EXPECT_NEAR(survey.noise, 0.2, 0.03);
-  EXPECT_DOUBLE_EQ(survey.sigma, 0.2);
+  EXPECT_NEAR(survey.sigma, 0.2, 1e-9);
   ASSERT_EQ(findings(survey).size(), 1U);
   EXPECT_TRUE(says(survey, Severity::Good, "height at 10 Hz"));
 }
