@@ -149,8 +149,9 @@ ExternalForm external_form(const ExternalSensor& sensor, const SourcePath& file)
   return *named;
 }
 
-/// A finite number; infinite where it says that it is not measured.
+/// A finite number, 0 for none; infinite where it says that it is not measured.
 std::optional<double> sigma_of(std::string_view field) {
+  if (field.empty()) return 0.0;
   if (lower_case(field) == "inf" || lower_case(field) == "infinity") return kNotMeasured;
   const auto sigma = parse_number(field);
   return sigma && *sigma >= 0.0 ? sigma : std::nullopt;
