@@ -32,9 +32,9 @@ bool goes(const Factor& factor, const std::set<BlockKey>& leaving, StateId oldes
 }
 
 /// The terms that go into the prior when the oldest state leaves. inherited: the landmarks anchored there, and whether
-/// the heir goes on with them; of landmarks anchored in younger keyframes only an observation goes.
+/// the new_anchor goes on with them; of landmarks anchored in younger keyframes only an observation goes.
 Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
-                  StateId heir) {
+                  StateId new_anchor) {
   const StateId oldest = window.oldest_id();
   Cost cost = cost_of(window, Observations::OfKeyframes);
   std::erase_if(cost.factors, [&](const Factor& factor) { return !goes(factor, leaving, oldest); });
@@ -42,7 +42,7 @@ Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const
   for (LandmarkTerm& term : cost.landmarks) {
     // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
     if (!inherited.at(term.id)) continue;
-    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) { return residual.seen > heir; });
+    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) { return residual.seen > new_anchor; });
   }
   return cost;
 }
@@ -65,9 +65,10 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
 }
 
 /// Keyframes that stay keep what they saw of a landmark whose observations there go.
-void keep_points(Window& window, FeatureId id, const Feature& feature, std::optional<StateId> heir) {
+void keep_points(Window& window, FeatureId id, const Feature& feature, std::optional<StateId> new_anchor) {
   for (const auto& [state, observation] : feature.seen) {
-    if (state == *feature.anchor || (heir && state >= *heir) || !window.states().at(state).keyframe) continue;
+    if (state == *feature.anchor || (new_anchor && state >= *new_anchor) || !window.states().at(state).keyframe)
+      continue;
     window.keep_point(state, feature.camera, point_of(window, id, feature, state));
   }
 }
@@ -104,7 +105,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
 }
 
 KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
-  const StateId id = window.oldest_id(), heir = youngest_keyframe(window);
+  const StateId id = window.oldest_id(), new_anchor = youngest_keyframe(window);
   KeyframeRecord record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
   const std::optional<BlockKey> scale = window.scale_block();
@@ -112,10 +113,10 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
   std::map<FeatureId, bool> inherited;
   for (const auto& [feature_id, feature] : window.features()) {
     if (feature.anchor != id) continue;
-    inherited[feature_id] = heir != id && feature.seen.contains(heir);
-    keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(heir) : std::nullopt);
+    inherited[feature_id] = new_anchor != id && feature.seen.contains(new_anchor);
+    keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(new_anchor) : std::nullopt);
   }
-  Cost cost = cost_leaving(window, leaving, inherited, heir);
+  Cost cost = cost_leaving(window, leaving, inherited, new_anchor);
   LinearPrior scale_walk;
   if (scale) {
     const auto next = std::next(window.states().begin());
@@ -123,14 +124,14 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
     cost.factors.push_back(
         {FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
   }
-  std::map<FeatureId, double> inverse_depths;  // in the heir
+  std::map<FeatureId, double> inverse_depths;  // in the new_anchor
   for (const auto& [feature_id, seen_by_heir] : inherited) {
     if (!seen_by_heir) continue;
     const Feature& feature = window.features().at(feature_id);
-    const auto there = inverse_depth_in(window, heir, feature.camera, window.position(feature), config);
+    const auto there = inverse_depth_in(window, new_anchor, feature.camera, window.position(feature), config);
     if (there) inverse_depths.emplace(feature_id, *there);
   }
-  window.drop_oldest(marginalize(window, cost, leaving), heir, inverse_depths);
+  window.drop_oldest(marginalize(window, cost, leaving), new_anchor, inverse_depths);
   return record;
 }
 

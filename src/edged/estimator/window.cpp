@@ -155,12 +155,12 @@ void Window::keep_point(StateId id, std::size_t camera, const KeyframePoint& poi
   state(id).kept[camera].push_back(point);
 }
 
-void Window::drop_oldest(LinearPrior prior, StateId heir, const std::map<FeatureId, double>& inherited) {
+void Window::drop_oldest(LinearPrior prior, StateId new_anchor, const std::map<FeatureId, double>& inherited) {
   EDGED_CHECK(states_.size() > 1, "the only state cannot leave");
   const StateId oldest = oldest_id();
   for (const auto& [id, inverse_depth] : inherited) {
-    make_landmark(id, heir, inverse_depth);
-    std::erase_if(feature(id).seen, [&](const auto& observation) { return observation.first < heir; });
+    make_landmark(id, new_anchor, inverse_depth);
+    std::erase_if(feature(id).seen, [&](const auto& observation) { return observation.first < new_anchor; });
   }
   std::erase_if(features_, [&](const auto& entry) { return entry.second.anchor == oldest; });
   for (auto& [id, feature] : features_) feature.seen.erase(oldest);

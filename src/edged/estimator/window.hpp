@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/landmark_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/keyframe_record.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 
@@ -47,7 +47,7 @@ struct WindowState {
 MotionBlock motion_block(const NavState& state);
 WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe);
 
-/// A tracked corner and, once triangulated, the landmark behind it.
+/// A tracked feature and, once triangulated, the landmark behind it.
 struct Feature {
   std::size_t camera = 0;                      ///< index into Window::cameras()
   std::map<StateId, FeatureObservation> seen;  ///< in the window
@@ -106,10 +106,10 @@ class Window {
   void drop_state(StateId id, Preintegration joined);
   /// A keyframe keeps what it saw of a landmark that leaves.
   void keep_point(StateId id, std::size_t camera, const KeyframePoint& point);
-  /// The oldest state leaves, and with it the landmarks anchored there, but for those that the heir inherits: they are
-  /// anchored in it from now on, at these inverse depths, by what is seen from there on. `prior` stands for all that
-  /// has left.
-  void drop_oldest(LinearPrior prior, StateId heir, const std::map<FeatureId, double>& inherited);
+  /// The oldest state leaves, and with it the landmarks anchored there, but for those that the new_anchor inherits:
+  /// they are anchored in it from now on, at these inverse depths, by what is seen from there on. `prior` stands for
+  /// all that has left.
+  void drop_oldest(LinearPrior prior, StateId new_anchor, const std::map<FeatureId, double>& inherited);
 
   /// A feature seen by that keyframe is a landmark from now on.
   void make_landmark(FeatureId id, StateId anchor, double inverse_depth);

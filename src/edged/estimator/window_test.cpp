@@ -210,12 +210,12 @@ TEST(Window, HandsOnLandmarksOfItsOldestStateToTheHeir) {
   TestWorld world(options);
   Window window = tracked_window(world, options);
   triangulate_features(window, {});
-  const StateId oldest = window.oldest_id(), heir = oldest + 3;
+  const StateId oldest = window.oldest_id(), new_anchor = oldest + 3;
   std::map<FeatureId, double> inherited;
   std::set<FeatureId> others;
   for (const auto& [id, feature] : window.features()) {
     if (feature.anchor != oldest) continue;
-    if (feature.seen.contains(heir) && inherited.size() < 10) {
+    if (feature.seen.contains(new_anchor) && inherited.size() < 10) {
       inherited.emplace(id, 0.9 * feature.inverse_depth);
     } else {
       others.insert(id);
@@ -223,12 +223,12 @@ TEST(Window, HandsOnLandmarksOfItsOldestStateToTheHeir) {
   }
   ASSERT_EQ(inherited.size(), 10U);
   ASSERT_FALSE(others.empty());
-  window.drop_oldest(prior_of(window, {BlockKind::Pose, heir}), heir, inherited);
+  window.drop_oldest(prior_of(window, {BlockKind::Pose, new_anchor}), new_anchor, inherited);
   expect_whole(window);
   for (const auto& [id, inverse_depth] : inherited) {
     const Feature& feature = window.features().at(id);
-    EXPECT_EQ(feature.anchor, heir);
-    EXPECT_EQ(feature.seen.begin()->first, heir);  // nothing is used twice
+    EXPECT_EQ(feature.anchor, new_anchor);
+    EXPECT_EQ(feature.seen.begin()->first, new_anchor);  // nothing is used twice
     EXPECT_EQ(feature.inverse_depth, inverse_depth);
   }
   for (const FeatureId id : others) EXPECT_FALSE(window.features().contains(id));

@@ -14,8 +14,8 @@
 
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/jump_gate.hpp"
+#include "edged/counters.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/counters.hpp"
 #include "edged/pipeline/sequencer.hpp"
 #include "edged/rig.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/sim/random.hpp"
 #include "edged/sim/trajectory.hpp"

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "edged/estimator/estimator_config.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
