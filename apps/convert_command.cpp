@@ -35,28 +35,33 @@ std::string left_out_text(const WriteCounts& counts, std::string_view format) {
   add(counts.frames_left_out, "frames");
   add(counts.imu_left_out, "IMU samples");
   add(counts.poses_left_out, "true poses");
+  for (const auto& [sensor, count] : counts.external_left_out) add(count, (sensor + " samples").c_str());
   return parts.empty() ? "" : fmt::format("left out, as {} has no room for them: {}\n", format, fmt::join(parts, ", "));
 }
 
 void print_summary(const ConvertOptions& options, const WritableFormat& format, const WriteCounts& counts,
                    const std::map<std::string, std::size_t>& repairs) {
   if (options.json) {
-    const nlohmann::ordered_json json = {
-        {"from", options.source.recording},
-        {"to", options.target.string()},
-        {"format", format.name},
-        {"events", counts.events},
-        {"frames", counts.frames},
-        {"imu", counts.imu},
-        {"poses", counts.poses},
-        {"left_out",
-         {{"frames", counts.frames_left_out}, {"imu", counts.imu_left_out}, {"poses", counts.poses_left_out}}},
-        {"repairs", repairs}};
+    const nlohmann::ordered_json json = {{"from", options.source.recording},
+                                         {"to", options.target.string()},
+                                         {"format", format.name},
+                                         {"events", counts.events},
+                                         {"frames", counts.frames},
+                                         {"imu", counts.imu},
+                                         {"poses", counts.poses},
+                                         {"external", counts.external},
+                                         {"left_out",
+                                          {{"frames", counts.frames_left_out},
+                                           {"imu", counts.imu_left_out},
+                                           {"poses", counts.poses_left_out},
+                                           {"external", counts.external_left_out}}},
+                                         {"repairs", repairs}};
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses\n{}", options.target.string(), counts.events,
-             counts.frames, counts.imu, counts.poses, left_out_text(counts, format.name));
+  fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses{}\n{}", options.target.string(), counts.events,
+             counts.frames, counts.imu, counts.poses, external_text(counts.external),
+             left_out_text(counts, format.name));
   for (const auto& [kind, count] : repairs) fmt::print("repaired: {} ({})\n", kind, count);
 }
 

@@ -55,14 +55,16 @@ int run_simulate(const SimulateOptions& options) {
       write_recording(dataset, writable_format("ecd", folder), folder, simulator.calibration(), write);
   status.clear();
   if (options.json) {
-    const nlohmann::ordered_json json = {{"folder", folder.string()}, {"preset", options.preset},
-                                         {"seed", config.seed},       {"duration_s", config.duration_s},
-                                         {"events", counts.events},   {"frames", counts.frames},
-                                         {"imu", counts.imu},         {"poses", counts.poses}};
+    const nlohmann::ordered_json json = {{"folder", folder.string()},  {"preset", options.preset},
+                                         {"seed", config.seed},        {"duration_s", config.duration_s},
+                                         {"events", counts.events},    {"frames", counts.frames},
+                                         {"imu", counts.imu},          {"poses", counts.poses},
+                                         {"external", counts.external}};
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses\n", folder.string(),
-               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses);
+    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses{}\n", folder.string(),
+               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses,
+               external_text(counts.external));
   }
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

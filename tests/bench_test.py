@@ -46,7 +46,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "speed", "starts",
+        for name in ("ablation", "external", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "speed", "starts",
                      "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 

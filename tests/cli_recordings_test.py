@@ -209,6 +209,51 @@ class Recordings(WithFlight):
         self.assertIn("gyro 2,3,4 [rad/s]", edged("info", alone, "--imu", named).stdout)
         self.assert_refused(edged("info", alone, "--imu", alone / "events.txt"), "events.txt", "gx[rad/s]")
 
+    def test_height_and_velocity_are_read_from_folders_and_flags_listed_judged_and_converted(self):
+        flight = self.folder / "with_sensors"
+        settings = ("--set", "height.rate_hz=25", "--set", "velocity.rate_hz=20", "--set", "velocity.gap_at_s=0.5", "--set",
+                    "velocity.gap_s=0.6")
+        made = edged("simulate", "--duration", 2, *settings, "--out", flight, "--quiet")
+        self.assertIn("50 height samples, 28 velocity samples", made.stdout, made.stderr)
+        info = json.loads(edged("info", flight, "--json").stdout)
+        self.assertEqual((info["height"]["count"], info["velocity"]["count"], info["velocity"]["gaps"]), (50, 28, 1))
+        self.assertAlmostEqual(info["height"]["noise"], 0.1, delta=0.04)
+        self.assertIn("noise 0.1", edged("info", flight).stdout.replace("0.09", "0.1").replace("0.11", "0.1"))
+        self.assertIn("velocity at 20 Hz, 1 gaps of", edged("doctor", flight).stdout)
+        named = self.folder / "baro.csv"
+        rows = [line.split() for line in (flight / "height.txt").read_text().splitlines()[1:]]
+        named.write_text("height [mm],t [s]\n" + "".join(f"{1000 * float(r[1])},{r[0]}\n" for r in rows))
+        by_flag = json.loads(edged("info", self.flight, "--height", named, "--to", 1, "--json").stdout)
+        self.assertEqual(by_flag["height"]["count"], 25)
+        self.assertAlmostEqual(by_flag["height"]["least"][0], min(float(r[1]) for r in rows[:25]), places=6)
+        copy = self.folder / "copy"
+        self.assertEqual(edged("convert", flight, copy, "--quiet").returncode, 0)
+        for name in ("height.txt", "velocity.txt"):
+            self.assertEqual((copy / name).read_text(), (flight / name).read_text())
+        converted = edged("convert", flight, self.folder / "flight.bag", "--quiet")
+        self.assertIn("left out, as bag has no room for them: 50 height samples, 28 velocity samples", converted.stdout)
+
+    def test_a_damaged_height_file_is_mended_or_refused_with_its_remedy(self):
+        damaged = self.folder / "baro.txt"
+        damaged.write_text("0.1 1.5\n0.2 nonsense\n0.3 1.6\n")
+        repairs = json.loads(edged("info", self.flight, "--height", damaged, "--json").stdout)["repairs"]
+        self.assertEqual(repairs["height: unreadable line"], 1)
+        damaged.write_text("t,altitude\n0.1,1.5\n")
+        self.assert_refused(edged("info", self.flight, "--height", damaged), "baro.txt: line 1", "t[s],height[m]")
+        damaged.write_text("1000.1 1.5\n1000.2 1.5\n")
+        self.assert_refused(edged("run", self.flight, "--height", damaged), "baro.txt", "another clock")
+
+    def test_a_run_with_height_and_velocity_counts_them_and_shows_them(self):
+        flight = self.folder / "with_sensors"
+        settings = ("--set", "height.rate_hz=25", "--set", "velocity.rate_hz=20")
+        self.assertEqual(edged("simulate", "--duration", 3, *settings, "--out", flight, "--quiet").returncode, 0)
+        out = self.folder / "run"
+        self.assertEqual(edged("run", flight, "--out", out, "--quiet").returncode, 0)
+        external = json.loads((out / "metrics.json").read_text())["external"]
+        self.assertEqual(external["samples"], {"height": 75, "velocity": 60})
+        self.assertGreater(external["in_packets"], 120)
+        self.assertIn('"external":{"height":{"t":', (out / "report.html").read_text().replace(" ", ""))
+
     def test_a_zip_of_csv_files_is_read_like_their_folder(self):
         loose = self.folder / "loose"
         loose.mkdir()

@@ -11,11 +11,13 @@
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
 #include "edged/sim/dimmed_frames.hpp"
 #include "edged/sim/simulated_pair.hpp"
@@ -95,7 +97,8 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   command
       .add_option("--topic", options.topics,
-                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu or truth; NAME none leaves "
+                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height or "
+                  "velocity; NAME none leaves "
                   "it out; may be repeated "
                   "[the only topic of a fitting type]")
       ->allow_extra_args(false);
@@ -123,12 +126,20 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
   command.add_option("--imu", options.imu,
                      "IMU samples from a csv or txt on the recording's clock, instead of its own; columns and units by "
                      "the names in its first line, else found");
+  for (const ExternalSensor& sensor : external_sensors())
+    command.add_option(fmt::format("--{}", sensor.name), options.external[std::string(sensor.name)],
+                       fmt::format("{}: samples from a csv or txt on the recording's clock, lines of `{}` or columns "
+                                   "by the names in its first line",
+                                   sensor.what, layout_of(sensor)));
   add_reading_options(command, options);
 }
 
 Recording open_uncalibrated(const SourceOptions& options) {
   Recording recording = open_whole(options);
   if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  for (const auto& [name, file] : options.external)
+    if (!file.empty())
+      recording.dataset = with_external_file(std::move(recording.dataset), *find_external_sensor(name), file);
   PieceBounds piece = options.piece;
   if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;
   if (piece.from_s > 0.0 || piece.to_s)

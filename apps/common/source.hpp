@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,9 +22,10 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;                        ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;            ///< calibration file; "" where not given
-  std::filesystem::path imu;              ///< file with IMU samples; "" where not given
+  std::string rig;                                             ///< name of a shipped rig; "" where not given
+  std::filesystem::path calib;                                 ///< calibration file; "" where not given
+  std::filesystem::path imu;                                   ///< file with IMU samples; "" where not given
+  std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                   ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
   std::vector<std::string> topics;        ///< of bags: ROLE=NAME
@@ -45,7 +47,7 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 /// Adds --rig, --calib, --geometry, --time-unit, --topic, --from (also --start), --to, --duration and --dim-frames.
 void add_reading_options(CLI::App& command, SourceOptions& options);
 
-/// Adds RECORDING, --imu and these.
+/// Adds RECORDING, --imu, a flag for each external sensor, and these.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be

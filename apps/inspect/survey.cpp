@@ -100,6 +100,17 @@ nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
   return json;
 }
 
+std::string external_survey_text(const std::string& name, const ExternalSurvey& s) {
+  const ExternalSensor& sensor = *find_external_sensor(name);
+  std::string text = survey_line(name, stream_text(s.stream)) + survey_line("", gap_text(s.stream));
+  std::string range;
+  for (std::size_t i = 0; i < sensor.columns.size(); ++i)
+    range += fmt::format("{}{} {:.2f} to {:.2f}", i == 0 ? "" : ", ", sensor.columns[i], s.least[i], s.most[i]);
+  text += survey_line("", fmt::format("{} {}; noise {:.2g} {}", range, sensor.unit, s.noise, sensor.unit) +
+                              (s.sigma > 0.0 ? fmt::format(" (its samples say {:.2g})", s.sigma) : ""));
+  return text;
+}
+
 nlohmann::ordered_json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 const char* name_of(Severity severity) {
@@ -136,6 +147,7 @@ std::string to_text(const Survey& s) {
         survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
   }
   if (s.imu.count > 0) text += imu_text(s);
+  for (const auto& [name, survey] : s.external) text += external_survey_text(name, survey);
   if (s.truth && s.truth->stream.count > 0)
     text += survey_line("ground truth", fmt::format("{}, path {:.2f} m, of {}", stream_text(s.truth->stream),
                                                     s.truth->path_m, s.truth->frame));
@@ -183,6 +195,14 @@ nlohmann::ordered_json to_json(const Survey& s) {
                           {"accel_noise", imu.rest->accel_noise},
                           {"rest_gyro", numbers(imu.rest->gyro)},
                           {"rest_accel", numbers(imu.rest->accel)}});
+  }
+  for (const auto& [name, survey] : s.external) {
+    json[name] = stream_json(survey.stream);
+    json[name].update({{"least", survey.least},
+                       {"most", survey.most},
+                       {"noise", survey.noise},
+                       {"sigma", survey.sigma},
+                       {"longest_constant_s", to_seconds(survey.constant)}});
   }
   if (s.truth) {
     json["ground_truth"] = stream_json(s.truth->stream);

@@ -251,6 +251,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
   if (run.poses.evaluation) json["evaluation"] = to_json(*run.poses.evaluation);
   json["rows"] = rows_json(run.states, run.poses, origin, rows);
   json["pose_errors"] = pose_errors_json(run.poses.pose_errors, origin, rows);
+  json["external"] = run.given ? external_json(run.path, origin, rows) : Json::object();
   json["truth"] = path_json(run.poses.true_path, rows);
   json["final"] = path_json(final_path(run), rows);
   json["map_keyframes"] = map_keyframes_json(run, origin);

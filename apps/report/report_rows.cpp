@@ -6,10 +6,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/step_facts.hpp"
 #include "edged/core/angles.hpp"
+#include "edged/core/external_sensor.hpp"
+#include "edged/io/text.hpp"
 
 namespace edged {
 namespace {
@@ -207,6 +213,36 @@ Json changes_json(const StatesTable& states, const Json& album, Timestamp origin
     const bool found = relocalized && (*relocalized)[i] == 1.0;
     if (i == 0 || states.status[i] != states.status[i - 1] || found)
       add(states.t[i], to_string(states.status[i]), "", found);
+  }
+  return json;
+}
+
+Json external_json(const std::filesystem::path& folder, Timestamp origin, std::size_t most) {
+  Json json = Json::object();
+  const std::filesystem::path file = folder / "external.csv";
+  if (!std::filesystem::exists(file)) return json;
+  std::map<std::string, std::vector<std::pair<double, double>>> samples;
+  LineReader lines(file);
+  while (const auto line = lines.next()) {
+    FieldReader fields(line->text);
+    const ExternalSensor* sensor = find_external_sensor(fields.next());
+    const auto t = parse_nanoseconds(fields.next());
+    if (!sensor || !t) continue;  // the heading, or half a line that a kill has left
+    double first = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < sensor->columns.size(); ++i) {
+      const double value = parse_number(fields.next()).value_or(0.0);
+      if (i == 0) first = value;
+      squares += value * value;
+    }
+    samples[std::string(sensor->name)].emplace_back(to_seconds(*t - origin),
+                                                    sensor->columns.size() == 1 ? first : std::sqrt(squares));
+  }
+  for (const auto& [sensor, all] : samples) {
+    const std::size_t stride = all.size() / std::max<std::size_t>(1, most) + 1;
+    for (std::size_t i = 0; i < all.size(); i += stride) {
+      json[sensor]["t"].push_back(std::round(1e4 * all[i].first) / 1e4);
+      json[sensor]["y"].push_back(std::round(1e4 * all[i].second) / 1e4);
+    }
   }
   return json;
 }

@@ -4,6 +4,7 @@
 // shows.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
@@ -31,5 +32,9 @@ nlohmann::ordered_json path_json(const Trajectory& path, std::size_t most);
 nlohmann::ordered_json map_json(const nlohmann::ordered_json& album, const Similarity& alignment);
 /// As noted while it ran; without an album those that states.csv tells. The first 300.
 nlohmann::ordered_json changes_json(const StatesTable& states, const nlohmann::ordered_json& album, Timestamp origin);
+
+/// Of external.csv, by sensor: `t` [s since origin] and `y`, its value, of several their norm. At most so many samples
+/// of each; empty without the file.
+nlohmann::ordered_json external_json(const std::filesystem::path& folder, Timestamp origin, std::size_t most);
 
 }  // namespace edged

@@ -37,7 +37,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "keyframes.csv",
                                   "map.ply",
                                   "pace.csv",
-                                  "results.mcap"};
+                                  "results.mcap",
+                                  "external.csv"};
 
 [[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::error_code& error) {
   throw InputError::format("{}: cannot be used as a run folder: {}; give another --out", folder.string(),

@@ -19,6 +19,7 @@ constexpr std::array kObservers = {
     observe_verdict,
     observe_map,
     observe_states,
+    observe_external,
     observe_album,  // which those below look at
     observe_final_trajectory,
     observe_summary,

@@ -84,6 +84,7 @@ ObserverFactory observe_status_line, observe_log;  // run_log
 ObserverFactory observe_verdict;                   // verdict
 ObserverFactory observe_map;                       // run_map
 ObserverFactory observe_states;                    // run_writer
+ObserverFactory observe_external;                  // external_log
 ObserverFactory observe_final_trajectory;          // final_trajectory
 ObserverFactory observe_summary;                   // run_summary
 ObserverFactory observe_overview;                  // overview

@@ -141,6 +141,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
   const std::pair<const char*, std::size_t> dropped[] = {
       {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
       {"measurements dropped as too much waited", intake.no_room},
+      {"height or velocity samples dropped that no sensor measures", intake.external_unfit},
       {"events outside the calibration's image dropped", intake.events_outside},
       {"frames of another size than the calibration's dropped", intake.frames_unfit},
       {"measurements with absurd stamps dropped", intake.absurd_stamps},
@@ -154,6 +155,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"times of 5 s without a frame", packets.frames_missing},
       {"late IMU samples dropped", packets.imu_late},
       {"IMU samples dropped that are no numbers", packets.imu_not_finite},
+      {"late height or velocity samples dropped", packets.external_late},
   };
   for (const auto& [kind, count] : dropped) {
     if (count > 0) repairs[kind] += count;
@@ -204,6 +206,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
+  if (!s.external.empty()) json["external"] = {{"samples", s.external}, {"in_packets", s.external_in_packets}};
   json["repairs"] = s.repairs;
   json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
   return json;

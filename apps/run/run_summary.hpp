@@ -50,6 +50,8 @@ struct RunSummary {
   std::optional<LiveSummary> live;
   std::optional<MapSummary> map;
   std::vector<CalibrationFound> calibration;
+  std::map<std::string, std::size_t> external;  ///< samples that came, by sensor
+  std::size_t external_in_packets = 0;          ///< of these, what the estimator was given
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
   std::optional<Evaluation> final_evaluation;  ///< the same of the poses as known in the end, not causal

@@ -16,6 +16,7 @@ struct IntakeCounters {
   std::size_t clocks_set_back = 0;  ///< how often; each time all begins anew
   std::size_t events_outside = 0;   ///< of the pixels of their camera
   std::size_t frames_unfit = 0;     ///< not grey (CV_8UC1), or not of their camera's size
+  std::size_t external_unfit = 0;   ///< samples of other sensors: not finite, or more than such a sensor measures
   std::size_t no_room = 0;          ///< measurements that came when too much waited already, or after finish()
 };
 
@@ -31,6 +32,9 @@ struct PacketizerCounters {
   std::size_t frames_missing = 0;      ///< Frames mode: packets without one, as none came for 5 s
   std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
   std::size_t imu_late = 0;            ///< dropped: not after the sample before
+  std::size_t external = 0;            ///< samples of height and velocity sensors in packets
+  std::size_t external_late = 0;       ///< dropped: of a time whose packet has been handed out
+  std::size_t external_lost = 0;       ///< dropped: before the first packet, after the last, or too many waited
 };
 
 struct OdometryCounters {

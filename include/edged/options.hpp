@@ -97,6 +97,7 @@ struct OdometryConfig {
 /// drivers usually do: event cameras come in USB packets of up to 33 ms, a frame a readout after its exposure's middle.
 struct SensorDelays {
   double events_s = 0.05, frames_s = 0.05, imu_s = 0.05;
+  double external_s = 0.05;  ///< of height and velocity sensors; none is waited for before its first sample
 
   /// Throws InputError when one is not within 0 .. 10 s.
   void validate() const;
@@ -104,7 +105,7 @@ struct SensorDelays {
 };
 
 /// Measurements come in the order that Dataset promises: nothing is waited for.
-inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0};
+inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0, 0.0};
 
 /// How the odometry is fed and worked. The defaults are for sensors whose drivers have a thread each; a recording,
 /// which is in order, is `{kInOrder}`.

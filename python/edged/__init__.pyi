@@ -173,7 +173,7 @@ class Step(_BodyState):
 
 class Measurement:
     @property
-    def kind(self) -> Literal["events", "frame", "imu"]: ...
+    def kind(self) -> Literal["events", "frame", "imu", "height", "velocity"]: ...
     @property
     def camera(self) -> str | None: ...
     @property
@@ -181,7 +181,8 @@ class Measurement:
         """The first stamp."""
     @property
     def data(self) -> NDArray[Any]:
-        """An array of EVENT, an image, or an array of IMU of one row; read-only, without a copy."""
+        """An array of EVENT, an image, or an array of IMU of one row; read-only, without a copy. Of height and velocity
+        two rows, values and sigmas."""
 
 
 class FinalTrajectory:
@@ -202,10 +203,15 @@ class Odometry:
     def __init__(self, calibration: Calibration | Path, mode: Mode = "fused", options: Mapping[str, Option] = {},
                  in_order: bool = False, delays: Mapping[str, float] = {}) -> None:
         """calibration: also a rig's name, or a file. in_order: measurements come as a recording gives them, nothing is waited
-        for. delays: by how much "events", "frames" and "imu" may lag behind the newest of all [s]."""
+        for. delays: by how much "events", "frames", "imu" and "external" (height, velocity) may lag behind the newest of all [s]."""
     def add_events(self, camera: str, events: NDArray[np.void]) -> None: ...
     def add_frame(self, camera: str, t: int, image: NDArray[np.uint8]) -> None: ...
     def add_imu(self, samples: NDArray[np.void]) -> None: ...
+    def add_height(self, t: int, height: float, sigma: float = 0.0) -> None:
+        """[m], up, from any zero. sigma: 0 for the option's."""
+    def add_velocity(self, t: int, velocity: Sequence[float] | NDArray[np.float64],
+                     sigma: float | Sequence[float] | NDArray[np.float64] = 0.0) -> None:
+        """[m/s] in the axes of the sensor. sigma: one, or one an axis; 0 for the option's, inf for an axis not measured."""
     def add(self, measurement: Measurement) -> None: ...
     def finish(self) -> None:
         """No more measurements: what is left comes out of next()."""
@@ -254,6 +260,9 @@ class RecordingInfo:
     def has_frames(self) -> bool: ...
     @property
     def has_imu(self) -> bool: ...
+    @property
+    def external(self) -> list[str]:
+        """Names of its other sensors: "height", "velocity"."""
     @property
     def event_camera(self) -> str: ...
     @property

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
 
+#include <variant>
+#include <vector>
+
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::python {
@@ -17,11 +21,14 @@ OdometryConfig with_options(const OptionValues& options) {
 
 SensorDelays delays_of(const std::map<std::string, double>& given, bool in_order) {
   SensorDelays delays = in_order ? kInOrder : SensorDelays{};
-  const std::map<std::string, double*> known = {
-      {"events", &delays.events_s}, {"frames", &delays.frames_s}, {"imu", &delays.imu_s}};
+  const std::map<std::string, double*> known = {{"events", &delays.events_s},
+                                                {"frames", &delays.frames_s},
+                                                {"imu", &delays.imu_s},
+                                                {"external", &delays.external_s}};
   for (const auto& [sensor, seconds] : given) {
     const auto found = known.find(sensor);
-    if (found == known.end()) throw InputError::format("delays: '{}' is none of events, frames and imu", sensor);
+    if (found == known.end())
+      throw InputError::format("delays: '{}' is none of events, frames, imu and external", sensor);
     *found->second = seconds;
   }
   return delays;
@@ -61,6 +68,34 @@ void add_imu(PyOdometry& self, const py::array& samples) {
   for (std::size_t i = 0; i < size; ++i) self.odometry.add(imu_sample(data, i));
 }
 
+/// One number for all columns, or one each.
+std::vector<double> each_column(const ExternalSensor& sensor, const char* what,
+                                const std::variant<double, std::vector<double>>& given) {
+  const std::size_t n = sensor.columns.size();
+  if (const auto* one = std::get_if<double>(&given)) {
+    if (n == 1 || std::string_view(what) == "sigma") return std::vector<double>(n, *one);
+  } else if (std::get<std::vector<double>>(given).size() == n) {
+    return std::get<std::vector<double>>(given);
+  }
+  throw InputError::format("add_{}: {} must be {} numbers", sensor.name, what, n);
+}
+
+/// add_height, add_velocity: one a sensor of the table, its argument named as it is.
+void bind_external(py::class_<PyOdometry>& odometry) {
+  using Numbers = std::variant<double, std::vector<double>>;
+  for (const ExternalSensor& sensor : external_sensors()) {
+    const std::string name(sensor.name);
+    const auto add = [&sensor](PyOdometry& self, Timestamp t, const Numbers& values, const Numbers& sigma) {
+      const ExternalSample sample =
+          sensor.sample(t, {each_column(sensor, "values", values), each_column(sensor, "sigma", sigma)});
+      const py::gil_scoped_release free;
+      self.odometry.add(sample);
+    };
+    odometry.def(("add_" + name).c_str(), add, py::arg("t"), py::arg(sensor.name.data()),
+                 py::arg("sigma") = Numbers(0.0));
+  }
+}
+
 std::optional<Step> next_step(PyOdometry& self) {
   return guarded(self.mutex, [&] { return self.odometry.next(); });
 }
@@ -80,6 +115,7 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
           {"clocks_set_back", in.clocks_set_back},
           {"events_outside", in.events_outside},
           {"frames_unfit", in.frames_unfit},
+          {"external_unfit", in.external_unfit},
           {"no_room", in.no_room},
           {"packets", out.packets},
           {"packets_before_imu", out.packets_before_imu},
@@ -90,7 +126,10 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
           {"frames_late", out.frames_late},
           {"frames_missing", out.frames_missing},
           {"imu_not_finite", out.imu_not_finite},
-          {"imu_late", out.imu_late}};
+          {"imu_late", out.imu_late},
+          {"external", out.external},
+          {"external_late", out.external_late},
+          {"external_lost", out.external_lost}};
 }
 
 py::dict rig(PyOdometry& self) {
@@ -150,7 +189,9 @@ void bind_odometry(py::module_& module) {
       .def_property_readonly("keyframes",
                              [](const FinalTrajectory& known) { return poses_array(keyframe_poses(known)); })
       .def_property_readonly("points", &map_points);
-  py::class_<PyOdometry>(module, "Odometry")
+  py::class_<PyOdometry> odometry(module, "Odometry");
+  bind_external(odometry);
+  odometry
       .def(py::init(&make_odometry), py::arg("calibration"), py::arg("mode") = "fused",
            py::arg("options") = OptionValues{}, py::arg("in_order") = false,
            py::arg("delays") = std::map<std::string, double>{})

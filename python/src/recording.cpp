@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/core/recording_piece.hpp"
 #include "edged/io/camera_names.hpp"
@@ -114,6 +116,7 @@ std::unique_ptr<PyOdometry> odometry(const PyRecording& self, const std::string&
 }
 
 const char* kind(const PyMeasurement& measurement) {
+  if (const auto* sample = std::get_if<ExternalSample>(&measurement.value)) return sensor_of(*sample).name.data();
   return std::array{"events", "frame", "imu"}[measurement.value.index()];
 }
 
@@ -129,7 +132,13 @@ py::array data(const py::object& self) {
   const Measurement& measurement = self.cast<const PyMeasurement&>().value;
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) return view(batch->events, self);
   if (const auto* frame = std::get_if<Frame>(&measurement)) return view(frame->image, self);
-  return view(dtype_of<ImuSample>(), &std::get<ImuSample>(measurement), 1, self);
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) return view(dtype_of<ImuSample>(), sample, 1, self);
+  const auto& sample = std::get<ExternalSample>(measurement);
+  const auto [values, sigmas] = sensor_of(sample).numbers(sample);
+  py::array_t<double> rows({py::ssize_t{2}, static_cast<py::ssize_t>(values.size())});
+  std::ranges::copy(values, rows.mutable_data(0));
+  std::ranges::copy(sigmas, rows.mutable_data(1));
+  return rows;
 }
 
 void bind_info(py::module_& module) {
@@ -142,6 +151,7 @@ void bind_info(py::module_& module) {
       .def_readonly("has_events", &DatasetInfo::has_events)
       .def_readonly("has_frames", &DatasetInfo::has_frames)
       .def_readonly("has_imu", &DatasetInfo::has_imu)
+      .def_readonly("external", &DatasetInfo::external)
       .def_readonly("event_camera", &DatasetInfo::event_camera)
       .def_readonly("frame_camera", &DatasetInfo::frame_camera)
       .def_property_readonly("event_sensor", [](const DatasetInfo& info) {

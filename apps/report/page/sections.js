@@ -41,6 +41,22 @@ function errorPlots(parent) {
   }
 }
 
+/** Samples of height and speed beside the estimate; heights have a zero of their own, and are laid onto it by their median. */
+function externalPlots(parent) {
+  const median = all => [...all].sort((a, b) => a - b)[all.length >> 1];
+  const speed = rows => rows.vx.map((v, i) => v === null ? null : Math.hypot(v, rows.vy[i], rows.vz[i]));
+  runs.forEach((run, i) => {
+    for (const [sensor, samples] of Object.entries(run.external || {})) {
+      const height = sensor === 'height', estimate = height ? run.rows.z : speed(run.rows);
+      const known = estimate.filter(value => value !== null);
+      const shift = height && known.length ? median(known) - median(samples.y) : 0;
+      const series = [{t: samples.t, y: samples.y.map(value => value + shift), label: sensor + ' sensor', colour: 'truth', dots: true},
+                      {t: run.rows.t, y: estimate, label: runs.length > 1 ? runName(run) : 'estimate', colour: runColour(i)}];
+      new TimePlot(time, {title: height ? 'height' : 'speed', unit: height ? 'm' : 'm/s', series}, parent);
+    }
+  });
+}
+
 function plotSection() {
   const group = title => {
     const grid = make('div', {class: 'plots'});
@@ -67,6 +83,7 @@ function plotSection() {
   if (runs.some(run => run.live)) triple(errors, ['3 σ of x', '3 σ of y', '3 σ of z'], 'm', ['sigma3_x', 'sigma3_y', 'sigma3_z'], {zero: true});
   else errorPlots(errors);
   triple(group('Velocity of the body, in the world of the estimate'), ['v x', 'v y', 'v z'], 'm/s', ['vx', 'vy', 'vz']);
+  externalPlots(group('Height and velocity sensors'));
   const biases = group('Biases of the IMU');
   triple(biases, ['gyro x', 'gyro y', 'gyro z'], 'rad/s', ['bgx', 'bgy', 'bgz']);
   triple(biases, ['accelerometer x', 'accelerometer y', 'accelerometer z'], 'm/s²', ['bax', 'bay', 'baz']);

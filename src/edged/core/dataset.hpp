@@ -8,6 +8,7 @@
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/measurement.hpp"
 #include "edged/state.hpp"
@@ -26,7 +27,7 @@ struct StreamInfo {
   std::string name;       ///< topic, or name in the file
   std::string type;       ///< of its messages
   std::size_t count = 0;  ///< of messages; 0 where it is not known
-  std::string role;       ///< "events", "frames", "imu", "truth"; "" where it is not read
+  std::string role;       ///< "events", "frames", "imu", "truth", an external sensor; "" where it is not read
 };
 
 /// What is known of a recording before it is read through.
@@ -38,6 +39,7 @@ struct DatasetInfo {
   std::optional<Timestamp> begin;  ///< first stamp of any sensor, if known cheaply
   std::optional<Timestamp> end;    ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
+  std::vector<std::string> external;    ///< names of the external sensors that it has, as of `external_sensors()`
   std::vector<StreamInfo> streams;      ///< of formats that name them
   cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known
   std::string event_camera = "events";  ///< what its batches of events call their camera
@@ -45,8 +47,8 @@ struct DatasetInfo {
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
-/// ties broken IMU, events, frame. Streams: holds a bounded part of the recording in memory at any time; where that
-/// does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
+/// ties broken external samples, IMU, events, frame. Streams: holds a bounded part of the recording in memory at any
+/// time; where that does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
 class Dataset {
  public:
   virtual ~Dataset() = default;

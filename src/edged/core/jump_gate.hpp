@@ -9,11 +9,12 @@
 #include <span>
 #include <utility>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
 
-/// Items of one stream, T with a member `Timestamp t`, within 146 years of zero, go through it one by one. One far
+/// Items of one stream, T with a `time_of`, within 146 years of zero, go through it one by one. One far
 /// ahead of all before waits until another confirms it; when the next contradicts it, it is dropped.
 template <typename T>
 class JumpGate {
@@ -28,13 +29,13 @@ class JumpGate {
   void push(T item, Pass pass, Drop drop) {
     if (waiting_) {
       T before = *std::exchange(waiting_, std::nullopt);
-      if (item.t > before.t - kJump) {
+      if (time_of(item) > time_of(before) - kJump) {
         let_through(std::move(before), pass);
       } else {
-        drop(std::move(before), item.t);
+        drop(std::move(before), time_of(item));
       }
     }
-    if (is_far_ahead(item.t)) {
+    if (is_far_ahead(time_of(item))) {
       waiting_ = std::move(item);
     } else {
       let_through(std::move(item), pass);
@@ -44,8 +45,8 @@ class JumpGate {
   /// Many at once: how many of the first go on as they are.
   std::size_t push_first(std::span<const T> items) {
     std::size_t count = 0;
-    for (; count < items.size() && !waiting_ && !is_far_ahead(items[count].t); ++count) {
-      newest_ = std::max(newest_.value_or(items[count].t), items[count].t);
+    for (; count < items.size() && !waiting_ && !is_far_ahead(time_of(items[count])); ++count) {
+      newest_ = std::max(newest_.value_or(time_of(items[count])), time_of(items[count]));
     }
     return count;
   }
@@ -55,7 +56,7 @@ class JumpGate {
   template <typename Pass>
   void confirm(Timestamp t, Pass pass) {
     heard_ = std::max(heard_, t);
-    if (waiting_ && std::chrono::abs(waiting_->t - t) <= kJump) finish(pass);
+    if (waiting_ && std::chrono::abs(time_of(*waiting_) - t) <= kJump) finish(pass);
   }
 
   /// Nothing more will come.
@@ -72,7 +73,7 @@ class JumpGate {
   bool is_far_ahead(Timestamp t) const { return newest_ ? t - std::max(*newest_, heard_) > kJump : first_waits_; }
   template <typename Pass>
   void let_through(T item, Pass& pass) {
-    const Timestamp t = item.t;
+    const Timestamp t = time_of(item);
     pass(std::move(item));
     newest_ = std::max(newest_.value_or(t), t);
   }

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When a measurement was made, and by which camera.
+// When a measurement was made, and by which sensor.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "edged/measurement.hpp"
 
@@ -17,12 +18,26 @@ constexpr bool is_plausible(Timestamp t) {
   return t.time_since_epoch() < kLongest && t.time_since_epoch() > -kLongest;
 }
 
+/// The stamp of whatever has one.
+template <typename T>
+Timestamp time_of(const T& item) {
+  return item.t;
+}
+inline Timestamp time_of(const ExternalSample& sample) {
+  return std::visit([](const auto& one) { return one.t; }, sample);
+}
+
 /// The stamp of the measurement, of a batch its newest event's; nothing for an empty batch.
 inline std::optional<Timestamp> last_stamp(const Measurement& measurement) {
-  if (const auto* frame = std::get_if<Frame>(&measurement)) return frame->t;
-  if (const auto* sample = std::get_if<ImuSample>(&measurement)) return sample->t;
-  const std::vector<Event>& events = std::get<EventBatch>(measurement).events;
-  return events.empty() ? std::nullopt : std::optional(events.back().t);
+  return std::visit(
+      []<typename T>(const T& item) -> std::optional<Timestamp> {
+        if constexpr (std::is_same_v<T, EventBatch>) {
+          return item.events.empty() ? std::nullopt : std::optional(item.events.back().t);
+        } else {
+          return time_of(item);
+        }
+      },
+      measurement);
 }
 
 /// The stamp of the measurement, of a batch its oldest event's; nothing for an empty batch.
@@ -31,7 +46,7 @@ inline std::optional<Timestamp> first_stamp(const Measurement& measurement) {
   return batch && !batch->events.empty() ? std::optional(batch->events.front().t) : last_stamp(measurement);
 }
 
-/// The name of the camera that gave it; null for an IMU sample.
+/// The name of the camera that gave it; null for a sample of another sensor.
 inline const std::string* camera_of(const Measurement& measurement) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) return &batch->camera;
   const auto* frame = std::get_if<Frame>(&measurement);

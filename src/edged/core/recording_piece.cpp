@@ -43,8 +43,11 @@ std::optional<Measurement> RecordingPiece::cut(Measurement measurement) {
   if (!last) return std::nullopt;
   newest_ = std::max(newest_, *last);
   auto* batch = std::get_if<EventBatch>(&measurement);
-  if (*last >= to_)
-    (batch ? left_.events : std::holds_alternative<Frame>(measurement) ? left_.frames : left_.imu) = false;
+  if (*last >= to_) {
+    if (batch) left_.events = false;
+    if (std::holds_alternative<Frame>(measurement)) left_.frames = false;
+    if (std::holds_alternative<ImuSample>(measurement)) left_.imu = false;
+  }
   if (!batch) return *last >= from_ && *last < to_ ? std::optional(std::move(measurement)) : std::nullopt;
   std::vector<Event>& events = batch->events;
   events.erase(std::ranges::lower_bound(events, to_, {}, &Event::t), events.end());

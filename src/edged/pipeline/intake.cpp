@@ -82,6 +82,18 @@ void Intake::accept(const ImuSample& sample) {
   if (admit(sample)) judge(imu_, sample);
 }
 
+void Intake::accept(const ExternalSample& sample) {
+  if (!is_plausible(time_of(sample))) {
+    ++counters_.absurd_stamps;
+  } else if (!is_plausible(sample)) {
+    ++counters_.external_unfit;
+  } else {
+    external_[sample.index()].push(
+        sample, [this](const ExternalSample& one) { pass_on(one); },
+        [this](const ExternalSample&, Timestamp) { ++counters_.far_ahead; });
+  }
+}
+
 template <typename T>
 void Intake::judge(Sensor<T>& sensor, T item) {
   std::vector<T> passed;
@@ -100,14 +112,27 @@ void Intake::for_each_gate(const Give& give) {
   for (Sensor<Event>& sensor : events_) open(sensor);
   for (Sensor<Frame>& sensor : frames_) open(sensor);
   open(imu_);
+  for (JumpGate<ExternalSample>& gate : external_)
+    give(gate, [this](const ExternalSample& sample) { pass_on(sample); });
 }
 
 void Intake::take(Measurement measurement, ClockWatch& clock) {
   const Timestamp t = *last_stamp(measurement);
   if (clock.set_back(t)) begin_time();
-  counters_.no_room += times_.back().add(std::move(measurement)) ? 0 : 1;
+  pass_on(std::move(measurement));
   // What waits near it has not come from a damaged stamp either, and still gets into its place.
   for_each_gate([t](auto& gate, const auto& pass) { gate.confirm(t, pass); });
+}
+
+void Intake::pass_on(Measurement measurement) {
+  counters_.no_room += times_.back().add(std::move(measurement)) ? 0 : 1;
+}
+
+std::array<JumpGate<ExternalSample>, kExternalSensors> Intake::fresh_gates() {
+  return []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{(static_cast<void>(I), JumpGate<ExternalSample>(false))...};
+  }
+  (std::make_index_sequence<kExternalSensors>());
 }
 
 void Intake::begin_time() {
@@ -119,6 +144,7 @@ void Intake::begin_time() {
   std::ranges::for_each(events_, begin);
   std::ranges::for_each(frames_, begin);
   begin(imu_);
+  external_ = fresh_gates();
   times_.back().finish();
   if (times_.size() == kMostTimes) {  // next() has not been called for long
     counters_.no_room += times_.back().waiting();

@@ -3,6 +3,7 @@
 // Where measurements come in, from any thread: what cannot be used is counted, the rest is put into order.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <mutex>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "edged/core/external_sensor.hpp"
 #include "edged/core/jump_gate.hpp"
 #include "edged/counters.hpp"
 #include "edged/options.hpp"
@@ -62,17 +64,20 @@ class Intake {
     JumpGate<T> gate{false};
     ClockWatch clock = {};
   };
+  static std::array<JumpGate<ExternalSample>, kExternalSensors> fresh_gates();
   template <typename T>
   Sensor<T>* find(std::vector<Sensor<T>>& cameras, const std::string& name);
   void accept(EventBatch batch);
   void accept(Frame frame);
   void accept(const ImuSample& sample);
+  void accept(const ExternalSample& sample);
   bool admit(EventBatch& batch, const CameraModel& camera);
   bool admit(Frame& frame, const CameraModel& camera);
   bool admit(const ImuSample& sample);
   template <typename T>
   void judge(Sensor<T>& sensor, T item);
   void take(Measurement measurement, ClockWatch& clock);
+  void pass_on(Measurement measurement);
   template <typename Give>
   void for_each_gate(const Give& give);
   void begin_time();
@@ -86,6 +91,8 @@ class Intake {
   std::vector<Sensor<Event>> events_;  // one a camera that is used
   std::vector<Sensor<Frame>> frames_;
   Sensor<ImuSample> imu_;
+  // They begin no time and confirm no other stamp: no run depends on them.
+  std::array<JumpGate<ExternalSample>, kExternalSensors> external_ = fresh_gates();
   IntakeCounters counters_;
 };
 

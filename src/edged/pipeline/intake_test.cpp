@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "edged/core/measurement_stamps.hpp"
@@ -170,6 +171,55 @@ TEST(Intake, EventsUnderTheMaskNeverComeIn) {
   all.take(intake);
   EXPECT_EQ(all.events, 1U);
   EXPECT_EQ(intake.counters().events_outside, 0U);
+}
+
+Measurement height_at(int ms, double height_m = 1.0) { return ExternalSample(HeightSample{at_ms(ms), height_m, 0.1}); }
+
+TEST(Intake, ExternalSamplesThatNoSensorMeasuresAreCounted) {
+  Intake intake(two_cameras(), two_cameras(), kInOrder);
+  intake.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
+  intake.add(height_at(1));
+  intake.add(height_at(2, std::numeric_limits<double>::quiet_NaN()));
+  intake.add(height_at(3, 1e7));
+  intake.add(ExternalSample(HeightSample{Timestamp::max(), 1.0, 0.1}));
+  intake.add(ExternalSample(VelocitySample{at_ms(4), {1, 0, 0}, {0.1, -0.1, 0.1}}));
+  intake.add(ImuSample{at_ms(5), {0, 0, 0}, {0, 0, 9.81}});
+  Received all;
+  all.take(intake);
+  EXPECT_EQ(all.stamps, (std::vector<Timestamp>{at_ms(0), at_ms(1), at_ms(5)}));
+  EXPECT_EQ(intake.counters().external_unfit, 3U);
+  EXPECT_EQ(intake.counters().absurd_stamps, 1U);
+}
+
+TEST(Intake, AnotherClockOfAnExternalSensorTouchesNoOtherSensor) {
+  for (const int offset_ms : {-kHour, kHour}) {
+    Intake plain(two_cameras(), two_cameras(), {}), intake(two_cameras(), two_cameras(), {});
+    Received expected = received(plain, 0, 2000, right);
+    plain.finish();
+    expected.take(plain);
+    Received all;
+    for (int ms = 0; ms < 2000; ms += 20) {
+      intake.add(height_at(ms + offset_ms));
+      const Received some = received(intake, ms, ms + 20, right);
+      all.events += some.events, all.frames += some.frames, all.samples += some.samples;
+      EXPECT_TRUE(some.begins.empty());
+    }
+    intake.finish();
+    all.take(intake);
+    EXPECT_EQ(all.events, expected.events);
+    EXPECT_EQ(all.frames, expected.frames);
+    EXPECT_EQ(all.samples, expected.samples);
+    EXPECT_EQ(intake.counters().far_ahead, 0U);
+    EXPECT_EQ(intake.counters().clocks_set_back, 0U);
+  }
+}
+
+TEST(Intake, ADamagedStampOfAnExternalSensorIsDropped) {
+  Intake intake(two_cameras(), two_cameras(), kInOrder);
+  Received all = received(intake, 0, 100, right);
+  for (const int ms : {100, kHour, 120, 140}) intake.add(height_at(ms));
+  all = received(intake, 200, 300, right);
+  EXPECT_EQ(intake.counters().far_ahead, 1U);
 }
 
 }  // namespace

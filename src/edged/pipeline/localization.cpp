@@ -66,11 +66,13 @@ Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
   return motion;
 }
 
-LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen) {
+LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen,
+                                         std::vector<ExternalSample> external) {
   const Timestamp t = motion.end();
   LocalizationOutput output;
-  EstimatorResult result = estimate(
-      {t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet, seen.depth}, output.correction);
+  EstimatorResult result = estimate({t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet,
+                                     seen.depth, std::move(external)},
+                                    output.correction);
   const TrackingStatus status = judge_.judge(result, estimator_.initialized(), t);
   const bool relocalized = follow_map(t, seen, result);
   update_covariance(t);

@@ -38,8 +38,9 @@ class Localization {
   Preintegration predict(const std::vector<ImuSample>& imu);
   /// In O: as predicted, and after process as estimated.
   const BodyMotion& body() const { return body_; }
-  /// motion: as predicted; seen: at its end.
-  LocalizationOutput process(Preintegration motion, const VisionOutput& seen);
+  /// motion: as predicted; seen: at its end; external: samples within it, in time order.
+  LocalizationOutput process(Preintegration motion, const VisionOutput& seen,
+                             std::vector<ExternalSample> external = {});
   /// A clock was set back, and what follows is of a new time: the estimate ends. The next start goes on from where the
   /// body was, as after a loss.
   void begin_time();

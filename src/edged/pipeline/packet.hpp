@@ -32,6 +32,7 @@ struct Packet {
   std::vector<PacketEvents> events;  ///< one an event camera of the run, in its order
   std::vector<Frame> frames;         ///< that cut the packet, at most one a camera: stamps from t to 1 ms after it
   std::vector<ImuSample> imu;  ///< from the previous packet's t (or the first sample) to t, both ends interpolated
+  std::vector<ExternalSample> external;  ///< after the start of `imu`, up to t; in the order of their stamps
 
   /// Null where that camera brought none.
   const Frame* find_frame(const std::string& camera) const {

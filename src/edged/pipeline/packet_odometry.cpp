@@ -21,7 +21,7 @@ Step PacketOdometry::process(Packet packet) {
   EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   Preintegration motion = localization_.predict(packet.imu);
   const VisionOutput seen = vision_.process({packet, localization_.body(), motion.gyro_trusted()});
-  LocalizationOutput localized = localization_.process(std::move(motion), seen);
+  LocalizationOutput localized = localization_.process(std::move(motion), seen, std::move(packet.external));
   vision_.correct(localized.correction, localization_.body());
   localized.step.cameras = vision_.describe(std::move(packet), seen);
   return std::move(localized.step);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
@@ -18,6 +19,7 @@ constexpr Duration kImuBeforeFirst = std::chrono::seconds(20);
 constexpr Duration kFramesGivenUp = std::chrono::seconds(5);          // longer than any status takes to become Lost
 constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // slower frames are not waited for
 constexpr std::size_t kMaxWaitingPackets = 256;
+constexpr std::size_t kMaxWaitingExternal = 100'000;
 
 /// Frames of several cameras that lie closer belong together.
 constexpr Duration kSynchronised = std::chrono::milliseconds(1);
@@ -83,6 +85,8 @@ void Packetizer::add(Measurement measurement) {
   } else if (auto* frame = std::get_if<Frame>(&measurement)) {
     advance_clock(frame->t, frame_cameras_.size() > 1 ? frame->t - kTick : frame->t);
     add_frame(std::move(*frame));
+  } else if (const auto* external = std::get_if<ExternalSample>(&measurement)) {
+    return add_external(*external);
   } else {
     const ImuSample& sample = std::get<ImuSample>(measurement);
     advance_clock(sample.t, sample.t - kTick);
@@ -143,6 +147,33 @@ void Packetizer::add_imu(const ImuSample& sample) {
   const auto keep = std::lower_bound(imu_.begin(), imu_.end(), sample.t - kImuBeforeFirst,
                                      [](const ImuSample& s, Timestamp t) { return s.t < t; });
   imu_.erase(imu_.begin(), keep);
+}
+
+void Packetizer::add_external(const ExternalSample& sample) {
+  const Timestamp t = time_of(sample);
+  if (last_handed_out_ && t <= *last_handed_out_) {
+    ++counters_.external_late;
+    return;
+  }
+  const auto after = std::ranges::upper_bound(external_, t, {}, [](const ExternalSample& one) { return time_of(one); });
+  external_.insert(after, sample);
+  if (external_.size() <= kMaxWaitingExternal) return;
+  external_.pop_front();
+  ++counters_.external_lost;
+}
+
+/// Those after `from`, up to `to`; what is older is dropped.
+std::vector<ExternalSample> Packetizer::take_external(Timestamp from, Timestamp to) {
+  std::vector<ExternalSample> taken;
+  for (; !external_.empty() && time_of(external_.front()) <= to; external_.pop_front()) {
+    if (time_of(external_.front()) > from) {
+      taken.push_back(external_.front());
+    } else {
+      ++counters_.external_lost;
+    }
+  }
+  counters_.external += taken.size();
+  return taken;
 }
 
 void Packetizer::make_packets(Timestamp complete_until) {
@@ -238,6 +269,7 @@ std::optional<Packet> Packetizer::next() {
     waiting_.pop_front();
     waiting_events_ -= events_in(packet);
     packet.imu = slice_imu(imu_, from, packet.t);
+    packet.external = take_external(from, packet.t);
     last_handed_out_ = packet.t;
     const auto after =
         std::upper_bound(imu_.begin(), imu_.end(), packet.t, [](Timestamp t, const ImuSample& s) { return t < s.t; });
@@ -260,6 +292,8 @@ void Packetizer::finish() {
     ++counters_.packets_after_imu;
     drop_waiting(std::prev(waiting_.end()));
   }
+  const Timestamp last = waiting_.empty() ? last_handed_out_.value_or(Timestamp::min()) : waiting_.back().t;
+  counters_.external_lost += std::erase_if(external_, [last](const auto& sample) { return time_of(sample) > last; });
 }
 
 }  // namespace edged

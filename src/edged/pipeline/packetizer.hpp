@@ -25,6 +25,9 @@ namespace edged {
 /// event cameras, when frames stay away, a packet without one is cut every 5 s: the IMU samples do not pile up, and
 /// whoever reads the steps learns that nothing is seen.
 ///
+/// Samples of external sensors never cut: each goes into the packet of its time, however late it comes before that is
+/// handed out, so that the packets are the same without them.
+///
 /// Single-threaded and deterministic. Memory is bounded by the windows, the delay of the IMU and, without event
 /// cameras, the IMU samples of 5 s. Before the first packet 20 to 40 s of IMU are kept.
 class Packetizer {
@@ -59,6 +62,8 @@ class Packetizer {
   void add_events(const EventBatch& batch);
   void add_frame(Frame frame);
   void add_imu(const ImuSample& sample);
+  void add_external(const ExternalSample& sample);
+  std::vector<ExternalSample> take_external(Timestamp from, Timestamp to);
   void advance_clock(Timestamp recorded, Timestamp complete);
   void start_at(Timestamp t);
   void make_packets(Timestamp complete_until);
@@ -91,6 +96,7 @@ class Packetizer {
   std::deque<Packet> waiting_;  // cut, without IMU
   std::size_t waiting_events_ = 0;
   std::vector<ImuSample> imu_;
+  std::deque<ExternalSample> external_;  // in the order of their stamps
   std::optional<Timestamp> last_handed_out_;
 };
 

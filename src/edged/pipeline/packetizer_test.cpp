@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged {
@@ -60,7 +61,10 @@ struct Result {
 constexpr PacketizerConfig kQuick{.min_interval_s = 0.015};  // little data makes many packets
 Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const PacketizerConfig& config = kQuick) {
   const auto rank = [](const Measurement& m) {
-    return std::holds_alternative<ImuSample>(m) ? 0 : std::holds_alternative<EventBatch>(m) ? 1 : 2;
+    return std::holds_alternative<ExternalSample>(m) ? -1
+           : std::holds_alternative<ImuSample>(m)    ? 0
+           : std::holds_alternative<EventBatch>(m)   ? 1
+                                                     : 2;
   };
   std::stable_sort(stream.measurements.begin(), stream.measurements.end(), [&](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : rank(a.second) < rank(b.second);
@@ -391,6 +395,62 @@ TEST(Packetizer, GivesNothingForAnEmptyRecording) {
   EXPECT_TRUE(run(Stream(), Mode::Fused).packets.empty());
   EXPECT_TRUE(run(Stream().imu(0, 100, 1), Mode::Fused).packets.empty());
   EXPECT_TRUE(run(Stream().events(0, 100, 1).frames(0, 100, 10), Mode::Fused).packets.empty());
+}
+
+Measurement height_at(double ms) { return ExternalSample(HeightSample{at_ms(ms), ms, 0.1}); }
+
+Stream with_heights(Stream stream, double from, double to, double step) {
+  for (double ms = from; ms <= to + 1e-9; ms += step) stream.measurements.emplace_back(at_ms(ms), height_at(ms));
+  return stream;
+}
+
+TEST(Packetizer, ExternalSamplesGoIntoThePacketOfTheirTimeAndChangeNoCut) {
+  const Stream stream = Stream().imu(-10, 400, 1).events(0, 350, 1).frames(5, 350, 50);
+  const Result plain = run(stream, Mode::Fused), with = run(with_heights(stream, -30, 400, 4), Mode::Fused);
+  ASSERT_EQ(plain.packets.size(), with.packets.size());
+  Timestamp from = plain.packets.front().imu.front().t;
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < plain.packets.size(); ++i) {
+    const Packet& packet = with.packets[i];
+    EXPECT_EQ(packet.t, plain.packets[i].t);
+    EXPECT_EQ(packet.events[0].new_events, plain.packets[i].events[0].new_events);
+    EXPECT_TRUE(plain.packets[i].external.empty());
+    for (const ExternalSample& sample : packet.external) {
+      EXPECT_GT(time_of(sample), from);
+      EXPECT_LE(time_of(sample), packet.t);
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(packet.external, {}, [](const ExternalSample& s) { return time_of(s); }));
+    taken += packet.external.size();
+    from = packet.t;
+  }
+  EXPECT_EQ(with.counters.external, taken);
+  EXPECT_GT(with.counters.external_lost, 5U) << "before the IMU, and after the last packet";
+  EXPECT_EQ(taken + with.counters.external_lost, 108U) << "every sample is counted once";
+  EXPECT_EQ(with.counters.external_late, 0U);
+}
+
+TEST(Packetizer, ALateExternalSampleIsUsedUntilItsPacketIsHandedOut) {
+  Packetizer packetizer(used_cameras(make_rig(), Mode::Frames), kQuick);
+  const auto add = [&](const Measurement& m) { packetizer.add(m); };
+  add(imu_at(0));
+  add(Frame{at_ms(10), "cam", cv::Mat()});
+  add(Frame{at_ms(30), "cam", cv::Mat()});
+  add(height_at(12));
+  add(height_at(9));
+  add(imu_at(20));
+  const auto first = packetizer.next();
+  ASSERT_TRUE(first);
+  ASSERT_EQ(first->external.size(), 1U);
+  EXPECT_EQ(time_of(first->external[0]), at_ms(9));
+  add(height_at(10));
+  EXPECT_EQ(packetizer.counters().external_late, 1U);
+  add(height_at(11));
+  add(imu_at(40));
+  const auto second = packetizer.next();
+  ASSERT_TRUE(second);
+  ASSERT_EQ(second->external.size(), 2U);
+  EXPECT_EQ(time_of(second->external[0]), at_ms(11));
+  EXPECT_EQ(time_of(second->external[1]), at_ms(12));
 }
 
 }  // namespace

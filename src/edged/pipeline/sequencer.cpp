@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/core/stream_order.hpp"
 
@@ -15,11 +16,13 @@ namespace edged {
 namespace {
 
 constexpr Duration kNextTick(1);
-constexpr std::size_t kMostImu = 1'000'000;
+constexpr std::size_t kMostSamples = 1'000'000;
 
 std::size_t bytes_of(const EventBatch& batch) { return batch.events.size() * sizeof(Event); }
 std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.image.elemSize(); }
-std::size_t bytes_of(const ImuSample&) { return 0; }  // bounded by their number: no IMU sample makes way for an image
+// Samples are bounded by their number: none makes way for an image.
+std::size_t bytes_of(const ImuSample&) { return 0; }
+std::size_t bytes_of(const ExternalSample&) { return 0; }
 
 template <typename Lines>
 auto& line_of(Lines& lines, const std::string& camera) {
@@ -31,7 +34,8 @@ auto& line_of(Lines& lines, const std::string& camera) {
 }  // namespace
 
 void SensorDelays::validate() const {
-  for (const auto& [name, delay] : {std::pair("events_s", events_s), {"frames_s", frames_s}, {"imu_s", imu_s}}) {
+  for (const auto& [name, delay] :
+       {std::pair("events_s", events_s), {"frames_s", frames_s}, {"imu_s", imu_s}, {"external_s", external_s}}) {
     if (!(delay >= 0.0 && delay <= 10.0))
       throw InputError::format("delay {} is {}, outside its range 0 .. 10 s", name, delay);
   }
@@ -53,17 +57,22 @@ Sequencer::Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t
     }
   }
   imu_.delay = delay(delays.imu_s, Duration(0));
+  for (const ExternalSensor& sensor : external_sensors())
+    external_.push_back({std::string(sensor.name), delay(delays.external_s, Duration(0))});
 }
 
 bool Sequencer::add(Measurement measurement) {
   if (finished_) return false;
   const std::optional<Timestamp> last = last_stamp(measurement);
   if (!last) return true;
+  const bool external = std::holds_alternative<ExternalSample>(measurement);
   const bool taken = std::visit(
       [&](auto& item) {
         using Item = std::decay_t<decltype(item)>;
         if constexpr (std::is_same_v<Item, ImuSample>) {
           return push(imu_, std::move(item), *last);
+        } else if constexpr (std::is_same_v<Item, ExternalSample>) {
+          return push(external_[item.index()], std::move(item), *last);
         } else {
           auto& lines = std::get<std::vector<Line<Item>>&>(std::tie(events_, frames_));
           auto& line = line_of(lines, item.camera);
@@ -71,12 +80,14 @@ bool Sequencer::add(Measurement measurement) {
         }
       },
       measurement);
-  if (taken) newest_ = std::max(newest_.value_or(*last), *last);
+  // Another clock of an external sensor must not make all others late.
+  if (taken && !external) newest_ = std::max(newest_.value_or(*last), *last);
   return taken;
 }
 
 std::size_t Sequencer::waiting() const {
   std::size_t sum = imu_.waiting.size();
+  for (const Line<ExternalSample>& line : external_) sum += line.waiting.size();
   for (const Line<EventBatch>& line : events_) sum += line.waiting.size();
   for (const Line<Frame>& line : frames_) sum += line.waiting.size();
   return sum;
@@ -85,7 +96,7 @@ std::size_t Sequencer::waiting() const {
 template <typename T>
 bool Sequencer::push(Line<T>& line, T item, Timestamp last) {
   const std::size_t bytes = bytes_of(item);
-  if (bytes == 0 ? line.waiting.size() >= kMostImu : bytes_ + bytes > most_bytes_) return false;
+  if (bytes == 0 ? line.waiting.size() >= kMostSamples : bytes_ + bytes > most_bytes_) return false;
   bytes_ += bytes;
   line.newest = std::max(line.newest.value_or(last), last);
   line.waiting.push_back(std::move(item));
@@ -99,10 +110,11 @@ Timestamp Sequencer::earliest(const Line<T>& line) const {
     if constexpr (std::is_same_v<T, EventBatch>) {
       return line.waiting.front().events[line.events_out].t;
     } else {
-      return line.waiting.front().t;
+      return time_of(line.waiting.front());
     }
   }
   if (finished_ || bytes_ > most_bytes_ / 2) return Timestamp::max();
+  if (std::is_same_v<T, ExternalSample> && !line.newest) return Timestamp::max();  // there may be no such sensor
   const Timestamp not_too_late = *newest_ - line.delay + kNextTick;
   if (!line.newest) return not_too_late;
   const Duration step = std::is_same_v<T, EventBatch> ? Duration(0) : kNextTick;  // two batches may share a stamp
@@ -120,9 +132,12 @@ std::optional<Measurement> Sequencer::next() {
   if (!newest_) return std::nullopt;
   Line<EventBatch>* const events = first_of(events_);
   Line<Frame>* const frames = first_of(frames_);
+  Line<ExternalSample>* const external = first_of(external_);
   const NextStream next = next_stream(earliest(imu_), events ? earliest(*events) : Timestamp::max(),
-                                      frames ? earliest(*frames) : Timestamp::max());
+                                      frames ? earliest(*frames) : Timestamp::max(), earliest(*external));
   switch (next.stream) {
+    case NextStream::Stream::External:
+      return pop(*external);
     case NextStream::Stream::Imu:
       return pop(imu_);
     case NextStream::Stream::Frame:

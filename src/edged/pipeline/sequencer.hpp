@@ -17,8 +17,8 @@ namespace edged {
 
 /// Each sensor's own measurements in order, those of different sensors as they come. What a sensor may still precede is
 /// held back; what comes later than its delay goes out at once, out of order, for the packetizer to use or to count.
-/// With kInOrder all goes out as it came. The order that comes out does not depend on how the sensors lag, as long as
-/// they keep to their delays.
+/// With kInOrder all goes out as it came, a sample of an external sensor with the next measurement of another. The
+/// order that comes out does not depend on how the sensors lag, as long as they keep to their delays.
 ///
 /// When half of most_bytes waits, no sensor is waited for any longer; beyond most_bytes of events and frames, or a
 /// million IMU samples, nothing more is taken.
@@ -46,7 +46,7 @@ class Sequencer {
  private:
   template <typename T>
   struct Line {
-    std::string camera;
+    std::string camera;  ///< or sensor
     Duration delay;
     std::deque<T> waiting = {};
     std::size_t events_out = 0;  ///< of the first batch that waits
@@ -67,7 +67,8 @@ class Sequencer {
   std::vector<Line<EventBatch>> events_;  // one a camera, no batch empty
   std::vector<Line<Frame>> frames_;       // one a camera
   Line<ImuSample> imu_;
-  std::size_t bytes_ = 0;  // of the events and frames that wait
+  std::vector<Line<ExternalSample>> external_;  // one a sensor, as in ExternalSample; their stamps move no other line
+  std::size_t bytes_ = 0;                       // of the events and frames that wait
   std::optional<Timestamp> newest_;
   bool finished_ = false;
 };

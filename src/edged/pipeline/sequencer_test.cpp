@@ -10,6 +10,7 @@
 #include <random>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
 
 namespace edged {
 namespace {
@@ -38,6 +39,7 @@ std::string to_text(const Measurement& measurement) {
   const auto ms = [](Timestamp t) { return t.time_since_epoch() / std::chrono::milliseconds(1); };
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) return fmt::format("i{}", ms(sample->t));
   if (const auto* image = std::get_if<Frame>(&measurement)) return fmt::format("f{}", ms(image->t));
+  if (const auto* sample = std::get_if<ExternalSample>(&measurement)) return fmt::format("x{}", ms(time_of(*sample)));
   std::vector<std::int64_t> stamps_ms;
   for (const Event& event : std::get<EventBatch>(measurement).events) stamps_ms.push_back(ms(event.t));
   return fmt::format("e{}", fmt::join(stamps_ms, ","));
@@ -193,6 +195,29 @@ TEST(SensorDelays, AreRefusedWhereTheyAreNone) {
   EXPECT_THROW(SensorDelays{.frames_s = -0.01}.validate(), InputError);
   EXPECT_THROW(SensorDelays{.events_s = std::nan("")}.validate(), InputError);
   EXPECT_THROW(SensorDelays{.imu_s = 11}.validate(), InputError);
+}
+
+Measurement height(int ms) { return ExternalSample(HeightSample{millisecond(ms), 1.0, 0.1}); }
+
+TEST(Sequencer, AnExternalSampleComesBeforeAllElseOfItsStamp) {
+  Sequencer sequencer(kBoth, {});
+  for (const Measurement& m : {frame(10), events({10, 11}), imu(10), height(10), height(11)}) sequencer.add(m);
+  sequencer.finish();
+  EXPECT_EQ(ready(sequencer), "x10 i10 e10 f10 x11 e11");
+}
+
+TEST(Sequencer, AnExternalSensorIsWaitedForFromItsFirstSampleOnAndForNoLongerThanItsDelay) {
+  Sequencer sequencer(kEvents, {.events_s = 0.01, .imu_s = 0.01, .external_s = 0.02});
+  for (const Measurement& m : {events({1}), imu(1), events({30}), imu(30)}) sequencer.add(m);
+  EXPECT_EQ(ready(sequencer), "i1 e1 i30 e30");
+  sequencer.add(height(31));
+  for (const Measurement& m : {events({40}), imu(40)}) sequencer.add(m);
+  EXPECT_EQ(ready(sequencer), "x31") << "its next may be of 32";
+  sequencer.add(height(35));
+  for (const Measurement& m : {events({61}), imu(61)}) sequencer.add(m);
+  EXPECT_EQ(ready(sequencer), "x35 i40 e40") << "later than its delay";
+  sequencer.add(height(36));
+  EXPECT_EQ(ready(sequencer), "x36") << "too late for the order, for the packetizer to use or to count";
 }
 
 }  // namespace

@@ -4,13 +4,17 @@
 #include "edged/io/ecd_writer.hpp"
 
 #include <spdlog/fmt/compile.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/io/formats.hpp"
 #include "edged/io/text.hpp"
 
@@ -148,6 +152,19 @@ class EcdWriter final : public RecordingWriter {
              s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z());
   }
 
+  void write(const ExternalSample& sample) override {
+    const ExternalSensor& sensor = sensor_of(sample);
+    const std::string name(sensor.name);
+    auto file = external_.find(name);
+    if (file == external_.end()) {
+      file = external_.try_emplace(name, folder_ / (name + ".txt")).first;
+      file->second.add(FMT_COMPILE("# {}; s, {}\n"), layout_of(sensor), sensor.unit);
+    }
+    const ExternalNumbers numbers = sensor.numbers(sample);
+    file->second.add(FMT_COMPILE("{} {} {}\n"), format_seconds(time_of(sample)), fmt::join(numbers.values, " "),
+                     fmt::join(numbers.sigmas, " "));
+  }
+
   void write(const GroundTruth& truth) override {
     LazyFile out(folder_ / "groundtruth.txt");
     for (const StampedPose& pose : camera_ground_truth(truth, setup_)) {
@@ -163,6 +180,7 @@ class EcdWriter final : public RecordingWriter {
     events_.flush();
     images_.flush();
     imu_.flush();
+    for (auto& [name, file] : external_) file.flush();
   }
 
  private:
@@ -177,6 +195,7 @@ class EcdWriter final : public RecordingWriter {
   WriterSetup setup_;
   fs::path folder_;
   LazyFile events_, images_, imu_;
+  std::map<std::string, LazyFile> external_;
   std::string event_camera_, frame_camera_;
   std::size_t frames_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
 
 namespace edged {
@@ -21,7 +22,8 @@ namespace {
 
 std::vector<std::string> files_in(const SourcePath& folder) {
   std::vector<std::string> files = folder.names();
-  std::erase_if(files, [&folder](const std::string& name) { return !(folder / name).is_file(); });
+  const std::set<std::string> external = external_file_names();  // four numbers a line look like an event
+  std::erase_if(files, [&](const std::string& name) { return external.contains(name) || !(folder / name).is_file(); });
   return files;
 }
 

@@ -6,6 +6,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 
 #include "edged/io/text.hpp"
 
@@ -24,7 +25,7 @@ void ArrivalQueue<T>::push(T item) {
       std::move(item), [this](T passed) { insert(std::move(passed)); },
       [this](const T& dropped, Timestamp next) {
         repairs_.add(subject_ + ": stamp far ahead, dropped",
-                     fmt::format("{}: stamp {} s is followed by {} s", subject_, format_seconds(dropped.t),
+                     fmt::format("{}: stamp {} s is followed by {} s", subject_, format_seconds(time_of(dropped)),
                                  format_seconds(next)));
       });
 }
@@ -35,7 +36,7 @@ void ArrivalQueue<T>::push(std::span<const T> items) {
     const std::size_t count = gate_.push_first(items.first(count_in_order(items)));
     if (count > 0) {
       sorted_.insert(sorted_.end(), items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count));
-      last_ = items[count - 1].t;
+      last_ = time_of(items[count - 1]);
     } else {
       push(items.front());
     }
@@ -49,8 +50,8 @@ std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items) const {
   if (!stamps_repeat_) return 0;
   std::size_t count = 0;
   for (Timestamp before = std::max(newest(), handed_out_); count < items.size(); ++count) {
-    if (items[count].t < before) break;
-    before = items[count].t;
+    if (time_of(items[count]) < before) break;
+    before = time_of(items[count]);
   }
   return count;
 }
@@ -64,23 +65,23 @@ template <typename T>
 T ArrivalQueue<T>::pop() {
   T item = std::move(sorted_.front());
   sorted_.pop_front();
-  handed_out_ = item.t;
+  handed_out_ = time_of(item);
   return item;
 }
 
 template <typename T>
 std::vector<T> ArrivalQueue<T>::pop_before(Timestamp end, std::size_t most) {
   const auto last = sorted_.begin() + static_cast<std::ptrdiff_t>(std::min(most, sorted_.size()));
-  const auto cut = std::partition_point(sorted_.begin(), last, [end](const T& item) { return item.t < end; });
+  const auto cut = std::partition_point(sorted_.begin(), last, [end](const T& item) { return time_of(item) < end; });
   std::vector<T> items(sorted_.begin(), cut);
   sorted_.erase(sorted_.begin(), cut);
-  if (!items.empty()) handed_out_ = items.back().t;
+  if (!items.empty()) handed_out_ = time_of(items.back());
   return items;
 }
 
 template <typename T>
 void ArrivalQueue<T>::insert(T item) {
-  const Timestamp t = item.t;
+  const Timestamp t = time_of(item);
   last_ = t;
   const auto repair = [&](const char* kind) {
     repairs_.add(subject_ + ": " + kind, fmt::format("{}: stamp {} s: {}", subject_, format_seconds(t), kind));
@@ -91,8 +92,8 @@ void ArrivalQueue<T>::insert(T item) {
     return;
   }
   const auto place =
-      std::upper_bound(sorted_.begin(), sorted_.end(), t, [](Timestamp a, const T& b) { return a < b.t; });
-  const bool repeated = t == newest() || (place != sorted_.begin() && std::prev(place)->t == t);
+      std::upper_bound(sorted_.begin(), sorted_.end(), t, [](Timestamp a, const T& b) { return a < time_of(b); });
+  const bool repeated = t == newest() || (place != sorted_.begin() && time_of(*std::prev(place)) == t);
   if (repeated && !stamps_repeat_) return repair("duplicate stamp");
   repair("out of order, sorted in");
   sorted_.insert(place, std::move(item));
@@ -101,7 +102,10 @@ void ArrivalQueue<T>::insert(T item) {
 Merger::Merger(Repairs& repairs)
     : events_("events", true, 4'000'000, repairs),
       frames_("frames", false, 300, repairs),
-      imu_("imu", false, 100'000, repairs) {}
+      imu_("imu", false, 100'000, repairs) {
+  for (const ExternalSensor& sensor : external_sensors())
+    external_.emplace_back(std::string(sensor.name), false, 100'000, repairs);
+}
 
 void Merger::expect(const Streams& streams) {
   event_camera_ = streams.event_camera;
@@ -137,6 +141,8 @@ void Merger::push(const ImuSample& sample) {
   note(imu_pace_, imu_.last());
 }
 
+void Merger::push(const ExternalSample& sample) { external_[sample.index()].push(sample); }
+
 void Merger::note(Pace& pace, std::optional<Timestamp> last) {
   if (!last) return;
   if (!begin_) begin_ = last;
@@ -148,6 +154,7 @@ void Merger::finish() {
   events_.finish();
   frames_.finish();
   imu_.finish();
+  for (auto& queue : external_) queue.finish();
   finished_ = true;
 }
 
@@ -166,11 +173,19 @@ Timestamp Merger::horizon() const {
   return std::max({settled, events_.overflow(), frames_.overflow(), imu_.overflow()});
 }
 
+ArrivalQueue<ExternalSample>& Merger::next_external() {
+  return *std::ranges::min_element(external_, {}, &ArrivalQueue<ExternalSample>::next_stamp);
+}
+
 std::optional<Measurement> Merger::pop() {
   const Timestamp ready = horizon();
-  const NextStream next = next_stream(imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp());
-  if (std::min({imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp()}) >= ready) return std::nullopt;
+  ArrivalQueue<ExternalSample>& external = next_external();
+  const std::array stamps{imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp(), external.next_stamp()};
+  const NextStream next = next_stream(stamps[0], stamps[1], stamps[2], stamps[3]);
+  if (std::ranges::min(stamps) >= ready) return std::nullopt;
   switch (next.stream) {
+    case NextStream::Stream::External:
+      return external.pop();
     case NextStream::Stream::Imu:
       return imu_.pop();
     case NextStream::Stream::Frame:

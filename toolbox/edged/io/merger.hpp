@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/external_sensor.hpp"
 #include "edged/core/jump_gate.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/core/stream_order.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/measurement.hpp"
@@ -19,7 +21,7 @@ namespace edged {
 /// A batch of events spans no more.
 inline constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 
-/// The items of one stream, T with a member `Timestamp t`, sorted although they may come a little out of order. A stamp
+/// The items of one stream, T with a `time_of`, sorted although they may come a little out of order. A stamp
 /// far ahead of all others counts only once another confirms it, so that one damaged stamp does not end the stream.
 template <typename T>
 class ArrivalQueue {
@@ -37,7 +39,7 @@ class ArrivalQueue {
   void clear() { sorted_.clear(); }
 
   const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
-  Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : sorted_.front().t; }
+  Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : time_of(sorted_.front()); }
   T pop();
   /// Those before `end`, at most so many.
   std::vector<T> pop_before(Timestamp end, std::size_t most);
@@ -46,7 +48,7 @@ class ArrivalQueue {
   std::optional<Timestamp> last() const { return last_; }
   /// What is before this has to leave, as too much is held.
   Timestamp overflow() const {
-    return sorted_.size() <= max_held_ ? Timestamp::min() : sorted_[sorted_.size() - max_held_].t + Duration(1);
+    return sorted_.size() <= max_held_ ? Timestamp::min() : time_of(sorted_[sorted_.size() - max_held_]) + Duration(1);
   }
 
  private:
@@ -87,6 +89,8 @@ class Merger {
   void push(std::span<const Event> events);
   void push(Frame frame);
   void push(const ImuSample& sample);
+  /// Is never waited for: it comes in its place where it is not later in the file than what follows it.
+  void push(const ExternalSample& sample);
   /// The file has ended: all that is held gets ready.
   void finish();
 
@@ -101,6 +105,7 @@ class Merger {
   };
   void note(Pace& pace, std::optional<Timestamp> last);
   Timestamp horizon() const;
+  ArrivalQueue<ExternalSample>& next_external();
   EventBatch take_events(Timestamp end);
 
   std::string event_camera_;
@@ -109,6 +114,7 @@ class Merger {
   ArrivalQueue<Event> events_;
   ArrivalQueue<Frame> frames_;
   ArrivalQueue<ImuSample> imu_;
+  std::vector<ArrivalQueue<ExternalSample>> external_;  ///< one a sensor
   bool finished_ = false;
 };
 

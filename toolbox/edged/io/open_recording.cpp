@@ -22,6 +22,7 @@
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
 #include "edged/io/zip_archive.hpp"
 
@@ -60,7 +61,9 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
     }
   }
   if (calibration) recording.calibration = std::move(calibration);
+  read.merge(external_file_names());
   tell_unread(folder, read);
+  recording.dataset = with_external_files(std::move(recording.dataset), folder);
   return recording;
 }
 
@@ -93,10 +96,16 @@ std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, co
     std::set<std::string> read = images_of(folder);
     read.insert({"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
                  "depthmaps.txt", "depthmaps"});
+    read.merge(external_file_names());
     tell_unread(folder, read);
+    recording.dataset = with_external_files(std::move(recording.dataset), folder);
     return recording;
   }
-  if (const auto mav0 = find_mav0(folder)) return open_euroc(*mav0, options.cameras);
+  if (const auto mav0 = find_mav0(folder)) {
+    Recording recording = open_euroc(*mav0, options.cameras);
+    recording.dataset = with_external_files(std::move(recording.dataset), *mav0);
+    return recording;
+  }
   return std::nullopt;
 }
 

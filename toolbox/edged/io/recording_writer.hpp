@@ -20,6 +20,7 @@ class RecordingWriter {
   virtual void write(const EventBatch& batch) = 0;
   virtual void write(const Frame& /*frame*/) {}
   virtual void write(const ImuSample& /*sample*/) {}
+  virtual void write(const ExternalSample& /*sample*/) {}
   virtual void write(const GroundTruth& /*truth*/) {}
   /// Completes the files. Throws InputError where they cannot be written, as all members do.
   virtual void finish() = 0;

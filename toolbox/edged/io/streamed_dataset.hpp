@@ -45,6 +45,7 @@ class StreamedDataset : public Dataset {
   /// image: CV_8UC1. Throws Damage for another size than that of the first.
   void push_frame(Timestamp t, cv::Mat image);
   void push_imu(const ImuSample& sample) { merger_.push(sample); }
+  void push_external(const ExternalSample& sample) { merger_.push(sample); }
 
   /// So many events, which the reader has left out itself, were outside the sensor.
   void count_outside(std::size_t count);

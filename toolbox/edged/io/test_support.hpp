@@ -82,7 +82,7 @@ class ListedDataset : public Dataset {
   DatasetInfo& describe() { return info_; }
 
  private:
-  DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, {}, cv::Size(240, 180)};
+  DatasetInfo info_{"listed", "listed", "body", {}, {}, true, true, true, {}, {}, cv::Size(240, 180)};
   std::size_t next_ = 0;
 };
 

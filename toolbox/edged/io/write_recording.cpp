@@ -10,6 +10,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/ecd_writer.hpp"
@@ -25,8 +26,13 @@ namespace {
 constexpr Duration kMicrosecond = std::chrono::microseconds(1);
 
 constexpr std::array kWritable = {
-    WritableFormat{
-        .name = "ecd", .extension = "", .frames = true, .imu = true, .ground_truth = true, .open = write_ecd},
+    WritableFormat{.name = "ecd",
+                   .extension = "",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .external = true,
+                   .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
     WritableFormat{.name = "aedat4",
@@ -71,6 +77,11 @@ class Sieve {
     ++(format_.imu ? counts.imu : counts.imu_left_out);
   }
 
+  void operator()(const ExternalSample& sample) {
+    if (format_.external) writer_.write(sample);
+    ++(format_.external ? counts.external : counts.external_left_out)[std::string(sensor_of(sample).name)];
+  }
+
   void operator()(const GroundTruth& truth) {
     if (format_.ground_truth) writer_.write(truth);
     (format_.ground_truth ? counts.poses : counts.poses_left_out) = truth.trajectory.size();
@@ -108,6 +119,12 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
     known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
   throw InputError::format("{}: nothing is written in format `{}`; give --format, one of: {}", path.string(),
                            name.empty() ? extension : name, fmt::join(known, ", "));
+}
+
+std::string external_text(const std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  for (const auto& [sensor, count] : counts) text += fmt::format(", {} {} samples", count, sensor);
+  return text;
 }
 
 WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,

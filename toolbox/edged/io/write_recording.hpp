@@ -5,9 +5,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "edged/io/recording_writer.hpp"
@@ -15,10 +17,10 @@
 namespace edged {
 
 struct WritableFormat {
-  std::string_view name;                                   ///< "ecd"
-  std::string_view extension;                              ///< of files, with its dot; "" for a folder
-  bool frames = false, imu = false, ground_truth = false;  ///< held besides events
-  Duration tick = Duration(1);                             ///< stamps of events are multiples of it
+  std::string_view name;       ///< "ecd"
+  std::string_view extension;  ///< of files, with its dot; "" for a folder
+  bool frames = false, imu = false, ground_truth = false, external = false;  ///< held besides events
+  Duration tick = Duration(1);                                               ///< stamps of events are multiples of it
   std::unique_ptr<RecordingWriter> (*open)(const WriterSetup& setup) = nullptr;
 };
 
@@ -37,7 +39,11 @@ struct WriteOptions {
 struct WriteCounts {
   std::size_t events = 0, frames = 0, imu = 0, poses = 0;
   std::size_t frames_left_out = 0, imu_left_out = 0, poses_left_out = 0;
+  std::map<std::string, std::size_t> external = {}, external_left_out = {};  ///< by the name of the sensor
 };
+
+/// ", 250 height samples"; "" where there are none.
+std::string external_text(const std::map<std::string, std::size_t>& counts);
 
 /// Reads `dataset` to its end and writes it. Read back, every event is the same to the last bit. Throws InputError
 /// where something is at `path` already or cannot be written, and for stamps of events that the format is too coarse

@@ -41,7 +41,7 @@ bool MeasurementQueue::push(Measurement measurement) {
   const std::optional<Timestamp> stamp = last_stamp(measurement);
   {
     std::unique_lock lock(mutex_);
-    const bool must_stay = when_full_ == WhenFull::Wait || std::holds_alternative<ImuSample>(measurement);
+    const bool must_stay = when_full_ == WhenFull::Wait || camera_of(measurement) == nullptr;
     if (must_stay && full()) less_.wait(lock, [this] { return closed_ || half_empty(); });
     if (closed_) return false;
     if (!stamp) return true;  // an empty batch
@@ -59,12 +59,12 @@ bool MeasurementQueue::push(Measurement measurement) {
 
 /// Of what is not shed.
 bool MeasurementQueue::full() const {
-  return imu_.size() >= static_cast<std::size_t>(config_.max_imu_samples) ||
+  return samples_.size() >= static_cast<std::size_t>(config_.max_imu_samples) ||
          (when_full_ == WhenFull::Wait && bytes() >= room());
 }
 
 bool MeasurementQueue::half_empty() const {
-  return imu_.size() <= static_cast<std::size_t>(config_.max_imu_samples) / 2 &&
+  return samples_.size() <= static_cast<std::size_t>(config_.max_imu_samples) / 2 &&
          (when_full_ == WhenFull::Shed || bytes() <= room() / 2);
 }
 
@@ -77,7 +77,7 @@ void MeasurementQueue::add(Measurement measurement) {
     frame_bytes_ += bytes_of(*frame);
     frames_.emplace_back(place, std::move(*frame));
   } else {
-    imu_.emplace_back(place, std::get<ImuSample>(measurement));
+    samples_.emplace_back(place, std::move(measurement));
   }
 }
 
@@ -112,7 +112,7 @@ void MeasurementQueue::shed_frames() {
 void MeasurementQueue::note_peaks() {
   peaks_.events = std::max(peaks_.events, events_);
   peaks_.frames = std::max(peaks_.frames, frames_.size());
-  peaks_.imu = std::max(peaks_.imu, imu_.size());
+  peaks_.imu = std::max(peaks_.imu, samples_.size());
   peaks_.bytes = std::max(peaks_.bytes, bytes());
   if (const auto t = oldest()) peaks_.age_s = std::max(peaks_.age_s, to_seconds(newest_ - *t));
 }
@@ -128,7 +128,7 @@ std::optional<Measurement> MeasurementQueue::pop() {
   bool goes_on = false;
   {
     std::unique_lock lock(mutex_);
-    more_.wait(lock, [this] { return closed_ || !batches_.empty() || !frames_.empty() || !imu_.empty(); });
+    more_.wait(lock, [this] { return closed_ || !batches_.empty() || !frames_.empty() || !samples_.empty(); });
     first = take();
     goes_on = half_empty();
   }
@@ -137,7 +137,8 @@ std::optional<Measurement> MeasurementQueue::pop() {
 }
 
 std::optional<Measurement> MeasurementQueue::take() {
-  const std::uint64_t batch = place_of_first(batches_), frame = place_of_first(frames_), sample = place_of_first(imu_);
+  const std::uint64_t batch = place_of_first(batches_), frame = place_of_first(frames_),
+                      sample = place_of_first(samples_);
   if (batch < std::min(frame, sample)) {
     events_ -= batches_.front().second.events.size();
     return take_first(batches_);
@@ -146,8 +147,8 @@ std::optional<Measurement> MeasurementQueue::take() {
     frame_bytes_ -= bytes_of(frames_.front().second);
     return take_first(frames_);
   }
-  if (imu_.empty()) return std::nullopt;
-  return take_first(imu_);
+  if (samples_.empty()) return std::nullopt;
+  return take_first(samples_);
 }
 
 void MeasurementQueue::close() {
@@ -165,7 +166,7 @@ void MeasurementQueue::interrupt() {
     closed_ = true;
     batches_.clear();
     frames_.clear();
-    imu_.clear();
+    samples_.clear();
     events_ = frame_bytes_ = 0;
   }
   more_.notify_all();

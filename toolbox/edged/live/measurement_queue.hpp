@@ -45,8 +45,8 @@ struct QueuePeaks {
 
 /// First in, first out; when too much waits push waits, or the queue sheds, never the IMU. The oldest events go first:
 /// they come in excess, and a late result is worth less than one from fewer events. A frame stands for more than the
-/// events of its time and costs less, so frames go after all events or at twice their age, the oldest first. IMU
-/// samples are small and cannot be replaced: with too many of them push waits.
+/// events of its time and costs less, so frames go after all events or at twice their age, the oldest first. Samples
+/// of the IMU and of external sensors are small and cannot be replaced: with too many of them push waits.
 ///
 /// One thread may push while another pops. Where push waits, it waits until half of what is allowed is left: threads
 /// that wake each other for every measurement cost more than they read.
@@ -90,7 +90,7 @@ class MeasurementQueue {
   std::condition_variable more_, less_;  ///< to pop; waits, for push to go on
   Line<EventBatch> batches_;             // none empty
   Line<Frame> frames_;
-  Line<ImuSample> imu_;
+  Line<Measurement> samples_;  // of the IMU and of external sensors
   std::uint64_t next_place_ = 0;
   std::size_t events_ = 0, frame_bytes_ = 0;
   Timestamp newest_ = Timestamp::min();

@@ -37,10 +37,10 @@ Measurement take_events(std::optional<Measurement>& measurement, Timestamp end) 
 SimulatedPair::SimulatedPair(const SimulatorConfig& config, double baseline_m)
     : left_(config), right_(of_right(config, baseline_m)) {}
 
-/// Its IMU is that of the left one.
+/// Its IMU and its external sensors are those of the left one.
 std::optional<Measurement> SimulatedPair::take_right() {
   while (std::optional<Measurement> measurement = right_.next()) {
-    if (!std::holds_alternative<ImuSample>(*measurement)) return measurement;
+    if (camera_of(*measurement)) return measurement;
   }
   return std::nullopt;
 }
@@ -51,8 +51,9 @@ std::optional<Measurement> SimulatedPair::next() {
   const Timestamp left_events = stamp_as<EventBatch>(of_left_), right_events = stamp_as<EventBatch>(of_right_);
   const Timestamp left_frame = stamp_as<Frame>(of_left_), right_frame = stamp_as<Frame>(of_right_);
   const NextStream turn = next_stream(stamp_as<ImuSample>(of_left_), std::min(left_events, right_events),
-                                      std::min(left_frame, right_frame));
+                                      std::min(left_frame, right_frame), stamp_as<ExternalSample>(of_left_));
   switch (turn.stream) {
+    case NextStream::Stream::External:
     case NextStream::Stream::Imu:
       return std::exchange(of_left_, std::nullopt);
     case NextStream::Stream::Events:

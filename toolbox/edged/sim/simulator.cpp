@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
 
 namespace edged {
 namespace {
@@ -98,6 +99,8 @@ void SimulatorConfig::visit(ConfigFields& fields) {
   fields.group("events", events);
   fields.group("frames", frames);
   fields.group("imu", imu);
+  fields.group("height", external.height);
+  fields.group("velocity", external.velocity);
   fields.group("disturbance", disturbance);
 }
 
@@ -124,6 +127,12 @@ Simulator::Simulator(const SimulatorConfig& config)
   info_.end = end_ + std::max(Duration(0), time_offset_);
   info_.has_events = info_.has_frames = info_.has_imu = true;
   info_.event_sensor = cv::Size(config.camera.width, config.camera.height);
+  for (std::size_t i = 0; i < kExternalSensors; ++i) {
+    ExternalModel model(config.external, i, static_cast<std::uint64_t>(config.seed), time_offset_);
+    if (!model.peek(trajectory_, config.duration_s)) continue;
+    info_.external.emplace_back(external_sensors()[i].name);
+    external_models_.push_back(std::move(model));
+  }
 }
 
 std::optional<GroundTruth> Simulator::ground_truth() const {
@@ -151,17 +160,21 @@ std::optional<Measurement> Simulator::next() {
     const bool finished = t_ && *t_ >= end_;
     const Timestamp complete = finished ? kForever : (t_ ? std::min(*t_, exposure_middle()) : Timestamp::min());
     const Timestamp imu = imu_ ? imu_->t : kForever;
+    ExternalModel* const sensor = next_external();
+    const Timestamp external = sensor ? time_of(*sensor->peek(trajectory_, config_.duration_s)) : kForever;
     const Timestamp event = events_.empty() ? kForever : events_.front().t;
     const Timestamp frame = frames_.empty() ? kForever : frames_.front().t;
-    const Timestamp first = std::min({imu, event, frame});
+    const Timestamp first = std::min({external, imu, event, frame});
     if (first == kForever && finished) return std::nullopt;
     if (first >= complete) {
       advance();
+    } else if (external == first) {
+      return sensor->pop();
     } else if (imu == first) {
       return *std::exchange(imu_, std::nullopt);
     } else if (event == first) {
       const Timestamp after_frame = frame == kForever ? kForever : frame + Duration(1);
-      return take_events(std::min({imu, after_frame, complete, event + kLongestBatch}));
+      return take_events(std::min({external, imu, after_frame, complete, event + kLongestBatch}));
     } else {
       Frame taken = std::move(frames_.front());
       frames_.pop_front();
@@ -188,6 +201,18 @@ void Simulator::prepare_imu() {
     if (config_.disturbance.is(DisturbanceKind::ImuGap, t_cam_s)) imu_.reset();
     ++imu_count_;
   }
+}
+
+ExternalModel* Simulator::next_external() {
+  ExternalModel* first = nullptr;
+  Timestamp t = kForever;
+  for (ExternalModel& model : external_models_) {
+    const std::optional<ExternalSample>& sample = model.peek(trajectory_, config_.duration_s);
+    if (!sample || time_of(*sample) >= t) continue;
+    first = &model;
+    t = time_of(*sample);
+  }
+  return first;
 }
 
 Timestamp Simulator::exposure_begin() const {

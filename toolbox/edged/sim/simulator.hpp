@@ -12,6 +12,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/event_camera.hpp"
+#include "edged/sim/external_model.hpp"
 #include "edged/sim/frame_camera.hpp"
 #include "edged/sim/imu_model.hpp"
 #include "edged/sim/motion.hpp"
@@ -43,6 +44,7 @@ struct SimulatorConfig {
   EventCameraConfig events;
   FrameCameraConfig frames;
   ImuModelConfig imu;
+  ExternalModelConfig external;
   Disturbance disturbance;
 
   /// Pose of the camera in the body; not an option.
@@ -99,6 +101,8 @@ class Simulator : public Dataset {
   void advance();
   Timestamp next_render_time() const;
   void prepare_imu();
+  /// The external sensor whose sample is next; null without any.
+  ExternalModel* next_external();
   void collect_light(Timestamp from, Timestamp to);
   /// Per pixel, from now until the next picture.
   double storm_hz() const;
@@ -117,6 +121,7 @@ class Simulator : public Dataset {
   EventCamera event_camera_;
   FrameCamera frame_camera_;
   ImuModel imu_model_;
+  std::vector<ExternalModel> external_models_;
   Duration time_offset_, exposure_;  // the latter of the next frame
   Timestamp end_;                    // of the cameras
   std::optional<Timestamp> t_;       // rendered up to here

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "edged/core/angles.hpp"
+#include "edged/survey/external_diagnosis.hpp"
 
 namespace edged {
 namespace {
@@ -379,6 +380,7 @@ std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::
   judge_imu_units(survey, cameras, out);
   judge_events(survey, out);
   judge_frames(survey, out);
+  judge_external(survey.external, survey.imu, out.list);
   for (const CameraCheck& check : cameras) judge_camera(check, survey, out);
   judge_accel(cameras, out);
   if (!calibrated)

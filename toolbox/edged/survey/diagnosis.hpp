@@ -7,23 +7,11 @@
 #include <vector>
 
 #include "edged/rig.hpp"
+#include "edged/survey/finding.hpp"
 #include "edged/survey/gyro_agreement.hpp"
 #include "edged/survey/survey.hpp"
 
 namespace edged {
-
-enum class Severity {
-  Good,     ///< looked at and found in order
-  Note,     ///< worth knowing
-  Warning,  ///< costs accuracy
-  Error     ///< a run fails or is wrong
-};
-
-struct Finding {
-  Severity severity = Severity::Good;
-  std::string text;    ///< one line with numbers
-  std::string remedy;  ///< what to do; empty where nothing is
-};
 
 /// What to do about a camera whose inverse transform fits, whoever found that.
 inline constexpr const char* kTurnRound =
@@ -37,8 +25,8 @@ struct CameraCheck {
   std::optional<GyroAgreement> agreement;  ///< nothing where there was too little to compare
 };
 
-/// In the order of their subjects: streams, IMU, events, frames, calibration, ground truth, repairs. calibrated: there
-/// is a calibration, though maybe of no camera that is recorded.
+/// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs.
+/// calibrated: there is a calibration, though maybe of no camera that is recorded.
 std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras);
 
 }  // namespace edged

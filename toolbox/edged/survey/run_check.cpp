@@ -130,7 +130,7 @@ void RunCheck::add(const Measurement& measurement) {
     if (std::ranges::all_of(cameras_, [](const Camera& camera) { return camera.done || camera.waits; })) return;
     gyro_.add(*sample);
     rate_ += kNewest * (sample->gyro_B.norm() - rate_);
-  } else {
+  } else if (name) {
     note(first_visual_, visual_);
     for (Camera& camera : cameras_) follow(camera, measurement);
     if (visual_ > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;

@@ -47,10 +47,11 @@ void Surveyor::add(const Measurement& measurement, Detail detail) {
     if (detail != Detail::All) return;
     brightness_sum_ += cv::mean(frame->image)[0];
     ++measured_frames_;
-  } else {
-    const auto& sample = std::get<ImuSample>(measurement);
-    imu_.add(sample.t, sample.t);
-    imu_details_.add(sample);
+  } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
+    imu_.add(sample->t, sample->t);
+    imu_details_.add(*sample);
+  } else if (const auto* external = std::get_if<ExternalSample>(&measurement)) {
+    external_[std::string(sensor_of(*external).name)].add(*external);
   }
 }
 
@@ -63,6 +64,7 @@ Survey Surveyor::so_far() const {
   survey.event_details = event_details_.result();
   survey.imu_details = imu_details_.result();
   survey.image_size = image_size_;
+  for (const auto& [name, surveyor] : external_) survey.external[name] = surveyor.result();
   if (measured_frames_ > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
   return survey;
 }

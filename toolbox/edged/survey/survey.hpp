@@ -10,6 +10,7 @@
 
 #include "edged/core/dataset.hpp"
 #include "edged/survey/event_survey.hpp"
+#include "edged/survey/external_survey.hpp"
 #include "edged/survey/imu_survey.hpp"
 #include "edged/survey/stream_survey.hpp"
 
@@ -28,6 +29,7 @@ struct Survey {
   ImuSurvey imu_details;
   cv::Size image_size;           ///< of the first image
   double mean_brightness = 0.0;  ///< of all images, 0 to 255
+  ExternalSurveys external;
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
 
@@ -55,6 +57,7 @@ class Surveyor {
   StreamSurveyor events_, frames_, imu_;
   EventSurveyor event_details_;
   ImuSurveyor imu_details_;
+  std::map<std::string, ExternalSurveyor> external_;
   cv::Size image_size_;
   double brightness_sum_ = 0.0;
   std::size_t measured_frames_ = 0;  ///< in that sum

@@ -6,7 +6,7 @@
 namespace edged {
 namespace {
 
-constexpr double kMicrosecond = 1e-6;
+constexpr double kMicrosecond_s = 1e-6;
 
 Lens read_dv_camera(const YamlReader& node, const std::string& key) {
   Lens lens;
@@ -55,7 +55,7 @@ CalibrationFile read_dv_json(const YamlReader& root) {
     // p_Cn = T * p_C0, against its name: it is what OpenCV's stereoCalibrate gives for the second camera.
     lens.T_B_C = T_B_C0 * node.at("transformationToC0").transform().inverse();
     // t_cam = t_imu - timeOffsetMicros.
-    if (imu) lens.time_offset = imu->at("timeOffsetMicros").time_offset(kMicrosecond);
+    if (imu) lens.time_offset = imu->at("timeOffsetMicros").time_offset(kMicrosecond_s);
     out.lenses.push_back(std::move(lens));
   }
   if (imu)

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/io/text.hpp"
 
 namespace edged {
@@ -60,6 +62,34 @@ StampedPose pose_from(Timestamp t, WireReader& message) {
   const Eigen::Vector4d xyzw = message.vector<4>();
   if (!p.allFinite() || !(std::abs(xyzw.norm() - 1.0) < 0.1)) throw Damage("no pose");
   return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
+}
+
+/// ICAO standard atmosphere below 11 km, with the pressure at sea level that it assumes: heights have a zero of their
+/// own.
+HeightSample height_of_pressure(Timestamp t, double pressure_pa, double variance_pa2) {
+  constexpr double kSeaLevel_pa = 101325.0, kScale_m = 44330.77, kExponent = 0.190263;
+  if (!(pressure_pa > 2e4 && pressure_pa < 1.2e5)) throw Damage("no pressure of the air in Pa");
+  const double part = std::pow(pressure_pa / kSeaLevel_pa, kExponent);
+  const double m_per_pa = kScale_m * kExponent * part / pressure_pa;
+  return {t, kScale_m * (1.0 - part), variance_pa2 > 0.0 ? m_per_pa * std::sqrt(variance_pa2) : 0.0};
+}
+
+/// The linear velocity, and of its covariance the diagonal; 0 there: unknown. Behind the header.
+VelocitySample read_twist(std::string_view type, Timestamp t, WireReader& message) {
+  if (type == "nav_msgs/Odometry") {
+    message.text();            // child_frame_id
+    message.vector<7 + 36>();  // pose and its covariance
+  }
+  VelocitySample sample{t, message.vector<3>()};
+  message.vector<3>();  // angular: the gyro knows better
+  if (type == "geometry_msgs/TwistStamped") return sample;
+  const Eigen::Matrix<double, 36, 1> covariance = message.vector<36>();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double variance = covariance[7 * axis];
+    sample.sigma[axis] = variance > 0.0 ? std::sqrt(variance) : 0.0;
+    if (variance >= 1e3) sample.sigma[axis] = std::numeric_limits<double>::infinity();  // how drivers say: not measured
+  }
+  return sample;
 }
 
 }  // namespace
@@ -200,6 +230,25 @@ GrayImage read_compressed_image(WireReader message) try {
   return out;
 } catch (const cv::Exception&) {
   throw Damage("image cannot be decoded");
+}
+
+ExternalSample read_external(std::string_view type, WireReader message) {
+  const Timestamp t = message.header();
+  ExternalSample sample;
+  if (type == "sensor_msgs/FluidPressure") {
+    const auto pressure_pa = message.number<double>(), variance = message.number<double>();
+    sample = height_of_pressure(t, pressure_pa, variance);
+  } else if (type == "sensor_msgs/Range") {
+    message.number<std::uint8_t>();  // sound or light
+    message.number<float>();         // field of view
+    const auto least = message.number<float>(), most = message.number<float>(), range = message.number<float>();
+    if (!(range >= least && range <= most)) throw Damage("out of its range");
+    sample = HeightSample{t, range, 0.0};
+  } else {
+    sample = read_twist(type, t, message);
+  }
+  if (!is_plausible(sample)) throw Damage("not finite, or more than such a sensor measures");
+  return sample;
 }
 
 StampedPose read_pose_stamped(WireReader message) {

@@ -74,6 +74,9 @@ struct GrayImage {
 GrayImage read_image(WireReader message);
 GrayImage read_compressed_image(WireReader message);
 
+/// Of FluidPressure by the standard atmosphere, of Range (downwards) and of any twist, by the type of the message.
+ExternalSample read_external(std::string_view type, WireReader message);
+
 StampedPose read_pose_stamped(WireReader message);
 /// TransformStamped and Odometry, which name the frame whose pose it is.
 struct NamedPose {

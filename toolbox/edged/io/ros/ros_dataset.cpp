@@ -31,6 +31,9 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
   begin(
       {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
+  for (std::size_t role = 0; role < kRoleNames.size(); ++role)
+    if (choice_.topics[role] && external_sensor_of(static_cast<Role>(role)))
+      info_.external.emplace_back(kRoleNames[role]);
   info_.pose_frame = truth_frame();
 }
 
@@ -76,6 +79,10 @@ void RosDataset::feed(const Message& message) {
         break;
       case Role::Truth:
         break;  // in a pass of its own
+      case Role::Height:
+      case Role::Velocity:
+        push_external(read_external(type, reader));
+        break;
     }
     ++good_[index];
   } catch (const Damage& damage) {
@@ -90,6 +97,7 @@ void RosDataset::judge(std::size_t role, const std::string& reason) {
   const std::string detail = fmt::format("{}: {} ({}): {}", name_, topic.name, topic.type, reason);
   repairs_.add(fmt::format("{}: message unreadable", kRoleNames[role]), detail);
   ++bad_[role];
+  if (external_sensor_of(static_cast<Role>(role))) return;  // what is in water is none of the air's pressure
   if (good_[role] == 0 && bad_[role] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
     throw InputError::format("{}; none of its first {} messages can be read: give --topic {}=NAME or none", detail,
                              bad_[role], kRoleNames[role]);

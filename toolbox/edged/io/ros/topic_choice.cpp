@@ -22,6 +22,10 @@ std::optional<Role> role_of(const std::string& type) {
       {"geometry_msgs/PoseStamped", Role::Truth},
       {"geometry_msgs/TransformStamped", Role::Truth},
       {"nav_msgs/Odometry", Role::Truth},
+      {"sensor_msgs/FluidPressure", Role::Height},
+      {"sensor_msgs/Range", Role::Height},
+      {"geometry_msgs/TwistStamped", Role::Velocity},
+      {"geometry_msgs/TwistWithCovarianceStamped", Role::Velocity},
       // Streams of AEDAT4.
       {"EVTS", Role::Events},
       {"FRME", Role::Frames},
@@ -31,7 +35,18 @@ std::optional<Role> role_of(const std::string& type) {
   return found == roles.end() ? std::nullopt : std::optional(found->second);
 }
 
+const ExternalSensor* external_sensor_of(Role role) {
+  return find_external_sensor(kRoleNames[static_cast<std::size_t>(role)]);
+}
+
 namespace {
+
+bool fits(const std::string& type, Role role) {
+  return role_of(type) == role || (role == Role::Velocity && type == "nav_msgs/Odometry");
+}
+
+/// Without being asked for: a bag may hold several barometers, and twists that are commands.
+bool is_chosen_by_itself(Role role, std::size_t fitting) { return fitting == 1 && role != Role::Velocity; }
 
 std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
   std::vector<std::size_t> found;
@@ -53,7 +68,7 @@ std::string listed(const std::vector<Topic>& topics, const std::vector<std::size
 std::size_t wanted_topic(const std::vector<Topic>& topics, Role role, const std::string& name,
                          const std::string& file) {
   for (std::size_t i = 0; i < topics.size(); ++i)
-    if (topics[i].name == name && role_of(topics[i].type) == role) return i;
+    if (topics[i].name == name && fits(topics[i].type, role)) return i;
   throw InputError::format("{}: no topic {} that could be {}; there are: {}", file, name,
                            kRoleNames[static_cast<std::size_t>(role)], listed(topics, candidates(topics, role)));
 }
@@ -92,9 +107,13 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& 
       if (name->second != "none") choice.topics[r] = wanted_topic(topics, role, name->second, file);
       continue;
     }
-    const std::vector<std::size_t> fitting = candidates(topics, role);
-    if (fitting.size() == 1) choice.topics[r] = fitting.front();
-    if (fitting.size() > 1) ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
+    std::vector<std::size_t> fitting = candidates(topics, role);
+    std::erase_if(fitting, [&](std::size_t i) {  // wanted as another
+      return std::ranges::any_of(wanted, [&](const auto& other) { return other.second == topics[i].name; });
+    });
+    if (is_chosen_by_itself(role, fitting.size())) choice.topics[r] = fitting.front();
+    if (fitting.size() > 1 && !external_sensor_of(role))
+      ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
   }
   if (!ties.empty())
     throw InputError::format("{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none){}", file,

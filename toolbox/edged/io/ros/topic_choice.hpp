@@ -8,13 +8,18 @@
 #include <optional>
 #include <string>
 
+#include "edged/core/external_sensor.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
 
-enum class Role { Events, Frames, Imu, Truth };
-inline constexpr std::array<const char*, 4> kRoleNames = {"events", "frames", "imu", "truth"};
+enum class Role { Events, Frames, Imu, Truth, Height, Velocity };
+inline constexpr std::array<const char*, 6> kRoleNames = {"events", "frames", "imu", "truth", "height", "velocity"};
+static_assert(kRoleNames.size() == 4 + kExternalSensors, "a role for each");
+
+/// The external sensor of a role; null for the other roles.
+const ExternalSensor* external_sensor_of(Role role);
 
 /// Of messages of that type ("dvs_msgs/EventArray"); nothing for what is of no use here.
 std::optional<Role> role_of(const std::string& type);
@@ -34,9 +39,10 @@ struct TopicChoice {
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// The only topic of a fitting type takes its role. Throws InputError that lists them where there are several, where
-/// the bag lacks a wanted one, where no sensor is left, and for
-/// the event messages of 2015.
+/// The only topic of a fitting type takes its role, but for velocity: a twist may be a command, and its axes are those
+/// of whatever sensor it is, so that its topic has to be named (an Odometry, too). Throws InputError that lists them
+/// where there are several, where the bag lacks a wanted one, where no sensor is left, and for the event messages of
+/// 2015.
 TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/io/text.hpp"
 #include "edged/time.hpp"
@@ -18,7 +19,7 @@ namespace edged {
 /// What a last line without line end means: numbers may have lost digits, a file name is checked anyway.
 enum class LastLine { MustEnd, MayLackEnd };
 
-/// T has a member `Timestamp t`. Unreadable and late lines and repeated stamps are left out and counted.
+/// T has a `time_of`. Unreadable and late lines and repeated stamps are left out and counted.
 template <typename T>
 class StampedLines {
  public:
@@ -40,7 +41,7 @@ class StampedLines {
 
   T pop() {
     T item = std::move(*next_);
-    taken_ = item.t;
+    taken_ = time_of(item);
     advance();
     return item;
   }
@@ -54,13 +55,14 @@ class StampedLines {
     while (auto item = parse_next()) {
       if (!held_) {
         held_ = std::move(item);
-      } else if (item->t > held_->t) {
+      } else if (time_of(*item) > time_of(*held_)) {
         next_ = std::exchange(held_, std::move(item));
         return;
-      } else if (item->t == held_->t) {
+      } else if (time_of(*item) == time_of(*held_)) {
         damage_.mended(line_, "duplicate stamp", "same stamp as the line above; the first is kept");
       } else {
-        const bool held_is_wrong = held_->t - item->t > kWrongStamp && (!taken_ || item->t > *taken_);
+        const bool held_is_wrong =
+            time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
         damage_.bad(line_, "out of order, dropped", "stamp goes back in time");
         if (held_is_wrong) held_ = std::move(item);
       }
