@@ -43,6 +43,23 @@ struct ImuSample {
   bool made_up = false;                               ///< interpolated where the recording has a gap
 };
 
+/// The height of the body above a level that drifts slowly: a barometer, or a range finder above flat ground.
+struct HeightSample {
+  Timestamp t;            ///< IMU clock
+  double height_m = 0.0;  ///< up positive, from an arbitrary zero
+  double sigma_m = 0.0;   ///< 0: the option height.sigma_m
+};
+
+/// The velocity of a sensor on the body, in that sensor's own axes: wheel odometry, optical flow with range, DVL.
+struct VelocitySample {
+  Timestamp t;                                    ///< IMU clock
+  Eigen::Vector3d v_S = Eigen::Vector3d::Zero();  ///< [m/s], of the sensor against the ground, in its axes S
+  /// [m/s] each axis; 0: the option velocity.sigma_mps; infinite: not measured.
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
+};
+
+using ExternalSample = std::variant<HeightSample, VelocitySample>;
+
 using Measurement = std::variant<EventBatch, Frame, ImuSample>;
 
 /// What a camera gives.
