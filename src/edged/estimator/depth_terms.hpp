@@ -6,6 +6,7 @@
 // held as ln s, one value for the whole window; its random walk acts at the window's old end, where a keyframe leaves.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ bool depth_due(const Window& window);
 
 /// The factor of every state with a depth and enough landmarks in its region. A median has no derivative: the factor
 /// takes the mean over the landmarks around it, the middle half but twelve at most, chosen anew at every call.
-void add_depth_factors(const Window& window, std::vector<Factor>& out);
+void add_depth_factors(const Window& window, std::vector<std::shared_ptr<const Factor>>& out);
 
 /// Residual of a depth at a state over its standard deviation, that of s included; nothing without enough landmarks.
 std::optional<double> depth_error_sigmas(const Window& window, StateId state, const RegionDepth& depth,

@@ -148,11 +148,11 @@ std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t cam
   return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;
 }
 
-std::optional<double> Estimator::depth(FeatureId id) const {
+std::optional<double> Estimator::depth(FeatureId id, const std::string& camera) const {
   const auto found = window_.features().find(id);
   if (found == window_.features().end() || !found->second.anchor) return std::nullopt;
-  const StateId newest = window_.newest_id();
-  const double z = (window_.T_W_C(newest, found->second.camera).inverse() * window_.position(found->second)).z();
+  const ObservationKey view{window_.newest_id(), window_.camera_index(camera)};
+  const double z = (window_.T_W_C(view).inverse() * window_.position(found->second)).z();
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
 
@@ -200,7 +200,9 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   for (const auto& [id, feature] : window_.features()) {
     if (!feature.anchor) continue;
     result.landmarks.push_back({id, window_.position(feature)});
-    if (feature.last_seen == newest_id) ++result.landmarks_seen;
+    if (std::ranges::any_of(feature.last_seen, [&](const auto& seen) { return seen.second == newest_id; })) {
+      ++result.landmarks_seen;
+    }
   }
 }
 

@@ -53,8 +53,8 @@ class Estimator {
   /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
   std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
 
-  /// z-depth of a landmark in its own camera at the newest state [m].
-  std::optional<double> depth(FeatureId id) const;
+  /// z-depth of a landmark in a camera at the newest state [m].
+  std::optional<double> depth(FeatureId id, const std::string& camera) const;
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
   std::optional<LogScale> depth_scale() const;
 

@@ -180,7 +180,7 @@ std::vector<SeenDepth> PacketOdometry::landmarks_seen_by(const Channel& viewer) 
   for (const Channel& channel : channels_) {
     const SE3 T_C_last = T_C_W * channel.T_W_C(channel.T_W_Blast);
     for (const Track& track : channel.tracker.tracks()) {
-      const std::optional<double> z = estimator_.depth(track.id);
+      const std::optional<double> z = estimator_.depth(track.id, channel.camera.name);
       if (!z) continue;
       const Eigen::Vector3d p_C = T_C_last * (*z * track.point.homogeneous());
       if (p_C.z() > 0.0) seen.push_back({p_C.hnormalized(), p_C.z()});
@@ -222,7 +222,9 @@ void PacketOdometry::track(const ChannelView& view, Timestamp t, double scene_de
   const auto timer = timings_.measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
   TrackPrediction prediction;
   prediction.scene_depth = scene_depth;
-  prediction.depth = [this](FeatureId id) { return estimator_.initialized() ? estimator_.depth(id) : std::nullopt; };
+  prediction.depth = [this, &channel](FeatureId id) {
+    return estimator_.initialized() ? estimator_.depth(id, channel.camera.name) : std::nullopt;
+  };
   // Against one look all errors of a track hang together, and the thresholds of a start do not know that: with events
   // alone 3 of 72 starts are wrong by their scale, 1 without.
   prediction.first_looks = !estimator_.provisional();

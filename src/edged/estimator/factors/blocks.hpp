@@ -13,6 +13,9 @@
 
 namespace edged {
 
+/// Names one state of the window; grows with time.
+using StateId = std::uint64_t;
+
 /// A pose block: position, then quaternion x y z w. Tangent (6): p' = p + d_p, q' = q * Exp(d_phi).
 using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
