@@ -294,7 +294,9 @@ TEST(Window, CorrelatesErrorsAlongTheTrackOfEachCamera) {
       const bool first_of_camera = step.before.camera != step.seen.camera;
       EXPECT_EQ(first_of_camera, steps[step.seen.camera]++ == 0 && step.seen.camera != feature.anchor->camera);
       const double at_once = first_of_camera ? 0.0 : step.seen.camera == 0 ? 0.9 : 0.6;
-      if (step.seen.state == step.before.state + 1) EXPECT_NEAR(step.correlation, at_once * decay, 1e-9);
+      if (step.seen.state == step.before.state + 1) {
+        EXPECT_NEAR(step.correlation, at_once * decay, 1e-9);
+      }
     }
   }
   EXPECT_GT(seen_by_both, 20);
@@ -313,7 +315,7 @@ TEST_F(WindowRefuses, ToDropAKeyframeOrAStateAtAnEnd) {
 
 TEST_F(WindowRefuses, ToDropItsOnlyState) {
   Window window(world_.rig(), 1.0);
-  const StateId only = window.add_state(state_at(1.0));
+  window.add_state(state_at(1.0));
   EXPECT_THROW(window.drop_oldest({}), CheckError);
 }
 
