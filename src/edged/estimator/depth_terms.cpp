@@ -58,7 +58,7 @@ double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::
 
 std::shared_ptr<const Factor> depth_factor(const Window& window, StateId state, const Middle& middle) {
   const RegionDepth& depth = *window.states().at(state).depth;
-  const BlockKey scale = *window.scale_block();
+  const BlockKey scale = *window.walking(BlockKind::LogScale);
   std::vector<DepthLandmark> landmarks;
   for (const FeatureId id : middle.landmarks) {
     const Feature& feature = window.features().at(id);
@@ -120,19 +120,6 @@ double worst_depth_error(const Window& window, const LogScale& scale) {
     if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, *state.depth, scale).value_or(0.0));
   }
   return worst;
-}
-
-LinearPrior begin_scale(Window& window, double dt_s) {
-  const BlockKey before = *window.scale_block(), after = window.begin_scale();
-  const double ln_s = *window.block(after);
-  // Without any walk a piece is the one before, up to what numbers can hold.
-  const double sigma = std::max(1e-4, window.depth_config().scale_walk * std::sqrt(dt_s));
-  LinearPrior walk;
-  walk.blocks = {before, after};
-  walk.x0 = {{ln_s}, {ln_s}};
-  walk.J = Eigen::RowVector2d(-1.0, 1.0) / sigma;
-  walk.r = Eigen::VectorXd::Zero(1);
-  return walk;
 }
 
 }  // namespace edged

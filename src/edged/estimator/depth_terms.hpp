@@ -29,7 +29,4 @@ std::optional<double> depth_error_sigmas(const Window& window, StateId state, co
 /// The largest of these over the depths in the window; 0 without any.
 double worst_depth_error(const Window& window, const LogScale& scale);
 
-/// Begins a new piece of ln s after the present one, and returns the walk between the two (docs/math.md, D3).
-LinearPrior begin_scale(Window& window, double dt_s);
-
 }  // namespace edged

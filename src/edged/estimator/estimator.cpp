@@ -71,6 +71,7 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
       config_(config),
       window_(rig, config.cauchy_scale, config.depth_factor),
       standstill_(config.standstill),
+      external_(config.height, config.velocity),
       initializer_(rig, noise, config),
       depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
@@ -80,6 +81,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   result.standstill = standstill_.still();
   if (start(input, result) || !initialized_) return result;
   append(input);
+  result.velocity_observed = external_.velocity_observed(input.t);
   result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
   const bool new_depth = take_depth(input);
@@ -171,6 +173,7 @@ void Estimator::append(const EstimatorInput& input) {
   const StateId id = input.motion.gyro_clipped()
                          ? window_.add_state(std::move(state), of_unseen_turn(input.observations))
                          : window_.add_state(std::move(state), input.observations);
+  external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   if (!rested) return;
   NavState rest;
   rest.bias_gyro = standstill_.mean_gyro_B();

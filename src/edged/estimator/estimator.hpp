@@ -10,6 +10,7 @@
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
+#include "edged/estimator/external_factors.hpp"
 #include "edged/estimator/initializer.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
@@ -25,9 +26,10 @@ struct EstimatorResult {
   double imu_strain = 0.0;           ///< of the window: see imu_strain() [sigma]
   std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this input, in its frame
   bool standstill = false;
-  bool new_frame = false;    ///< the estimator has started (again) with this input, in a frame of its own
-  bool provisional = false;  ///< the start does not know the scale well enough yet
-  bool plausible = true;     ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
+  bool velocity_observed = false;  ///< by an external sensor, within the last moment
+  bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
+  bool provisional = false;        ///< the start does not know the scale well enough yet
+  bool plausible = true;  ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
 
 class Estimator {
@@ -74,6 +76,7 @@ class Estimator {
   EstimatorConfig config_;
   Window window_;
   StandstillDetector standstill_;
+  ExternalFactors external_;
   Initializer initializer_;
   bool initialized_ = false;
   double scale_sigma_ = kFree;  ///< of ln scale

@@ -22,6 +22,7 @@ struct EstimatorInput {
   bool keyframe = false;
   bool events_quiet = false;                        ///< the event camera sees nothing move
   std::optional<RegionDepth> depth = std::nullopt;  ///< for Eq. 5, used at keyframes when depth_factor is enabled
+  std::vector<ExternalSample> external = {};        ///< of the same interval, in time order
 };
 
 }  // namespace edged

@@ -22,6 +22,38 @@ Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Tr
   return a.lazyProduct(b.transpose());
 }
 
+/// A residual at the weight of its loss, and its Jacobians: by the poses of the anchor, of the observation and of the
+/// one before; by the calibrations of the anchor's camera and of another that observes; by the inverse depth.
+struct WeightedResidual {
+  Vector2d r;
+  Transposed<6> anchor, seen, before;
+  Transposed<4> calibration, seen_calibration;
+  Vector2d depth;
+};
+
+WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& error, const ObservationError& before,
+                          const ceres::LossFunction& loss) {
+  WeightedResidual out;
+  out.r = at.weight * (error.e - at.correlation * before.e);
+  double rho[3];
+  loss.Evaluate(out.r.squaredNorm(), rho);
+  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -at.correlation * weight;
+  out.r *= root;
+  out.anchor = weight * error.by_anchor.transpose();
+  out.calibration = weight * error.by_anchor_calibration.transpose();
+  out.seen_calibration = weight * error.by_seen_calibration.transpose();
+  out.depth = weight * error.by_rho;
+  out.seen = weight * error.by_seen.transpose();
+  out.before.setZero();
+  if (at.correlation == 0.0) return out;
+  out.anchor += weight_before * before.by_anchor.transpose();
+  out.calibration += weight_before * before.by_anchor_calibration.transpose();
+  out.seen_calibration += weight_before * before.by_seen_calibration.transpose();
+  out.depth += weight_before * before.by_rho;
+  out.before = weight_before * before.by_seen.transpose();
+  return out;
+}
+
 /// The entry of the block at a place, which is added where there is none.
 template <typename Coupling>
 std::size_t entry_of(Index global, std::vector<Coupling>& couplings) {
@@ -92,66 +124,48 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
 void LandmarkEquations::accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
                                    const LandmarkTerm& term) {
   const LandmarkResidual& at = term.residuals[residual];
-  Vector2d r = at.weight * (error.e - at.correlation * before.e);
-  double rho[3];
-  loss_->Evaluate(r.squaredNorm(), rho);
-  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -at.correlation * weight;
-  r *= root;
-  Transposed<6> J_anchor = weight * error.by_anchor.transpose();
-  Transposed<4> J_calibration = weight * error.by_anchor_calibration.transpose();
-  Transposed<4> J_seen_calibration = weight * error.by_seen_calibration.transpose();
-  Vector2d J_depth = weight * error.by_rho;
-  Transposed<6> J_seen = weight * error.by_seen.transpose();
-  Transposed<6> J_before = Transposed<6>::Zero();
   const bool correlated = at.correlation != 0.0;
-  if (correlated) {
-    J_anchor += weight_before * before.by_anchor.transpose();
-    J_calibration += weight_before * before.by_anchor_calibration.transpose();
-    J_seen_calibration += weight_before * before.by_seen_calibration.transpose();
-    J_depth += weight_before * before.by_rho;
-    J_before = weight_before * before.by_seen.transpose();
-  }
+  WeightedResidual J = weighted(at, error, before, *loss_);
   if (!at_present_) {
-    r -= J_anchor.transpose() * taken_.moved(term.anchor_place) + J_seen.transpose() * taken_.moved(at.place);
-    if (correlated) r -= J_before.transpose() * taken_.moved(term.residuals[residual - 1].place);
+    J.r -= J.anchor.transpose() * taken_.moved(term.anchor_place) + J.seen.transpose() * taken_.moved(at.place);
+    if (correlated) J.r -= J.before.transpose() * taken_.moved(term.residuals[residual - 1].place);
   }
-
   const std::size_t seen = pose_of_[residual], seen_before = correlated ? pose_of_[residual - 1] : 0;
   // Another camera at the anchor's own state.
-  if (seen == 0) J_anchor += std::exchange(J_seen, Transposed<6>::Zero());
-  if (correlated && seen_before == 0) J_anchor += std::exchange(J_before, Transposed<6>::Zero());
+  if (seen == 0) J.anchor += std::exchange(J.seen, Transposed<6>::Zero());
+  if (correlated && seen_before == 0) J.anchor += std::exchange(J.before, Transposed<6>::Zero());
 
   const Index anchor_calibration = depth_.calibrations.front().global;
-  const auto add_view = [&](DepthByPose& view, const Transposed<6>& J_view) {
-    view.coupling += J_view * J_depth;
-    equations_.g.segment<6>(view.global) += J_view * r;
-    equations_.add(view.global, view.global, product(J_view, J_view));
-    equations_.add(view.global, depth_.poses.front().global, product(J_view, J_anchor));
-    equations_.add(anchor_calibration, view.global, product(J_calibration, J_view));
+  DepthByPose &anchor = depth_.poses.front(), &view = depth_.poses[seen], &view_before = depth_.poses[seen_before];
+  const auto add_view = [&](DepthByPose& of, const Transposed<6>& J_view) {
+    of.coupling += J_view * J.depth;
+    equations_.g.segment<6>(of.global) += J_view * J.r;
+    equations_.add(of.global, of.global, product(J_view, J_view));
+    equations_.add(of.global, anchor.global, product(J_view, J.anchor));
+    equations_.add(anchor_calibration, of.global, product(J.calibration, J_view));
   };
-  DepthByPose &view = depth_.poses[seen], &view_before = depth_.poses[seen_before];
-  if (seen != 0) add_view(view, J_seen);
+  if (seen != 0) add_view(view, J.seen);
   if (seen_before != 0) {
-    add_view(view_before, J_before);
-    equations_.add(view.global, view_before.global, product(J_seen, J_before));
+    add_view(view_before, J.before);
+    equations_.add(view.global, view_before.global, product(J.seen, J.before));
   }
   if (calibration_of_[residual] != 0) {
     DepthByCalibration& camera = depth_.calibrations[calibration_of_[residual]];
-    camera.coupling += J_seen_calibration * J_depth;
-    equations_.g.segment<4>(camera.global) += J_seen_calibration * r;
-    equations_.add(camera.global, camera.global, product(J_seen_calibration, J_seen_calibration));
-    equations_.add(camera.global, anchor_calibration, product(J_seen_calibration, J_calibration));
-    equations_.add(camera.global, depth_.poses.front().global, product(J_seen_calibration, J_anchor));
-    if (seen != 0) equations_.add(camera.global, view.global, product(J_seen_calibration, J_seen));
-    if (seen_before != 0) equations_.add(camera.global, view_before.global, product(J_seen_calibration, J_before));
+    camera.coupling += J.seen_calibration * J.depth;
+    equations_.g.segment<4>(camera.global) += J.seen_calibration * J.r;
+    equations_.add(camera.global, camera.global, product(J.seen_calibration, J.seen_calibration));
+    equations_.add(camera.global, anchor_calibration, product(J.seen_calibration, J.calibration));
+    equations_.add(camera.global, anchor.global, product(J.seen_calibration, J.anchor));
+    if (seen != 0) equations_.add(camera.global, view.global, product(J.seen_calibration, J.seen));
+    if (seen_before != 0) equations_.add(camera.global, view_before.global, product(J.seen_calibration, J.before));
   }
-  Transposed<10> J;
-  J << J_anchor, J_calibration;
-  H_ += product(J, J);
-  g_ += J * r;
-  coupling_ += J * J_depth;
-  depth_.h += J_depth.squaredNorm();
-  depth_.g += J_depth.dot(r);
+  Transposed<10> own;
+  own << J.anchor, J.calibration;
+  H_ += product(own, own);
+  g_ += own * J.r;
+  coupling_ += own * J.depth;
+  depth_.h += J.depth.squaredNorm();
+  depth_.g += J.depth.dot(J.r);
 }
 
 /// Of the anchor and its camera's calibration, which all residuals share.

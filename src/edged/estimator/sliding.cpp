@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "edged/estimator/cost.hpp"
-#include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/marginalization.hpp"
 
 namespace edged {
@@ -122,17 +121,15 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
   const StateId id = window.oldest_id();
   KeyframeRecord record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
-  const std::optional<BlockKey> scale = window.scale_block();
-  if (scale) leaving.insert(*scale);
+  for (const BlockKey& scalar : window.walking()) leaving.insert(scalar);
   const Inherited inherited = inherited_landmarks(window);
   for (const auto& [feature_id, anchor] : inherited) {
     keep_points(window, feature_id, window.features().at(feature_id), anchor);
   }
   Cost cost = cost_leaving(window, leaving, inherited);
-  if (scale) {
-    const auto next = std::next(window.states().begin());
-    LinearPrior walk = begin_scale(window, to_seconds(next->second.t - record.t));
-    cost.factors.push_back(std::make_shared<LinearPriorFactor>(std::move(walk)));
+  const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
+  for (const BlockKey& scalar : window.walking()) {
+    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.begin_piece(scalar.kind, dt_s)));
   }
   std::map<FeatureId, NewAnchor> anchors;
   for (const auto& [feature_id, anchor] : inherited) {
@@ -142,6 +139,15 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
   }
   window.drop_oldest(marginalize(window, cost, leaving), anchors);
   return record;
+}
+
+void forget_walk(Window& window, BlockKind kind) {
+  std::set<BlockKey> leaving;
+  for (const BlockKey& key : window.prior()->blocks()) {
+    if (key.kind == kind) leaving.insert(key);
+  }
+  const Cost known{window.prior(), {}, {}};
+  window.end_walk(kind, leaving.empty() ? window.prior()->prior() : marginalize(window, known, leaving));
 }
 
 }  // namespace edged

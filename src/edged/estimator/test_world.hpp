@@ -87,6 +87,16 @@ class TestWorld {
     return sample;
   }
 
+  HeightSample height(double t, double sigma) {
+    return {timestamp_from_seconds(t), T_W_B(t).translation().z() + sigma * normal(), sigma};
+  }
+
+  /// Of a sensor in the body's axes and place.
+  VelocitySample velocity(double t, double sigma) {
+    return {timestamp_from_seconds(t), T_W_B(t).R().transpose() * v_W(t) + sigma * normal3(),
+            Eigen::Vector3d::Constant(sigma)};
+  }
+
   /// Point i of the world; camera c calls it i + 1 + 1000 c.
   const Eigen::Vector3d& point_W(FeatureId id) const { return points_W_.at((id - 1) % 1000); }
 

@@ -85,10 +85,7 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
     cameras_.push_back({given, {0.0, 0.0, 0.0, to_seconds(given.time_offset)}});
   }
   free_calibration({0.0, 0.0, 0.0});
-  if (!depth.enabled) return;
-  ln_scale_[0] = 0.0;
-  add_soft_prior(
-      near_present({BlockKind::LogScale, 0}, {&ln_scale_[0], 1}, Eigen::VectorXd::Constant(1, depth.scale_sigma)));
+  if (depth.enabled) begin_walk(BlockKind::LogScale, 0.0, {depth.scale_sigma, depth.scale_walk});
 }
 
 std::size_t Window::camera_index(const std::string& name) const {
@@ -212,12 +209,21 @@ void Window::drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>
   });
   for (auto& [id, feature] : features_) forget(feature, oldest, oldest + 1);
   states_.erase(oldest);
-  if (!ln_scale_.empty()) ln_scale_.erase(ln_scale_.begin(), std::prev(ln_scale_.end()));
+  for (auto& [kind, scalar] : walking_) {
+    for (const auto& [piece, value] : scalar.pieces()) {
+      for (const auto& factor : factors_) factor->replace({kind, piece}, scalar.present());
+    }
+    scalar.leave_behind();
+  }
+  set_prior(std::move(prior));
+  forget_orphaned_factors();
+}
+
+void Window::set_prior(LinearPrior prior) {
   EDGED_CHECK(prior.information.cols() == prior.J.cols(), "a prior of {} columns whose J^T J has {}", prior.J.cols(),
               prior.information.cols());
   prior_ = std::make_shared<LinearPriorFactor>(std::move(prior));
   check(*prior_);
-  forget_orphaned_factors();
 }
 
 void Window::make_landmark(FeatureId id, const NewAnchor& anchor) {
@@ -279,16 +285,27 @@ void Window::forget_orphaned_factors() {
   std::erase_if(factors_, orphaned);
 }
 
-std::optional<BlockKey> Window::scale_block() const {
-  if (ln_scale_.empty()) return std::nullopt;
-  return BlockKey{BlockKind::LogScale, ln_scale_.rbegin()->first};
+void Window::begin_walk(BlockKind kind, double value, const Walk& walk) {
+  const auto [scalar, is_new] = walking_.try_emplace(kind, kind, value, walk.per_root_s);
+  EDGED_CHECK(is_new, "a second scalar of kind {}", static_cast<int>(kind));
+  add_soft_prior(near_present(scalar->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
 }
 
-BlockKey Window::begin_scale() {
-  EDGED_CHECK(!ln_scale_.empty(), "a window without depth factors has no scale of theirs");
-  const auto [piece, ln_s] = *ln_scale_.rbegin();
-  ln_scale_.emplace(piece + 1, ln_s);
-  return {BlockKind::LogScale, piece + 1};
+std::optional<BlockKey> Window::walking(BlockKind kind) const {
+  const auto found = walking_.find(kind);
+  return found == walking_.end() ? std::nullopt : std::optional(found->second.present());
+}
+
+std::vector<BlockKey> Window::walking() const {
+  std::vector<BlockKey> present;
+  for (const auto& [kind, scalar] : walking_) present.push_back(scalar.present());
+  return present;
+}
+
+void Window::end_walk(BlockKind kind, LinearPrior prior) {
+  walking_.erase(kind);
+  set_prior(std::move(prior));
+  forget_orphaned_factors();
 }
 
 const double* Window::block(BlockKey key) const {
@@ -296,16 +313,16 @@ const double* Window::block(BlockKey key) const {
     const auto found = features_.find(key.id);
     return found == features_.end() || !found->second.anchor ? nullptr : &found->second.inverse_depth;
   }
-  if (key.kind == BlockKind::LogScale) {
-    const auto found = ln_scale_.find(key.id);
-    return found == ln_scale_.end() ? nullptr : &found->second;
+  if (const auto scalar = walking_.find(key.kind); scalar != walking_.end()) {
+    const auto found = scalar->second.pieces().find(key.id);
+    return found == scalar->second.pieces().end() ? nullptr : &found->second;
   }
   if (key.kind == BlockKind::Calibration) {
     return key.id < cameras_.size() ? cameras_[key.id].calibration.data() : nullptr;
   }
   if (key.kind == BlockKind::ImuIntrinsics) return imu_intrinsics_.data();
   const auto found = states_.find(key.id);
-  if (found == states_.end()) return nullptr;
+  if (found == states_.end() || (key.kind != BlockKind::Pose && key.kind != BlockKind::Motion)) return nullptr;
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
@@ -331,7 +348,9 @@ void Window::for_each_block(Self& self, const Visit& visit) {
   for (auto& [id, feature] : self.features_) {
     if (feature.anchor) visit(std::span(&feature.inverse_depth, 1));
   }
-  for (auto& [piece, ln_s] : self.ln_scale_) visit(std::span(&ln_s, 1));
+  for (auto& [kind, scalar] : self.walking_) {
+    for (auto& [piece, value] : scalar.pieces()) visit(std::span(&value, 1));
+  }
   for (auto& camera : self.cameras_) visit(std::span(camera.calibration));
   visit(std::span(self.imu_intrinsics_));
 }

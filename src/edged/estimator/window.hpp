@@ -19,6 +19,7 @@
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
+#include "edged/estimator/walking_scalar.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
@@ -152,10 +153,15 @@ class Window {
   /// Gauge, biases, zero velocity: until a block of it leaves, when marginalisation has taken it into the prior.
   void add_soft_prior(LinearPrior prior);
 
-  /// The present piece of ln s (Eq. 5); nothing without depth factors.
-  std::optional<BlockKey> scale_block() const;
-  /// Begins another piece where the present one is, which leaves with the oldest state.
-  BlockKey begin_scale();
+  /// From now on there is a scalar of that kind. ln s (Eq. 5) is there from the first with depth factors.
+  void begin_walk(BlockKind kind, double value, const Walk& walk);
+  /// The present piece of such a scalar, if there is one; of all that there are.
+  std::optional<BlockKey> walking(BlockKind kind) const;
+  std::vector<BlockKey> walking() const;
+  /// WalkingScalar::begin_piece. The piece before leaves with the oldest state, what stays is of the new one.
+  LinearPrior begin_piece(BlockKind kind, double dt_s) { return walking_.at(kind).begin_piece(dt_s); }
+  /// It goes, with its factors; `prior` stands for what marginalisation has left without it.
+  void end_walk(BlockKind kind, LinearPrior prior);
 
   /// The present values of a block, null when it is not in the window.
   const double* block(BlockKey key) const;
@@ -173,6 +179,7 @@ class Window {
   Feature& feature(FeatureId id);
   void observe(const CameraObservations& view);
   void check(const Factor& factor) const;
+  void set_prior(LinearPrior prior);
   void forget_orphaned_factors();
   /// Calls visit with the values of each block, all in one order.
   template <typename Self, typename Visit>
@@ -182,7 +189,7 @@ class Window {
   std::map<FeatureId, Feature> features_;
   std::vector<WindowCamera> cameras_;
   ImuIntrinsicsBlock imu_intrinsics_{};
-  std::map<std::uint64_t, double> ln_scale_;  ///< the present piece of ln s, and the one before until it is left behind
+  std::map<BlockKind, WalkingScalar> walking_;
   std::shared_ptr<const LinearPriorFactor> prior_;
   std::vector<std::shared_ptr<LinearPriorFactor>> soft_priors_;
   std::vector<std::shared_ptr<Factor>> factors_;

@@ -38,6 +38,13 @@ constexpr std::string_view kForEveryone[] = {
     "depth.network.model",
     "depth_factor.enabled",
     "depth_factor.form",
+    "height.enabled",
+    "height.sigma_m",
+    "height.bias_walk",
+    "velocity.enabled",
+    "velocity.sigma_mps",
+    "velocity.position_m",
+    "velocity.rotation_deg",
     "estimator.keyframes",
     "estimator.iterations",
     "estimator.noise_inflation",
@@ -91,6 +98,8 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("keyframes", keyframes);
   fields.group("depth", depth);
   fields.group("depth_factor", estimator.depth_factor);
+  fields.group("height", estimator.height);
+  fields.group("velocity", estimator.velocity);
   fields.group("estimator", estimator);
   fields.group("map", map);
   fields.group("status", status);
@@ -110,6 +119,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
 void OdometryConfig::validate() const {
   OdometryConfig copy = *this;
   const ConfigFields fields = ConfigFields::of(copy);  // refuses what is out of its range
+  estimator.velocity.T_B_S();
   enhance.validate([&fields](std::string_view name) {
     const std::string key = "enhance." + std::string(name);
     return std::ranges::find_if(fields.all(), [&key](const ConfigField& field) { return field.key.ends_with(key); })
