@@ -17,9 +17,9 @@
 
 #include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/network.hpp"
 #include "edged/events/voxel_grid.hpp"
+#include "edged/options/depth.hpp"
 #include "exit_code.hpp"
 
 namespace edged {

@@ -121,7 +121,7 @@ class RunUpTo {
     const CameraModel& camera = source_.calibration.rig.find(Modality::Events)->model;
     const UndistortTable table(camera, ideal_pinhole(camera));
     const cv::Mat uncompensated =
-        draw_event_frame(events.drawn_events(), CameraMotion(), 1.0, table, config_.event_frame);
+        render_event_frame(events.rendered_events(), CameraMotion(), 1.0, table, config_.event_frame);
     return {std::move(step), uncompensated, frame_, "motion-compensated"};
   }
 
@@ -190,10 +190,10 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   if (events.size() > most) events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(most));
   if (events.empty() || static_cast<double>(events.size()) < config.min_events_per_pixel * pixels)
     throw too_few_events(options, events.size(), config);
-  camera.drawn = events.size();
+  camera.rendered = events.size();
   const double span_s = to_seconds(moment.step.t - events.front().t);
   camera.event_rate_hz = span_s > 0.0 ? static_cast<double>(events.size()) / span_s : 0.0;
-  camera.image = draw_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
+  camera.image = render_event_frame(events, CameraMotion(), 1.0, UndistortTable(lens, ideal), config.event_frame);
   return moment;
 }
 
@@ -260,7 +260,7 @@ std::string file_name(int number, const std::string& caption) {
 std::vector<std::string> title(const EnhanceOptions& options, const Moment& moment, const EnhanceConfig& config) {
   const Step& step = moment.step;
   const CameraStep& camera = *step.find(Modality::Events);
-  const std::span<const Event> events = camera.drawn_events();
+  const std::span<const Event> events = camera.rendered_events();
   const std::string known = moment.uncompensated.empty()
                                 ? moment.drawn_how
                                 : fmt::format("scene depth {:.2f} m, {}", step.scene_depth, to_string(step.status));
@@ -298,7 +298,7 @@ int run_enhance(const EnhanceOptions& options) {
   write_picture(options.out / "sheet.png", draw_contact_sheet(lines, rows));
   const nlohmann::ordered_json json = {{"out", options.out.string()},
                                        {"pictures", number},
-                                       {"events", moment.step.find(Modality::Events)->drawn},
+                                       {"events", moment.step.find(Modality::Events)->rendered},
                                        {"drawn_how", moment.drawn_how}};
   fmt::print("{}\n", options.json ? json_text(json)
                                   : fmt::format("{}\n{}: sheet.png and every step by itself", lines.front(),

@@ -124,7 +124,7 @@ Json stats(const Step& step) {
                {"status_code", static_cast<int>(step.status)},
                {"reason", reason_of(step)},
                {"keyframe", step.keyframe},
-               {"found_again", step.found_again},
+               {"relocalized", step.relocalized},
                {"event_tracks", events.tracks},
                {"frame_tracks", frames.tracks},
                {"landmarks", step.landmarks.size()},

@@ -139,7 +139,7 @@ Json stats_type() {
                  {"status_code", count()},
                  {"reason", text()},
                  {"keyframe", flag()},
-                 {"found_again", flag()},
+                 {"relocalized", flag()},
                  {"event_tracks", count()},
                  {"frame_tracks", count()},
                  {"landmarks", count()},

@@ -11,9 +11,9 @@
 namespace edged {
 
 struct KindNumbers {
-  std::size_t tracks = 0;          ///< of all cameras
-  std::optional<double> survival;  ///< the mean; nothing where the run has no such camera
-  double event_rate_hz = 0.0;      ///< of all cameras
+  std::size_t tracks = 0;               ///< of all cameras
+  std::optional<double> survival_rate;  ///< the mean; nothing where the run has no such camera
+  double event_rate_hz = 0.0;           ///< of all cameras
 };
 
 KindNumbers numbers_of(const Step& step, Modality modality);

@@ -44,9 +44,9 @@ constexpr std::array kLiveColumns = {LiveColumn{"x", 5},
                                      LiveColumn{"event_tracks", 0},
                                      LiveColumn{"frame_tracks", 0},
                                      LiveColumn{"landmarks", 0},
-                                     LiveColumn{"event_survival", 3},
-                                     LiveColumn{"frame_survival", 3},
-                                     LiveColumn{"map_found", 0},
+                                     LiveColumn{"event_track_survival_rate", 3},
+                                     LiveColumn{"frame_track_survival_rate", 3},
+                                     LiveColumn{"map_matches", 0},
                                      LiveColumn{"map_reach", 2},
                                      LiveColumn{"event_rate", 0},
                                      LiveColumn{"depth", 3},
@@ -90,12 +90,12 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   put(step.state.bias_gyro, started);
   put(step.state.bias_accel, started);
   const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
-  for (const double number :
-       {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks), static_cast<double>(frames.tracks),
-        static_cast<double>(step.landmarks.size()), events.survival.value_or(kUnknown),
-        frames.survival.value_or(kUnknown), step.found.empty() ? kUnknown : static_cast<double>(step.found.size()),
-        map_reach_s(step).value_or(kUnknown), events.event_rate_hz, step.scene_depth, pace.processing_ms,
-        pace.latency_ms.value_or(kUnknown)})
+  for (const double number : {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks),
+                              static_cast<double>(frames.tracks), static_cast<double>(step.landmarks.size()),
+                              events.survival_rate.value_or(kUnknown), frames.survival_rate.value_or(kUnknown),
+                              step.map_matches.empty() ? kUnknown : static_cast<double>(step.map_matches.size()),
+                              map_reach_s(step).value_or(kUnknown), events.event_rate_hz, step.scene_depth,
+                              pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
     *value++ = number;
   const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
   put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());
@@ -193,7 +193,7 @@ std::string LiveFeed::news(Place& place) const {
     json["changes"].push_back({{"t", rounded(to_seconds(change.t - *origin_), 4)},
                                {"status", to_string(change.status)},
                                {"reason", change.reason},
-                               {"found_again", change.found_again}});
+                               {"relocalized", change.relocalized}});
   }
   if (!now.new_map.empty()) {
     auto& map = json["map"] = nlohmann::ordered_json::array();

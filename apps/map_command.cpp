@@ -16,10 +16,10 @@
 #include "edged/core/check.hpp"
 #include "edged/map/map_merge.hpp"
 #include "exit_code.hpp"
+#include "final_trajectory_files.hpp"
 #include "json_text.hpp"
 #include "map_file.hpp"
 #include "run_folder.hpp"
-#include "run_hindsight.hpp"
 
 namespace edged {
 namespace {

@@ -81,7 +81,7 @@ bool begins_anew(const OverviewContent& content, const Trajectory& path, std::si
   if (i == 0) return true;
   if (path[i].t - path[i - 1].t > kGap) return true;
   return std::ranges::any_of(content.changes, [&](const StatusChange& change) {
-    return change.found_again && change.t > path[i - 1].t && change.t <= path[i].t;
+    return change.relocalized && change.t > path[i - 1].t && change.t <= path[i].t;
   });
 }
 

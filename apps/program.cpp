@@ -16,8 +16,8 @@
 #include <system_error>
 #include <vector>
 
+#include "edged/config.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/config.hpp"
 #include "exit_code.hpp"
 #include "json_text.hpp"
 #include "log.hpp"

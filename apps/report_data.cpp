@@ -15,10 +15,10 @@
 #include "edged/core/path_length.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/trajectory_io.hpp"
+#include "final_trajectory_files.hpp"
 #include "log.hpp"
 #include "packet_pace.hpp"
 #include "report_rows.hpp"
-#include "run_hindsight.hpp"
 #include "version.hpp"
 
 namespace edged {
@@ -129,7 +129,8 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   }
   std::vector<std::size_t> rows;
   const Trajectory body = body_poses(run.states, &rows);
-  run.poses = lay_onto_truth(body, claims_of(run.states), run.given->rig, output_frame(run), run.truth, options.how);
+  run.poses = lay_onto_truth(body, covariance_samples_of(run.states), run.given->rig, output_frame(run), run.truth,
+                             options.how);
   run.poses.rows = rows;
   return run;
 }
@@ -251,7 +252,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
                {"path_m", path_length(run.poses.shown, &StampedPose::T)}};
   if (run.poses.evaluation) json["evaluation"] = to_json(*run.poses.evaluation);
   json["rows"] = rows_json(run.states, run.poses, origin, rows);
-  json["claimed"] = claimed_json(run.poses.claimed, origin, rows);
+  json["pose_errors"] = pose_errors_json(run.poses.pose_errors, origin, rows);
   json["truth"] = path_json(run.poses.true_path, rows);
   json["final"] = path_json(final_path(run), rows);
   json["map_keyframes"] = map_keyframes_json(run, origin);

@@ -33,7 +33,7 @@ void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& fr
 
 }  // namespace
 
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
+ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame_name, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how) {
   ReportPath path;
@@ -53,7 +53,7 @@ ReportPath lay_onto_truth(const Trajectory& body, const std::vector<ClaimedPose>
     add_truth(path, *truth, frame, association);
     Trajectory true_body;
     for (const StampedPose& pose : truth->trajectory) true_body.push_back(frame.to_body(pose));
-    path.claimed = check_consistency(true_body, claims).errors;
+    path.pose_errors = check_consistency(true_body, samples).errors;
   } catch (const InputError& e) {
     path.not_compared = e.what();
   }

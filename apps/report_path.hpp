@@ -25,14 +25,14 @@ struct ReportPath {
   std::vector<std::optional<SE3>> true_body;  ///< the same of the body
   Trajectory true_path;                       ///< all of the truth while the run lasted
   std::vector<double> error_m, rotation_deg;  ///< one for each pose, NaN where there is no truth
-  std::vector<ClaimedError> claimed;          ///< errors since each start, and how large they may be
+  std::vector<PoseErrorSample> pose_errors;   ///< errors since each start, and how large they may be
   std::optional<Evaluation> evaluation;       ///< nothing where there is no truth, or it does not fit
   std::string not_compared;                   ///< why, where there is a truth
   Similarity alignment;                       ///< world of the estimate to the world that is shown
 };
 
-/// body: T_W_B. frame: whose pose is shown where there is no truth, which brings its own. claims: none of a file.
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
+/// body: T_W_B. frame: whose pose is shown where there is no truth, which brings its own. samples: none of a file.
+ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how);
 

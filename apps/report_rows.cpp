@@ -85,9 +85,9 @@ constexpr std::array kStateColumns = {StateColumn{"vx_mps", "vx", 4},
                                       StateColumn{"event_tracks", "event_tracks", 0},
                                       StateColumn{"frame_tracks", "frame_tracks", 0},
                                       StateColumn{"landmarks", "landmarks", 0},
-                                      StateColumn{"event_survival", "event_survival", 3},
-                                      StateColumn{"frame_survival", "frame_survival", 3},
-                                      StateColumn{"map_found", "map_found", 0},
+                                      StateColumn{"event_track_survival_rate", "event_track_survival_rate", 3},
+                                      StateColumn{"frame_track_survival_rate", "frame_track_survival_rate", 3},
+                                      StateColumn{"map_matches", "map_matches", 0},
                                       StateColumn{"map_reach_s", "map_reach", 2},
                                       StateColumn{"event_rate_hz", "event_rate", 0},
                                       StateColumn{"scene_depth_m", "depth", 3},
@@ -152,15 +152,15 @@ Json rows_json(const StatesTable& states, const ReportPath& path, Timestamp orig
   return json;
 }
 
-Json claimed_json(const std::vector<ClaimedError>& claimed, Timestamp origin, std::size_t most) {
+Json pose_errors_json(const std::vector<PoseErrorSample>& pose_errors, Timestamp origin, std::size_t most) {
   constexpr std::array kErrors = {"x", "y", "z"}, kSigmas = {"sigma3_x", "sigma3_y", "sigma3_z"};
   Json json = Json::object();
-  const std::size_t stride = claimed.size() / std::max<std::size_t>(1, most) + 1;
-  for (std::size_t i = 0; i < claimed.size(); i += stride) {
-    json["t"].push_back(rounded(to_seconds(claimed[i].t - origin), 4));
+  const std::size_t stride = pose_errors.size() / std::max<std::size_t>(1, most) + 1;
+  for (std::size_t i = 0; i < pose_errors.size(); i += stride) {
+    json["t"].push_back(rounded(to_seconds(pose_errors[i].t - origin), 4));
     for (int k = 0; k < 3; ++k) {
-      json[kErrors[static_cast<std::size_t>(k)]].push_back(rounded(claimed[i].error[k], 6));
-      json[kSigmas[static_cast<std::size_t>(k)]].push_back(rounded(3.0 * claimed[i].sigma[k], 6));
+      json[kErrors[static_cast<std::size_t>(k)]].push_back(rounded(pose_errors[i].error[k], 6));
+      json[kSigmas[static_cast<std::size_t>(k)]].push_back(rounded(3.0 * pose_errors[i].sigma[k], 6));
     }
   }
   return json;
@@ -188,23 +188,23 @@ Json map_json(const Json& album, const Similarity& alignment) {
 
 Json changes_json(const StatesTable& states, const Json& album, Timestamp origin) {
   Json json = Json::array();
-  const auto add = [&](Timestamp t, const std::string& status, const std::string& reason, bool found_again) {
+  const auto add = [&](Timestamp t, const std::string& status, const std::string& reason, bool relocalized) {
     if (json.size() == kMostChangesShown) return;
     json.push_back({{"t", rounded(to_seconds(t - origin), 4)},
                     {"status", status},
                     {"reason", reason},
-                    {"found_again", found_again}});
+                    {"relocalized", relocalized}});
   };
   if (!album.is_null()) {
     for (const Json& change : album.at("changes")) {
       add(timestamp_from_ns(change.at("t_ns").get<std::int64_t>()), change.at("status"), change.at("reason"),
-          change.value("found_again", false));
+          change.value("relocalized", false));
     }
     return json;
   }
-  const std::vector<double>* found_again = states.find("found_again");
+  const std::vector<double>* relocalized = states.find("relocalized");
   for (std::size_t i = 0; i < states.t.size(); ++i) {
-    const bool found = found_again && (*found_again)[i] == 1.0;
+    const bool found = relocalized && (*relocalized)[i] == 1.0;
     if (i == 0 || states.status[i] != states.status[i - 1] || found)
       add(states.t[i], to_string(states.status[i]), "", found);
   }

@@ -24,7 +24,8 @@ std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vecto
 
 /// Times [s] since origin; null where a row has no pose.
 nlohmann::ordered_json rows_json(const StatesTable& states, const ReportPath& path, Timestamp origin, std::size_t most);
-nlohmann::ordered_json claimed_json(const std::vector<ClaimedError>& claimed, Timestamp origin, std::size_t most);
+nlohmann::ordered_json pose_errors_json(const std::vector<PoseErrorSample>& pose_errors, Timestamp origin,
+                                        std::size_t most);
 /// x, y, z of point after point in the world that is shown.
 nlohmann::ordered_json path_json(const Trajectory& path, std::size_t most);
 nlohmann::ordered_json map_json(const nlohmann::ordered_json& album, const Similarity& alignment);

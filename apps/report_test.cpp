@@ -66,7 +66,7 @@ class Report : public ::testing::Test {
     summary.frame = "events";
     summary.status = "good";
     const StatesTable states = read_states(folder);
-    if (with_truth) evaluate_run(summary, body_poses(states), claims_of(states), calibration.rig, truth);
+    if (with_truth) evaluate_run(summary, body_poses(states), covariance_samples_of(states), calibration.rig, truth);
     write_file(folder / "calibration.yaml", to_yaml(calibration));
     write_file(folder / "config_resolved.yaml", options_with_one_changed());
     write_file(folder / "metrics.json", json_text(to_json(summary)));
@@ -92,13 +92,13 @@ class Report : public ::testing::Test {
     const double a = 0.03 * i;
     step.state.T_W_B = SE3(so3::exp({0.0, 0.0, a}), Eigen::Vector3d(std::cos(a), std::sin(a), 0.1 * a));
     step.keyframe = i % 5 == 0;
-    step.found_again = i == 60;
-    if (i == 60) step.found = {{timestamp_from_seconds(100.0), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()}};
+    step.relocalized = i == 60;
+    if (i == 60) step.map_matches = {{timestamp_from_seconds(100.0), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()}};
     step.landmarks = {{static_cast<FeatureId>(i), Eigen::Vector3d(3.0, i, 0.0)}};
     step.cameras = {{.name = "events",
                      .modality = Modality::Events,
                      .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(i % 256)),
-                     .survival = 0.9}};
+                     .survival_rate = 0.9}};
     if (i >= 10)
       step.covariance = PoseCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity()};
     return step;
@@ -126,18 +126,18 @@ TEST_F(Report, HoldsTheNumbersOfTheRun) {
   }
   EXPECT_EQ(errors, 189);
   EXPECT_NEAR(std::sqrt(squares / errors), metrics["ate_rmse_m"].get<double>(), 1e-5);  // all rows are there
-  EXPECT_EQ(run["claimed"]["t"].size(), metrics["consistency"]["poses"].get<std::size_t>());
+  EXPECT_EQ(run["pose_errors"]["t"].size(), metrics["consistency"]["poses"].get<std::size_t>());
 }
 
 TEST_F(Report, TellsHealthAndWhatTheMapFoundAgain) {
   const nlohmann::json run = report_data({make_run("circle", false)})["runs"][0];
-  EXPECT_EQ(run["rows"]["event_survival"][20], 0.9);
-  EXPECT_EQ(run["rows"]["frame_survival"][20], nullptr);
-  EXPECT_EQ(run["rows"]["map_found"][59], nullptr);
-  EXPECT_EQ(run["rows"]["map_found"][60], 1);
+  EXPECT_EQ(run["rows"]["event_track_survival_rate"][20], 0.9);
+  EXPECT_EQ(run["rows"]["frame_track_survival_rate"][20], nullptr);
+  EXPECT_EQ(run["rows"]["map_matches"][59], nullptr);
+  EXPECT_EQ(run["rows"]["map_matches"][60], 1);
   EXPECT_EQ(run["rows"]["map_reach"][60], 3.0);
   const auto& changes = run["changes"];
-  const auto again = std::ranges::find_if(changes, [](const auto& change) { return change["found_again"] == true; });
+  const auto again = std::ranges::find_if(changes, [](const auto& change) { return change["relocalized"] == true; });
   ASSERT_NE(again, changes.end());
   EXPECT_EQ((*again)["t"], 3.0);
   EXPECT_EQ((*again)["reason"], "found again in the map");
@@ -180,7 +180,7 @@ TEST_F(Report, OfARunWithoutTruthHasNoErrors) {
   const nlohmann::json run = report_data({folder})["runs"][0];
   EXPECT_TRUE(run["evaluation"].is_null());
   EXPECT_FALSE(run["rows"].contains("error_m"));
-  EXPECT_TRUE(run["claimed"].empty());
+  EXPECT_TRUE(run["pose_errors"].empty());
   EXPECT_NEAR(run["path_m"].get<double>(), 0.03 * std::hypot(1.0, 0.1) * 189, 0.01);
   EXPECT_FALSE(run["rows"]["sigma3_x"].empty());
 }

@@ -11,13 +11,13 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/zip_writer.hpp"
+#include "final_trajectory_files.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
 #include "kind_numbers.hpp"
 #include "log.hpp"
 #include "report_page.hpp"
 #include "run_archive.hpp"
-#include "run_hindsight.hpp"
 #include "serve_address.hpp"
 #include "version.hpp"
 
@@ -193,7 +193,7 @@ void Run::observe(const Step& step) {
 void Run::log_changes(const Step& step) const {
   const double t_s = to_seconds(step.t);
   if (!step.started.empty()) spdlog::info(fmt::format("{:.3f} s: started {}", t_s, step.started));
-  if (step.found_again) spdlog::info(fmt::format("{:.3f} s: found again in the map", t_s));
+  if (step.relocalized) spdlog::info(fmt::format("{:.3f} s: found again in the map", t_s));
   if (step.status == statistics_.last_status()) return;
   if (step.status == TrackingStatus::Lost) {
     spdlog::warn(fmt::format("lost at {:.3f} s: {}; starting again", t_s, step.lost_because));
@@ -274,9 +274,9 @@ RunSummary Run::go() {
   return summarize();
 }
 
-Hindsight Run::hindsight() {
-  const auto timer = program_timings_.measure("hindsight");
-  return odometry_.hindsight();
+FinalTrajectory Run::final_trajectory() {
+  const auto timer = program_timings_.measure("final_trajectory");
+  return odometry_.final_trajectory();
 }
 
 RunSummary Run::summarize() {
@@ -306,11 +306,12 @@ RunSummary Run::summarize() {
         LiveSummary{live_->latency(), live_->shed(), odometry_.counters().packets.packets_overflow, live_->peaks()};
   summary.repairs = source_.dataset->repairs();
   add_dropped(summary.repairs, odometry_.counters());
-  const Hindsight known = hindsight();
-  write_hindsight(folder_, frame_, known, headed("final: each by all that was found again before and after"));
+  const FinalTrajectory known = final_trajectory();
+  write_final_trajectory(folder_, frame_, known, headed("final: each by all that was found again before and after"));
   const StatesTable states = read_states(folder_);
   const Trajectory body = map_.in_one_frame(body_poses(states));
-  if (truth && !body.empty()) evaluate_run(summary, body, claims_of(states), source_.calibration.rig, *truth);
+  if (truth && !body.empty())
+    evaluate_run(summary, body, covariance_samples_of(states), source_.calibration.rig, *truth);
   if (summary.evaluation) evaluate_final(summary, map_.in_one_frame(known.poses), source_.calibration.rig, *truth);
   summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   write_file(folder_ / "timing.json", timing_json(odometry_.timings(), program_timings_));
@@ -330,7 +331,7 @@ RunSummary Run::summarize() {
   return summary;
 }
 
-void Run::finish_mcap(const RunSummary& summary, const Hindsight& known, const ReportPath& path) {
+void Run::finish_mcap(const RunSummary& summary, const FinalTrajectory& known, const ReportPath& path) {
   const OutputFrame sensor(source_.calibration.rig, path.frame);
   const SE3 T_estimate_truth = path.alignment.T.inverse();
   Trajectory true_body;

@@ -64,8 +64,8 @@ class Run {
   void show_status(const Step& step);
   RunProgress progress() const { return {statistics_, writer_->poses(), meter_.wall_s(), pace_}; }
   RunSummary summarize();
-  Hindsight hindsight();
-  void finish_mcap(const RunSummary& summary, const Hindsight& known, const ReportPath& path);
+  FinalTrajectory final_trajectory();
+  void finish_mcap(const RunSummary& summary, const FinalTrajectory& known, const ReportPath& path);
   std::vector<std::string> headed(const std::string& known_when) const;
   void write_overview(const RunSummary& summary, const ReportPath& path) const;
 

@@ -89,7 +89,7 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame) const {
     json["changes"].push_back({{"t_ns", to_ns(change.t)},
                                {"status", to_string(change.status)},
                                {"reason", change.reason},
-                               {"found_again", change.found_again}});
+                               {"relocalized", change.relocalized}});
   }
   for (const auto& [id, point] : points_) {
     for (const float x : point) json["points"].push_back(std::round(1e3 * static_cast<double>(x)) / 1e3);  // [m]

@@ -39,7 +39,8 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
 
 constexpr const char* kStatesHeader =
     "t_ns,status,px_m,py_m,pz_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,bgx_radps,bgy_radps,bgz_radps,bax_mps2,bay_mps2,"
-    "baz_mps2,keyframe,found_again,event_tracks,frame_tracks,landmarks,event_survival,frame_survival,map_found,map_"
+    "baz_mps2,keyframe,relocalized,event_tracks,frame_tracks,landmarks,event_track_survival_rate,frame_track_survival_"
+    "rate,map_matches,map_"
     "reach_s,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
     "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
@@ -76,12 +77,12 @@ std::string state_line(const Step& step) {
     append(line, state.bias_accel);
   }
   const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
-  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.found_again ? 1 : 0, events.tracks, frames.tracks,
+  line += fmt::format(",{},{},{},{},{}", step.keyframe ? 1 : 0, step.relocalized ? 1 : 0, events.tracks, frames.tracks,
                       step.landmarks.size());
-  for (const std::optional<double>& number : {events.survival, frames.survival})
+  for (const std::optional<double>& number : {events.survival_rate, frames.survival_rate})
     line += number ? fmt::format(",{}", *number) : ",";
   const std::optional<double> reach_s = map_reach_s(step);
-  line += reach_s ? fmt::format(",{},{}", step.found.size(), *reach_s) : ",,";
+  line += reach_s ? fmt::format(",{},{}", step.map_matches.size(), *reach_s) : ",,";
   line += fmt::format(",{},{}", events.event_rate_hz, step.scene_depth);
   const auto& ln_s = step.ln_depth_scale;
   line += ln_s ? fmt::format(",{},{}", std::exp(ln_s->value), ln_s->sigma) : ",,";
@@ -175,8 +176,8 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
 }
 
 std::optional<double> map_reach_s(const Step& step) {
-  const auto oldest = std::ranges::min_element(step.found, {}, &FoundPoint::keyframe);
-  return oldest == step.found.end() ? std::nullopt : std::optional(to_seconds(step.t - oldest->keyframe));
+  const auto oldest = std::ranges::min_element(step.map_matches, {}, &MapMatch::keyframe);
+  return oldest == step.map_matches.end() ? std::nullopt : std::optional(to_seconds(step.t - oldest->keyframe));
 }
 
 std::string timing_json(const StageTimings& pipeline, const StageTimings& program) {

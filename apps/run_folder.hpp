@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "edged/camera/output_frame.hpp"
-#include "edged/core/timing.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/odometry.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

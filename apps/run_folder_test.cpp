@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "claims.hpp"
+#include "covariance_samples.hpp"
 #include "edged/core/check.hpp"
 #include "packet_pace.hpp"
 #include "states_table.hpp"
@@ -157,13 +157,13 @@ TEST_F(RunFolder, SaysHowFarBackTheMapReaches) {
   step.t = timestamp_from_seconds(10);
   EXPECT_FALSE(map_reach_s(step));
   for (const int keyframe_s : {8, 3, 9})
-    step.found.push_back({timestamp_from_seconds(keyframe_s), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()});
+    step.map_matches.push_back({timestamp_from_seconds(keyframe_s), Eigen::Vector2d::Zero(), Eigen::Vector3d::Zero()});
   EXPECT_EQ(map_reach_s(step), 7.0);
 }
 
 TEST_F(RunFolder, GivesTheCovariancesBack) {
   make_run_folder(folder);
-  Claims claims;
+  CovarianceSamples samples;
   {
     RunWriter writer(folder, OutputFrame({}, "body"), {});
     Step step;
@@ -176,16 +176,16 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
       if (i % 3 == 0) step.ln_depth_scale = LogScale{0.1, 0.2};
       step.t = timestamp_from_seconds(i / 7.0);
       writer.add(step);
-      claims.add(step);
+      samples.add(step);
     }
   }
-  const std::vector<ClaimedPose> read = claims_of(read_states(folder));
+  const std::vector<PoseCovarianceSample> read = covariance_samples_of(read_states(folder));
   ASSERT_EQ(read.size(), 14u);
   for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read[i].t, claims.all()[i].t);
-    EXPECT_EQ(read[i].start, claims.all()[i].start);
-    EXPECT_EQ(read[i].position, claims.all()[i].position);
-    EXPECT_EQ(read[i].rotation, claims.all()[i].rotation);
+    EXPECT_EQ(read[i].t, samples.all()[i].t);
+    EXPECT_EQ(read[i].start, samples.all()[i].start);
+    EXPECT_EQ(read[i].position, samples.all()[i].position);
+    EXPECT_EQ(read[i].rotation, samples.all()[i].rotation);
   }
 }
 

@@ -38,7 +38,7 @@ RunMap::RunMap(MapOptions options, bool enabled, Odometry& odometry) : options_(
 void RunMap::observe(const Step& step, const Odometry& odometry) {
   if (!is_tracking(step.status)) return;
   if (!first_pose_) first_pose_ = step.t;
-  if (!options_.load.empty() && !found_ && !odometry.elsewhere()) found_ = step.t;
+  if (!options_.load.empty() && !found_ && !odometry.awaiting_relocalization()) found_ = step.t;
 }
 
 std::optional<MapSummary> RunMap::finish(const Odometry& odometry) {

@@ -31,7 +31,7 @@ class RunMcap {
   void add(const Step& step, const RunAlbum& album);
   /// The path and the map as known in the end. truth: of the body, in the world of the estimate; none where there is
   /// none.
-  void finish(const Hindsight& known, const RunAlbum& album, const Trajectory& truth, const RunSummary& summary);
+  void finish(const FinalTrajectory& known, const RunAlbum& album, const Trajectory& truth, const RunSummary& summary);
 
  private:
   /// Says when it is time again.

@@ -100,8 +100,8 @@ std::string verdict_text(const RunSummary& s) {
 
 }  // namespace
 
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
-                  const GroundTruth& truth) {
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+                  const Rig& rig, const GroundTruth& truth) {
   try {
     const OutputFrame frame(rig, truth.frame);
     const Association association = associate(truth.trajectory, frame(body));

@@ -11,11 +11,11 @@
 
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/dataset.hpp"
-#include "edged/core/timing.hpp"
+#include "edged/counters.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "edged/pipeline/counters.hpp"
+#include "edged/timing.hpp"
 #include "run_map.hpp"
 #include "run_statistics.hpp"
 #include "verdict.hpp"
@@ -53,8 +53,8 @@ struct RunSummary {
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
 /// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<ClaimedPose>& claims, const Rig& rig,
-                  const GroundTruth& truth);
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+                  const Rig& rig, const GroundTruth& truth);
 
 /// The same of its poses as known in the end, which are as many.
 void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "claims.hpp"
+#include "covariance_samples.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/text.hpp"
 
@@ -97,22 +97,22 @@ Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows)
   return body;
 }
 
-std::vector<ClaimedPose> claims_of(const StatesTable& states) {
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states) {
   const auto covariance =
       numbers_of<12>(states, {"p_xx_m2", "p_xy_m2", "p_xz_m2", "p_yy_m2", "p_yz_m2", "p_zz_m2", "r_xx_rad2",
                               "r_xy_rad2", "r_xz_rad2", "r_yy_rad2", "r_yz_rad2", "r_zz_rad2"});
-  const std::vector<double>* found_again = states.find("found_again");
-  Claims claims;
+  const std::vector<double>* relocalized = states.find("relocalized");
+  CovarianceSamples samples;
   for_each_pose(states, [&](std::size_t row, const SE3& T_W_B) {
     Step step;
     step.t = states.t[row];
     step.status = states.status[row];
     step.state.T_W_B = T_W_B;
-    step.found_again = found_again && (*found_again)[row] == 1.0;
+    step.relocalized = relocalized && (*relocalized)[row] == 1.0;
     if (const auto P = covariance(row)) step.covariance = {symmetric(P->data()), symmetric(P->data() + 6)};
-    claims.add(step);
+    samples.add(step);
   });
-  return claims.all();
+  return samples.all();
 }
 
 }  // namespace edged

@@ -31,6 +31,6 @@ StatesTable read_states(const std::filesystem::path& folder);
 Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows = nullptr);
 
 /// Those of the poses whose covariance was worked out anew.
-std::vector<ClaimedPose> claims_of(const StatesTable& states);
+std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states);
 
 }  // namespace edged

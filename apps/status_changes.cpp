@@ -11,14 +11,14 @@ std::string reason_of(const Step& step) {
     case TrackingStatus::Lost:
       return step.lost_because;
     default:
-      if (step.found_again) return "found again in the map";
+      if (step.relocalized) return "found again in the map";
       return step.started.empty() ? "" : "started " + step.started;
   }
 }
 
 void StatusChanges::add(const Step& step) {
-  if (changes_.empty() || changes_.back().status != step.status || step.found_again) {
-    changes_.push_back({step.t, step.status, reason_of(step), step.found_again});
+  if (changes_.empty() || changes_.back().status != step.status || step.relocalized) {
+    changes_.push_back({step.t, step.status, reason_of(step), step.relocalized});
   } else if (const std::string reason = reason_of(step); !reason.empty() && !is_tracking(step.status)) {
     changes_.back().reason = reason;  // what was missing last says most
   }

@@ -18,7 +18,7 @@ struct StatusChange {
   Timestamp t;
   TrackingStatus status;
   std::string reason;        ///< what was missing last, while it lasts; "" where there is nothing to say
-  bool found_again = false;  ///< in the map; the status may have been this before
+  bool relocalized = false;  ///< in the map; the status may have been this before
 };
 
 /// Why the status is what it is: what a start waits for, what ended the estimate, how it started.

@@ -6,7 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "edged/frontend/track.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include "edged/map/flight_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 #include "memory_use.hpp"
 
 namespace edged {
@@ -83,14 +83,14 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
     filter.predict(SE3(), t);
     filter.add_keyframe(SE3(), t);
   }
-  std::vector<MapSight> sights;
+  std::vector<MapObservation> observations;
   for (std::size_t keyframe = 0; keyframe < kKeyframesInView; ++keyframe) {
     for (int i = 0; i < kSightsOfOne; ++i) {
       const Eigen::Vector3d p = point_ahead(i);
-      sights.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
+      observations.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
     }
   }
-  for (auto _ : state) benchmark::DoNotOptimize(filter.update(sights, sights.size(), SE3()));
+  for (auto _ : state) benchmark::DoNotOptimize(filter.update(observations, observations.size(), SE3()));
 }
 BENCHMARK(BM_TakeUpWhatWasFound)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
 
@@ -98,12 +98,12 @@ constexpr double kLook_s = 0.25, kPose_s = 0.05;
 constexpr int kKeyframes = 100, kLooksPerKeyframe = 12;
 
 /// A camera that sways before a wall for so long, an odometry whose drift the map has held, and what was found.
-FlightRecord record_of(double duration_s) {
+TrajectorySmoother record_of(double duration_s) {
   const auto true_pose = [](double t) {
     return SE3(so3::exp({0.1 * std::sin(0.7 * t), 0.2 * std::sin(t), 0.0}),
                {std::sin(0.3 * t), std::sin(0.4 * t), 0.0});
   };
-  FlightRecord record{MapFilterConfig{}};
+  TrajectorySmoother record{MapFilterConfig{}};
   std::vector<double> made_at;
   record.restart({Timestamp{}, true_pose(0.0)}, SE3(), 0.01, 0.01);
   for (int i = 1; kPose_s * i < duration_s; ++i) {
@@ -117,15 +117,16 @@ FlightRecord record_of(double duration_s) {
       made_at.push_back(t);
     }
     if (made_at.size() < kKeyframesInView) continue;
-    std::vector<MapSight> sights;
+    std::vector<MapObservation> observations;
     for (std::size_t n = 0; n < kKeyframesInView; ++n) {
       const std::size_t keyframe = (static_cast<std::size_t>(i / looks) + n) % made_at.size();
       for (int k = 0; k < kSightsOfOne; ++k) {
         const Eigen::Vector3d p_K = true_pose(made_at[keyframe]).inverse() * point_ahead(k);
-        sights.push_back({keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * point_ahead(k)).hnormalized(), 0.01});
+        observations.push_back(
+            {keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * point_ahead(k)).hnormalized(), 0.01});
       }
     }
-    record.add_sights(T_O_B, SE3(), sights, SE3());
+    record.add_observations(T_O_B, SE3(), observations, SE3());
   }
   return record;
 }
@@ -133,7 +134,7 @@ FlightRecord record_of(double duration_s) {
 /// range(0): minutes.
 void BM_KnowThePathInTheEnd(benchmark::State& state) {
   const double before_mb = resident_mb();
-  const FlightRecord record = record_of(60.0 * static_cast<double>(state.range(0)));
+  const TrajectorySmoother record = record_of(60.0 * static_cast<double>(state.range(0)));
   state.counters["record_MB"] = resident_mb() - before_mb;
   forget_most_resident();
   for (auto _ : state) benchmark::DoNotOptimize(record.path());

@@ -25,7 +25,7 @@ class SimulatedTruth final : public TrackTruth {
  public:
   explicit SimulatedTruth(const SimulatorConfig& config)
       : simulator_(config), offset_(simulator_.calibration().rig.cameras.front().time_offset) {
-    if (!simulator_.scene().movers.empty())
+    if (!simulator_.scene().dynamic_objects.empty())
       throw InputError::format("sim:{}: things move in it, and corners on them have no place; choose another preset",
                                config.name);
   }

@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "claims.hpp"
+#include "covariance_samples.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/mode.hpp"
@@ -63,14 +63,14 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
     for (CameraStep& camera : step.cameras) {
       if (camera.modality == Modality::Events && !camera.image.empty()) sum += cv::sum(camera.image)[0];
       camera.image.release();
-      camera.events = {}, camera.drawn = 0;
+      camera.events = {}, camera.rendered = 0;
     }
     run.event_frame_sums.push_back(sum);
     run.steps.push_back(std::move(step));
     return true;
   });
   run.rig = odometry.rig();
-  run.hindsight = odometry.hindsight();
+  run.final_trajectory = odometry.final_trajectory();
   return run;
 }
 
@@ -82,9 +82,9 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   Trajectory estimate;
   double velocity_sum = 0.0;
   int velocities = 0;
-  Claims claims;
+  CovarianceSamples samples;
   for (const Step& step : run.steps) {
-    claims.add(step);
+    samples.add(step);
     if (!is_tracking(step.status)) continue;
     estimate.push_back(frame({step.state.t, step.state.T_W_B}));
     const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
@@ -102,7 +102,7 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   result.rms_velocity_error = velocities == 0 ? 0.0 : std::sqrt(velocity_sum / velocities);
   Trajectory true_body;
   for (const StampedPose& pose : truth) true_body.push_back(frame.to_body(pose));
-  result.consistency = check_consistency(true_body, claims.all());
+  result.consistency = check_consistency(true_body, samples.all());
   result.evaluation = evaluate(associate(truth, estimate), protocol("P3"));
   return result;
 }

@@ -34,8 +34,8 @@ struct FlightRun {
   std::vector<Step> steps;               ///< one a packet, without events and images
   std::vector<double> event_frame_sums;  ///< sum of grey values, one a packet; zero without an event frame
   RunStatistics statistics;
-  Rig rig;              ///< as calibrated along the way
-  Hindsight hindsight;  ///< once all steps had come
+  Rig rig;                           ///< as calibrated along the way
+  FinalTrajectory final_trajectory;  ///< once all steps had come
 };
 
 FlightRun run_flight(const Calibration& calibration, std::span<const Measurement> measurements, Mode mode,

@@ -34,7 +34,7 @@ Errors errors(const Flight& flight, Mode mode, bool with_map) {
   const FlightRun run = run_with(flight, mode, with_map);
   EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
   return {score(flight, run).evaluation.ate_m.rmse,
-          evaluate(associate(flight.truth->trajectory, run.hindsight.poses), protocol("P3")).ate_m.rmse};
+          evaluate(associate(flight.truth->trajectory, run.final_trajectory.poses), protocol("P3")).ate_m.rmse};
 }
 
 /// Geometric means over flights: with the map over without, as known in the end over at its time, and ATE with it [mm].
@@ -85,7 +85,7 @@ TEST(Revisits, HoldTheDriftOfFramesInFastMotion) {
 TEST(Revisits, AreFoundAndKnownInTheEndToTheSameBitEachTime) {
   const Flight flight = simulate_flight("room", 5, 14.0);
   const FlightRun run = run_with(flight, Mode::Frames, true), again = run_with(flight, Mode::Frames, true);
-  const Hindsight &one = run.hindsight, &two = again.hindsight;
+  const FinalTrajectory &one = run.final_trajectory, &two = again.final_trajectory;
   ASSERT_GT(one.poses.size(), 100U);
   ASSERT_EQ(one.poses.size(), two.poses.size());
   for (std::size_t i = 0; i < one.poses.size(); ++i) {
@@ -97,7 +97,7 @@ TEST(Revisits, AreFoundAndKnownInTheEndToTheSameBitEachTime) {
   EXPECT_GT(one.keyframes.front().times_found, 0);
   for (const MappedKeyframe& keyframe : one.keyframes) EXPECT_FALSE(keyframe.points.empty());
   // A step tells what it has found, and how far back that reaches.
-  const auto found = std::ranges::find_if(run.steps, [](const Step& step) { return !step.found.empty(); });
+  const auto found = std::ranges::find_if(run.steps, [](const Step& step) { return !step.map_matches.empty(); });
   ASSERT_NE(found, run.steps.end());
   EXPECT_LT(found->found.front().keyframe, found->t - std::chrono::seconds(1));
 }
@@ -108,7 +108,7 @@ double error_after_cover(const Flight& flight, Mode mode, bool with_map) {
   const FlightRun run = run_with(flight, mode, with_map);
   EXPECT_GE(run.statistics.times_lost(), 1U);
   // A better start that takes the place of a provisional one is found again, too.
-  EXPECT_EQ(std::ranges::any_of(run.steps, &Step::found_again), with_map);
+  EXPECT_EQ(std::ranges::any_of(run.steps, &Step::relocalized), with_map);
   Trajectory estimate;
   for (const Step& step : run.steps) {
     if (is_tracking(step.status)) estimate.push_back({step.t, step.state.T_W_B});
@@ -169,7 +169,7 @@ std::size_t found_elsewhere(const Flight& flight, const FlightRun& run) {
   };
   std::size_t count = 0;
   for (const Step& step : run.steps) {
-    count += std::ranges::count_if(step.found, [&](const FoundPoint& point) {
+    count += std::ranges::count_if(step.map_matches, [&](const MapMatch& point) {
       return (true_place(point.keyframe) - true_place(step.t)).norm() > 2.0;
     });
   }
@@ -186,7 +186,7 @@ TEST(Revisits, DoNotTakeOneOfTwoEqualRoomsForTheOther) {
     const Flight flight = simulate_flight(config);
     for (const Mode mode : kAllModes) {
       const FlightRun run = run_with(flight, mode, true);
-      const auto found = std::ranges::count_if(run.steps, [](const Step& step) { return !step.found.empty(); });
+      const auto found = std::ranges::count_if(run.steps, [](const Step& step) { return !step.map_matches.empty(); });
       std::cout << mode_name(mode) << (covered ? ", lens covered on the way" : "") << ": found in " << found << " of "
                 << run.steps.size() << " packets, ATE " << 1e3 * score(flight, run).evaluation.ate_m.rmse << " mm\n";
       EXPECT_EQ(found_elsewhere(flight, run), 0U);

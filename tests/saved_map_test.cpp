@@ -30,7 +30,7 @@ MappedRun run_with(const Flight& flight, Mode mode, const std::string& map) {
   drive(
       odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
       [&](const Step& step) {
-        if (step.found_again && !run.found) {
+        if (step.relocalized && !run.found) {
           run.found = step.t;
           run.poses.clear();
         }

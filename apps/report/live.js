@@ -14,10 +14,10 @@ const kPictures = {frame: 'frame', events: 'events, motion-compensated'};
 /** A run of which nothing has come yet, in the shape of the report's. */
 function emptyRun(about) {
   const columns = ['t', 'status', 'x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'bgx', 'bgy', 'bgz', 'bax', 'bay', 'baz', 'keyframe',
-                   'event_tracks', 'frame_tracks', 'landmarks', 'event_survival', 'frame_survival', 'map_found', 'map_reach', 'event_rate', 'depth',
+                   'event_tracks', 'frame_tracks', 'landmarks', 'event_track_survival_rate', 'frame_track_survival_rate', 'map_matches', 'map_reach', 'event_rate', 'depth',
                    'processing', 'latency', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
   return {name: about.recording, folder: '', is_file: false, metrics: null, live: about, frame: about.frame, evaluation: null,
-          rows: Object.fromEntries(columns.map(name => [name, []])), claimed: {}, truth: [], map: [], changes: [], pictures: []};
+          rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], changes: [], pictures: []};
 }
 
 /** Rows and changes that are new; the newest row goes along even where it is not one of those that are kept. */

@@ -28,15 +28,15 @@ function errorPlots(parent) {
   for (const axis of ['x', 'y', 'z']) {
     const key = 'sigma3_' + axis, series = [];
     runs.forEach((run, i) => {
-      const claimed = run.claimed, label = runs.length > 1 ? runName(run) : '';
-      if (claimed.t) {
-        series.push({t: claimed.t, y: claimed[axis], label, colour: runColour(i), band: {low: claimed[key].map(s => -s), high: claimed[key]}});
+      const pose_errors = run.pose_errors, label = runs.length > 1 ? runName(run) : '';
+      if (pose_errors.t) {
+        series.push({t: pose_errors.t, y: pose_errors[axis], label, colour: runColour(i), band: {low: pose_errors[key].map(s => -s), high: pose_errors[key]}});
       } else if (run.rows[key] && run.rows[key].some(s => s !== null)) {
         const low = run.rows[key].map(s => s === null ? null : -s);
         series.push({t: run.rows.t, y: run.rows[key].map(() => null), label, colour: runColour(i), band: {low, high: run.rows[key]}});
       }
     });
-    const compared = runs.some(run => run.claimed.t);
+    const compared = runs.some(run => run.pose_errors.t);
     if (series.length) new TimePlot(time, {title: compared ? 'error ' + axis + ' since the start, ±3 σ' : '±3 σ of ' + axis, unit: 'm', series}, parent);
   }
 }
@@ -73,13 +73,13 @@ function plotSection() {
   const seen = group('What it sees');
   columnPlot(seen, 'tracks on events', '', 'event_tracks', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'tracks on frames', '', 'frame_tracks', {zero: true, notIn: 'events'});
-  columnPlot(seen, 'health of events: corners that survive an image', '', 'event_survival', {zero: true, notIn: 'frames'});
-  columnPlot(seen, 'health of frames: corners that survive an image', '', 'frame_survival', {zero: true, notIn: 'events'});
+  columnPlot(seen, 'health of events: corners that survive an image', '', 'event_track_survival_rate', {zero: true, notIn: 'frames'});
+  columnPlot(seen, 'health of frames: corners that survive an image', '', 'frame_track_survival_rate', {zero: true, notIn: 'events'});
   columnPlot(seen, 'landmarks', '', 'landmarks', {zero: true});
   columnPlot(seen, 'event rate', '1/s', 'event_rate', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'scene depth', 'm', 'depth', {zero: true});
   const map = group('Map: what is seen again after it has left the window');
-  columnPlot(map, 'points found again', '', 'map_found', {zero: true, dots: true});
+  columnPlot(map, 'points found again', '', 'map_matches', {zero: true, dots: true});
   columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true, dots: true});
   const pace = group('Time that a packet takes');
   columnPlot(pace, 'processing', 'ms', 'processing', {zero: true});
@@ -113,14 +113,14 @@ function fillTimeline(all) {
     const spans = run.changes.map((change, k) => ({...change, length: (k + 1 < run.changes.length ? run.changes[k + 1].t : last) - change.t}));
     const bar = make('div', {class: 'timeline', role: 'img', 'aria-label': 'status over time'});
     for (const span of spans) {
-      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s' + (span.found_again ? ', found again in the map' : '')});
-      if (span.found_again) piece.className = 'again';
+      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s' + (span.relocalized ? ', found again in the map' : '')});
+      if (span.relocalized) piece.className = 'again';
       piece.style.flexGrow = Math.max(span.length, 1e-3);
       bar.append(piece);
     }
     if (runs.length === 1) {
       time.spans = spans.filter(span => span.status !== 'Good').map(span => ({from: span.t, to: span.t + span.length, colour: kStatusColours[span.status]}));
-      time.marks = spans.filter(span => span.found_again).map(span => span.t);
+      time.marks = spans.filter(span => span.relocalized).map(span => span.t);
     }
     const rows = spans.map(span => {
       const status = make('td', {class: 'status', c: kStatusColours[span.status]}, span.status);

@@ -9,16 +9,16 @@
 #include <string>
 #include <string_view>
 
-#include "edged/core/timing.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/counters.hpp"
+#include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/counters.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 #include "edged/step.hpp"
 #include "edged/time.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 
@@ -52,13 +52,13 @@ class Odometry {
   std::optional<Step> next();
 
   /// Goes on in a map that save_map of an earlier run gave, before the first measurement. Until a place of it has been
-  /// recognised the poses are in a frame of this run's own; with the step that says found_again they come into the
+  /// recognised the poses are in a frame of this run's own; with the step that says relocalized they come into the
   /// map's. Throws InputError where the bytes are damaged or of another version, no camera of this mode fits, or it is
   /// too late.
   void load_map(std::string_view bytes);
   /// A map was loaded, and no place of it has been recognised yet.
-  bool elsewhere() const;
-  /// What has been seen so far, for load_map. Nothing while elsewhere().
+  bool awaiting_relocalization() const;
+  /// What has been seen so far, for load_map. Nothing while awaiting_relocalization().
   std::optional<std::string> save_map() const;
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
@@ -69,7 +69,7 @@ class Odometry {
   /// Path and map as they are known by now, best asked for when all steps have come: poses held to all places that
   /// were seen again, before and after. Without the map, or where nothing was seen again, the poses are those of the
   /// steps. Not causal. Takes seconds for an hour of flight; what it needs takes half a megabyte a minute.
-  Hindsight hindsight() const;
+  FinalTrajectory final_trajectory() const;
 
   /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
   Rig rig() const;

@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include "edged/core/config.hpp"
-#include "edged/depth/depth_config.hpp"
-#include "edged/estimator/estimator_config.hpp"
-#include "edged/events/events_config.hpp"
-#include "edged/frontend/frontend_config.hpp"
-#include "edged/map/map_config.hpp"
+#include "edged/config.hpp"
+#include "edged/options/depth.hpp"
+#include "edged/options/estimator.hpp"
+#include "edged/options/events.hpp"
+#include "edged/options/frontend.hpp"
+#include "edged/options/map.hpp"
 
 namespace edged {
 
@@ -41,9 +41,9 @@ struct AlignmentConfig {
 
 /// How what a camera gives is weighed by what becomes of its tracks.
 struct HealthConfig {
-  double time_constant_s = 0.3;  ///< of the running mean of the share of tracks that survive an image
-  double min_survival = 0.4;     ///< below it the camera's observations are ignored
-  int min_event_corners = 40;    ///< kept on event frames where the standard frames carry all of theirs
+  double time_constant_s = 0.3;    ///< of the running mean of the share of tracks that survive an image
+  double min_survival_rate = 0.4;  ///< below it the camera's observations are ignored
+  int min_event_features = 40;     ///< kept on event frames where the standard frames carry all of theirs
 
   void visit(ConfigFields& fields);
 };
@@ -64,11 +64,11 @@ struct OdometryConfig {
   PacketizerConfig packets;
   EventFrameConfig event_frame;
   EnhanceConfig enhance;
-  bool enhance_detect = true;  ///< find corners on the enhanced event frame
+  bool enhance_detect = true;  ///< find features on the enhanced event frame
   bool enhance_track = false;  ///< follow them on it too
   AlignmentConfig alignment;   ///< of the event frames
   HealthConfig health;         ///< of each camera
-  DimImageConfig dim_frames;   ///< standard frames in the dark
+  LowLightConfig low_light;    ///< standard frames in the dark
   TrackerConfig event_tracker;
   TrackerConfig frame_tracker;
   KeyframeConfig keyframes;

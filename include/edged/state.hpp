@@ -28,12 +28,12 @@ struct NavState {
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// Names one corner for as long as it is tracked; never reused, unique over all cameras.
+/// Names one feature for as long as it is tracked; never reused, unique over all cameras.
 using FeatureId = std::uint64_t;
 
-/// A point of the world that the estimator has placed by the observations of a corner.
+/// A point of the world that the estimator has placed by the observations of a feature.
 struct Landmark {
-  FeatureId id = 0;  ///< of the corner
+  FeatureId id = 0;  ///< of the feature
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 

@@ -10,14 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
-#include "edged/frontend/track.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/measurement.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 
@@ -41,17 +41,17 @@ struct CameraStep {
   /// CV_8UC1: the event frame, motion-compensated and undistorted, empty when there were too few events; or the frame
   /// as it came, empty in packets without one.
   cv::Mat image = {};
-  /// The live corners by id, in pixels of `image`; where that is empty those of the camera's last one.
+  /// The live features by id, in pixels of `image`; where that is empty those of the camera's last one.
   std::vector<Track> tracks = {};
-  /// Running mean of the share of corners that live through an image, 0 to 1: blur, noise and darkness end them.
-  double survival = 1.0;
+  /// Running mean of the share of features that live through an image, 0 to 1: blur, noise and darkness end them.
+  double survival_rate = 1.0;
 
   // Of event cameras:
   std::vector<Event> events = {};  ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
-  std::size_t drawn = 0;           ///< how many of them, the newest, `image` is of
+  std::size_t rendered = 0;        ///< how many of them, the newest, `image` is of
   double event_rate_hz = 0.0;      ///< of this packet
 
-  std::span<const Event> drawn_events() const { return std::span(events).last(drawn); }
+  std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
 };
 
 /// Images share their pixels with those of the odometry: they are to be looked at, not drawn on.
@@ -63,20 +63,20 @@ struct Step {
   bool keyframe = false;                     ///< this packet became a keyframe
   /// After a loss the body has been found in the map: the pose has gone to where it is there, and what covariance is
   /// against has gone along.
-  bool found_again = false;
+  bool relocalized = false;
 
   /// Where the estimator's own frame O lies in W: state.T_W_B = T_W_O * T_O_B. T_O_B goes on without jumps from one
   /// start to the next; T_W_O is what the map moves.
   SE3 T_W_O;
-  std::vector<FoundPoint> found;  ///< of the map, in an image of this packet; the pose has been held to them
+  std::vector<MapMatch> map_matches;  ///< of the map, in an image of this packet; the pose has been held to them
 
   std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers
   std::string started;       ///< the estimator has started with this packet: how, with numbers
   std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
 
-  std::vector<CameraStep> cameras;   ///< those of the run: event cameras, then frame cameras, as the rig has them
-  std::vector<Landmark> landmarks;   ///< in the window, where it was solved
-  std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this packet
+  std::vector<CameraStep> cameras;  ///< those of the run: event cameras, then frame cameras, as the rig has them
+  std::vector<Landmark> landmarks;  ///< in the window, where it was solved
+  std::vector<KeyframeRecord> marginalized_keyframes;  ///< keyframes that have left the window with this packet
 
   double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only

@@ -100,13 +100,13 @@ class CameraStep:
     def tracks(self) -> NDArray[np.void]:
         """id, pixel, point, previous_pixel, age, first_seen; pixels of image."""
     @property
-    def survival(self) -> float:
+    def survival_rate(self) -> float:
         """Running mean of the share of corners that live through an image, 0 to 1."""
     @property
     def events(self) -> NDArray[np.void]:
         """Of the packet, oldest first, on the IMU's clock; some were in the one before."""
     @property
-    def drawn(self) -> int:
+    def rendered(self) -> int:
         """How many of them, the newest, image shows."""
     @property
     def event_rate_hz(self) -> float: ...
@@ -129,7 +129,7 @@ class Step(_BodyState):
     @property
     def keyframe(self) -> bool: ...
     @property
-    def found_again(self) -> bool:
+    def relocalized(self) -> bool:
         """After a loss, in the map: the pose has gone to where it is there."""
     @property
     def waiting_for(self) -> str: ...
@@ -146,10 +146,10 @@ class Step(_BodyState):
     @property
     def frame_tracks(self) -> NDArray[np.void]: ...
     @property
-    def event_survival(self) -> float | None:
+    def event_track_survival_rate(self) -> float | None:
         """Running mean of the share of corners that live through an image, 0 to 1; None without that camera."""
     @property
-    def frame_survival(self) -> float | None: ...
+    def frame_track_survival_rate(self) -> float | None: ...
     @property
     def landmarks(self) -> NDArray[np.void]:
         """id (of the corner), p_W [m]; only where the window was solved."""
@@ -163,7 +163,7 @@ class Step(_BodyState):
     def events(self) -> NDArray[np.void]:
         """Of the packet, oldest first, on the IMU's clock; some were in the one before."""
     @property
-    def drawn(self) -> int:
+    def rendered(self) -> int:
         """How many of them, the newest, event_frame shows."""
     @property
     def event_rate_hz(self) -> float: ...
@@ -184,7 +184,7 @@ class Measurement:
         """An array of EVENT, an image, or an array of IMU of one row; read-only, without a copy."""
 
 
-class Hindsight:
+class FinalTrajectory:
     """Not causal: what came later has its part in it."""
     @property
     def poses(self) -> NDArray[np.void]:
@@ -220,11 +220,11 @@ class Odometry:
     def load_map(self, map: bytes) -> None:
         """What save_map of another gave, before the first measurement. Poses are in its frame once a place of it is recognised."""
     def save_map(self) -> bytes | None:
-        """What has been seen; None while elsewhere."""
+        """What has been seen; None while awaiting_relocalization."""
     @property
-    def elsewhere(self) -> bool:
+    def awaiting_relocalization(self) -> bool:
         """A map was loaded, and no place of it has been recognised yet."""
-    def hindsight(self) -> Hindsight:
+    def final_trajectory(self) -> FinalTrajectory:
         """Path and map as known by now."""
     @property
     def rig(self) -> dict[str, Camera]:

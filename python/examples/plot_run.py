@@ -47,11 +47,11 @@ def draw_path(axes, recording, steps):
         ate = edged.evaluate(path, truth)["ate_m"]["rmse"]
         axes.plot(true_path[:, 0], true_path[:, 1], color="0.7", lw=4, label="truth")
         axes.set_title(f"from above, {1e3 * ate:.1f} mm off (ATE)")
-        drawn = laid_onto(path["position"], true_path)
+        rendered = laid_onto(path["position"], true_path)
     else:
-        drawn = path["position"]
+        rendered = path["position"]
         axes.set_title("from above")
-    axes.plot(drawn[:, 0], drawn[:, 1], color="tab:blue", lw=1, label="estimate")
+    axes.plot(rendered[:, 0], rendered[:, 1], color="tab:blue", lw=1, label="estimate")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     axes.legend()
 

@@ -107,21 +107,21 @@ std::optional<py::bytes> save_map(PyOdometry& self) {
   return bytes ? std::optional(py::bytes(*bytes)) : std::nullopt;
 }
 
-bool elsewhere(PyOdometry& self) {
-  return guarded(self.mutex, [&] { return self.odometry.elsewhere(); });
+bool awaiting_relocalization(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return self.odometry.awaiting_relocalization(); });
 }
 
-Hindsight hindsight(PyOdometry& self) {
-  return guarded(self.mutex, [&] { return self.odometry.hindsight(); });
+FinalTrajectory final_trajectory(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return self.odometry.final_trajectory(); });
 }
 
-Trajectory keyframe_poses(const Hindsight& known) {
+Trajectory keyframe_poses(const FinalTrajectory& known) {
   Trajectory poses;
   for (const MappedKeyframe& keyframe : known.keyframes) poses.push_back({keyframe.t, keyframe.T_W_B});
   return poses;
 }
 
-py::array_t<double> map_points(const Hindsight& known) {
+py::array_t<double> map_points(const FinalTrajectory& known) {
   std::vector<double> rows;
   for (const MappedKeyframe& keyframe : known.keyframes) {
     for (const MappedKeyframe::Point& point : keyframe.points)
@@ -145,9 +145,10 @@ PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const OptionVa
 
 void bind_odometry(py::module_& module) {
   using Free = py::call_guard<py::gil_scoped_release>;
-  py::class_<Hindsight>(module, "Hindsight")
-      .def_property_readonly("poses", [](const Hindsight& known) { return poses_array(known.poses); })
-      .def_property_readonly("keyframes", [](const Hindsight& known) { return poses_array(keyframe_poses(known)); })
+  py::class_<FinalTrajectory>(module, "FinalTrajectory")
+      .def_property_readonly("poses", [](const FinalTrajectory& known) { return poses_array(known.poses); })
+      .def_property_readonly("keyframes",
+                             [](const FinalTrajectory& known) { return poses_array(keyframe_poses(known)); })
       .def_property_readonly("points", &map_points);
   py::class_<PyOdometry>(module, "Odometry")
       .def(py::init(&make_odometry), py::arg("calibration"), py::arg("mode") = "fused",
@@ -171,8 +172,8 @@ void bind_odometry(py::module_& module) {
           Free())
       .def("load_map", &load_map, py::arg("map"))
       .def("save_map", &save_map)
-      .def_property_readonly("elsewhere", &elsewhere)
-      .def("hindsight", &hindsight)
+      .def_property_readonly("awaiting_relocalization", &awaiting_relocalization)
+      .def("final_trajectory", &final_trajectory)
       .def_property_readonly("rig", &rig)
       .def_property_readonly("counters", &counters)
       .def_property_readonly("timings", &timings);

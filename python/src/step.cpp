@@ -59,8 +59,8 @@ void bind_camera(py::module_& module) {
                              [](const py::object& self) { return view(self.cast<const CameraStep&>().tracks, self); })
       .def_property_readonly("events",
                              [](const py::object& self) { return view(self.cast<const CameraStep&>().events, self); })
-      .def_readonly("survival", &CameraStep::survival)
-      .def_readonly("drawn", &CameraStep::drawn)
+      .def_readonly("survival_rate", &CameraStep::survival_rate)
+      .def_readonly("rendered", &CameraStep::rendered)
       .def_readonly("event_rate_hz", &CameraStep::event_rate_hz)
       .def("__repr__", [](const CameraStep& c) {
         return fmt::format("<edged.CameraStep '{}' {} tracks>", c.name, c.tracks.size());
@@ -83,18 +83,18 @@ void bind_first_cameras(py::class_<Step>& bound) {
   };
   const auto tracks = [](const CameraStep& camera, const py::object& self) { return view(camera.tracks, self); };
   const auto image = [](const CameraStep& camera, const py::object& self) { return picture(camera.image, self); };
-  const auto survival = [](const CameraStep& camera, const py::object&) {
-    return camera.name.empty() ? std::nullopt : std::optional(camera.survival);
+  const auto survival_rate = [](const CameraStep& camera, const py::object&) {
+    return camera.name.empty() ? std::nullopt : std::optional(camera.survival_rate);
   };
   add("event_tracks", Modality::Events, tracks);
   add("frame_tracks", Modality::Frames, tracks);
   add("event_frame", Modality::Events, image);
   add("frame", Modality::Frames, image);
-  add("event_survival", Modality::Events, survival);
-  add("frame_survival", Modality::Frames, survival);
+  add("event_track_survival_rate", Modality::Events, survival_rate);
+  add("frame_track_survival_rate", Modality::Frames, survival_rate);
   add("events", Modality::Events,
       [](const CameraStep& camera, const py::object& self) { return view(camera.events, self); });
-  add("drawn", Modality::Events, [](const CameraStep& camera, const py::object&) { return camera.drawn; });
+  add("rendered", Modality::Events, [](const CameraStep& camera, const py::object&) { return camera.rendered; });
   add("event_rate_hz", Modality::Events,
       [](const CameraStep& camera, const py::object&) { return camera.event_rate_hz; });
 }
@@ -124,7 +124,7 @@ void bind_step(py::module_& module) {
       .def_property_readonly("rotation_covariance",
                              [](const Step& s) { return covariance(s, &PoseCovariance::rotation); })
       .def_readonly("keyframe", &Step::keyframe)
-      .def_readonly("found_again", &Step::found_again)
+      .def_readonly("relocalized", &Step::relocalized)
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)

@@ -56,8 +56,8 @@ def test_the_cameras_of_a_step_outlive_it():
     gc.collect()
     assert [(name, camera.modality) for name, camera in cameras.items()] == [("events", "events"), ("frames", "frames")]
     events = cameras["events"]
-    assert events.name == "events" and 0 < events.drawn <= len(events.events) and events.event_rate_hz > 0
-    assert 0 < events.survival <= 1 and events.image.shape == (180, 240)
+    assert events.name == "events" and 0 < events.rendered <= len(events.events) and events.event_rate_hz > 0
+    assert 0 < events.survival_rate <= 1 and events.image.shape == (180, 240)
     tracks = cameras["frames"].tracks
     del cameras, events
     gc.collect()
@@ -68,8 +68,8 @@ def test_the_first_of_a_kind_has_names_of_its_own():
     for step in edged.run(room(2), "events"):
         assert list(step.cameras) == ["events"]
         assert np.array_equal(step.event_tracks["id"], step.cameras["events"].tracks["id"])
-        assert step.event_survival == step.cameras["events"].survival
-        assert len(step.frame_tracks) == 0 and step.frame is None and step.frame_survival is None
+        assert step.event_track_survival_rate == step.cameras["events"].survival_rate
+        assert len(step.frame_tracks) == 0 and step.frame is None and step.frame_track_survival_rate is None
 
 
 def test_a_step_says_what_it_is():
@@ -85,5 +85,5 @@ def test_a_step_says_what_it_is():
     assert step.event_tracks["pixel"].shape == (len(step.event_tracks), 2)
     assert set(step.landmarks["id"]) & set(step.frame_tracks["id"])
     assert np.ptp(step.landmarks["p_W"], axis=0).max() > 0.5
-    assert 0 < step.drawn <= len(step.events)
+    assert 0 < step.rendered <= len(step.events)
     assert "Good" in repr(step)

@@ -10,7 +10,7 @@ def follow(recording, the_map=None):
     odometry = edged.Odometry(recording.calibration, "frames", in_order=True)
     if the_map is not None:
         odometry.load_map(the_map)
-        assert odometry.elsewhere and odometry.save_map() is None
+        assert odometry.awaiting_relocalization and odometry.save_map() is None
     steps = []
     for measurement in recording:
         odometry.add(measurement)
@@ -21,12 +21,12 @@ def follow(recording, the_map=None):
 
 def test_a_map_of_one_odometry_is_gone_on_in_by_another():
     first, steps = follow(edged.simulate("room", 5, duration_s=9))
-    known = first.hindsight()
+    known = first.final_trajectory()
     assert len(known.poses) == sum(step.is_tracking for step in steps)
     assert known.points.shape[1] == 3 and len(known.points) > 15 * len(known.keyframes) > 0
     second, steps = follow(edged.simulate("room", 5, duration_s=9, begin_s=4), first.save_map())
-    assert not second.elsewhere and any(step.found_again for step in steps)
-    assert (second.hindsight().keyframes["t"] < 0).any()
+    assert not second.awaiting_relocalization and any(step.relocalized for step in steps)
+    assert (second.final_trajectory().keyframes["t"] < 0).any()
     with pytest.raises(edged.InputError, match="before the first pose"):
         second.load_map(first.save_map())
 

@@ -41,7 +41,7 @@ def assert_same_states(steps, rows):
         assert step.keyframe == (row["keyframe"] == "1")
         assert [len(step.event_tracks), len(step.frame_tracks), len(step.landmarks)] == numbers(
             row, "event_tracks", "frame_tracks", "landmarks")
-        for health, column in ((step.event_survival, "event_survival"), (step.frame_survival, "frame_survival")):
+        for health, column in ((step.event_track_survival_rate, "event_track_survival_rate"), (step.frame_track_survival_rate, "frame_track_survival_rate")):
             assert health == (float(row[column]) if row[column] else None)
         if step.status != edged.Status.INITIALIZING:
             assert [*step.position, *step.quaternion] == numbers(row, "px_m", "py_m", "pz_m", "qx", "qy", "qz", "qw")

@@ -123,16 +123,17 @@ sensor_msgs::Image tracks_message(Timestamp t, const std::string& camera, const 
                                   std::span<const Track> tracks) {
   const cv::Scalar green(80, 220, 80), orange(0, 140, 255);
   const auto point = [](const Eigen::Vector2d& pixel) { return cv::Point2d(pixel.x(), pixel.y()); };
-  cv::Mat drawn;
-  cv::cvtColor(image, drawn, cv::COLOR_GRAY2BGR);
+  cv::Mat rendered;
+  cv::cvtColor(image, rendered, cv::COLOR_GRAY2BGR);
   for (const Track& track : tracks) {
-    cv::line(drawn, point(track.previous_pixel), point(track.pixel), orange, 1, cv::LINE_AA);
-    cv::circle(drawn, point(track.pixel), 2, green, 1, cv::LINE_AA);
+    cv::line(rendered, point(track.previous_pixel), point(track.pixel), orange, 1, cv::LINE_AA);
+    cv::circle(rendered, point(track.pixel), 2, green, 1, cv::LINE_AA);
   }
   sensor_msgs::Image message;
   message.header = header_of(t, camera);
-  sensor_msgs::fillImage(message, sensor_msgs::image_encodings::BGR8, static_cast<std::uint32_t>(drawn.rows),
-                         static_cast<std::uint32_t>(drawn.cols), static_cast<std::uint32_t>(drawn.step[0]), drawn.data);
+  sensor_msgs::fillImage(message, sensor_msgs::image_encodings::BGR8, static_cast<std::uint32_t>(rendered.rows),
+                         static_cast<std::uint32_t>(rendered.cols), static_cast<std::uint32_t>(rendered.step[0]),
+                         rendered.data);
   return message;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

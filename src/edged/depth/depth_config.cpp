@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/depth/depth_config.hpp"
+#include "edged/options/depth.hpp"
 
 namespace edged {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 

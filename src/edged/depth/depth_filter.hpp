@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/depth_prior.hpp"
+#include "edged/options/depth.hpp"
 
 namespace edged {
 

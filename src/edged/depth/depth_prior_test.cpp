@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The depth priors: what each takes, where it looks, and how they are put together.
-#include "edged/depth/depth_config.hpp"
+#include "edged/options/depth.hpp"
 
 #include <gtest/gtest.h>
 

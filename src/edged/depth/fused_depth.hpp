@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/landmark_depth.hpp"
 #include "edged/depth/network_depth.hpp"
+#include "edged/options/depth.hpp"
 
 namespace edged {
 

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/depth_prior.hpp"
+#include "edged/options/depth.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {

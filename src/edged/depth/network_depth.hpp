@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/depth_filter.hpp"
 #include "edged/depth/latest_window.hpp"
 #include "edged/depth/network.hpp"
+#include "edged/options/depth.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {

@@ -38,7 +38,7 @@ Chosen all_of(const StartSolver& solver) {
   return all;
 }
 
-/// What tells one start from another. What moves by itself fills a part of the view with corners, the world all of it:
+/// What tells one start from another. What moves by itself fills a part of the view with features, the world all of it:
 /// the tracks of one direction share one vote.
 class Judge {
  public:
@@ -148,7 +148,7 @@ class MotionSearch {
   MotionSearch(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise, double accel_bias_sigma)
       : frames_(frames), rig_(rig), noise_(noise), accel_bias_sigma_(accel_bias_sigma) {}
 
-  /// What walks by turns the gyro bias too: where some do, the bias is that of the corners that fit, or at first none.
+  /// What walks by turns the gyro bias too: where some do, the bias is that of the features that fit, or at first none.
   std::optional<Found> best() {
     std::optional<Found> best = best_at(align_gyro_bias(frames_, rig_, noise_));
     if (!best || judge_->fits_nearly_all(best->best)) return best;

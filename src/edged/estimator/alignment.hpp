@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Visual-inertial alignment: starts the estimator in mid-motion, from corner tracks and IMU alone.
+// Visual-inertial alignment: starts the estimator in mid-motion, from feature tracks and IMU alone.
 //
-// 1. The gyro bias is the one whose rotations make the corner rays of each pair of views coplanar with some baseline
+// 1. The gyro bias is the one whose rotations make the feature rays of each pair of views coplanar with some baseline
 //    (the coplanarity of Kneip and Lynen, "Direct optimization of frame-to-frame rotation", ICCV 2013, here with the
 //    rotations tied together by the gyro).
 // 2. With rotations known, landmark positions, the first velocity and gravity are linear in the rays (Martinelli,
 //    "Closed-form solution of visual-inertial structure from motion", IJCV 2014); landmarks are eliminated one by one,
 //    and the length of gravity is imposed exactly. The scale is metric from the start.
-// 3. Corner noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow,
+// 3. Feature noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow,
 // over
 //    the accelerometer bias too. Their normal equations tell how well the scale is known.
 // 4. A walker is as good a world as the room: seen from him the room walks, and the IMU knows no velocity. Where one
 // motion
-//    does not fit nearly all corners, patches of the view make hypotheses, and the one that explains most of the view
+//    does not fit nearly all features, patches of the view make hypotheses, and the one that explains most of the view
 //    wins.
 #pragma once
 
@@ -31,14 +31,14 @@ namespace edged {
 struct Alignment {
   std::vector<NavState> states;  ///< one a frame; W z-up, origin and yaw at the first body pose
   double gravity_error = 0.0;    ///< |g| found without imposing it, relative to 9.81: a measure of trust
-  double scale_sigma = 0.0;      ///< standard deviation of the longest baseline over its length, as the corners tell it
-  std::set<FeatureId> outliers;  ///< corners that move by themselves
+  double scale_sigma = 0.0;  ///< standard deviation of the longest baseline over its length, as the features tell it
+  std::set<FeatureId> outliers;  ///< features that move by themselves
   /// Of what it explains of the views, the share that a running estimate explains, 0 to 1: does that one follow the
   /// world, or something that moves in it?
   double explained = 1.0;
 };
 
-/// Gyro bias [rad/s] that best explains the image rotation; nothing with too few common corners.
+/// Gyro bias [rad/s] that best explains the image rotation; nothing with too few common features.
 std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, const Rig& rig,
                                                const ImuNoise& noise);
 

@@ -27,8 +27,8 @@ constexpr double kStartSigmaInflation = 1.5;  // of what a start has been told s
 constexpr double kMaxStandstillSpeed = 0.15;
 // [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
 constexpr double kRestGyroBiasSigma = 5e-4;
-// Times an observation's sigma, where the gyro is beyond its range: images blur, corners are followed without its word,
-// and what those of an image have in common, which the gyro outweighs else, turns the body.
+// Times an observation's sigma, where the gyro is beyond its range: images blur, features are followed without its
+// word, and what those of an image have in common, which the gyro outweighs else, turns the body.
 constexpr double kUnseenTurnNoise = 6.0;
 // Of sigmas, events alone, times that of the options: what moves by itself leads them astray more easily.
 constexpr double kEventsAloneInflation = 1.4;
@@ -88,8 +88,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   optimize(result, config_.iterations);
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
-  result.left = slide();
-  settle_scale(input);
+  result.marginalized_keyframes = slide();
+  update_scale(input);
   result.provisional = provisional();
   return result;
 }
@@ -122,7 +122,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
 }
 
 /// What a provisional start has seen since may have told it the scale.
-void Estimator::settle_scale(const EstimatorInput& input) {
+void Estimator::update_scale(const EstimatorInput& input) {
   if (!provisional() || !input.keyframe) return;
   scale_sigma_ = std::min(scale_sigma_, kStartSigmaInflation * scale_sigma(window_));
   agreed_ = agreed_ || input.t >= agreed_by_itself_;
@@ -228,17 +228,17 @@ void Estimator::adapt_noise(double imu_strain) {
 }
 
 std::vector<KeyframeRecord> Estimator::slide() {
-  std::vector<KeyframeRecord> left;
+  std::vector<KeyframeRecord> marginalized_keyframes;
   // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
   if (window_.states().size() > static_cast<std::size_t>(config_.recent_states)) {
     const auto aged = std::prev(window_.states().end(), config_.recent_states + 1);
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states().size()) > config_.recent_states + config_.keyframes) {
-    left.push_back(drop_oldest_keyframe(window_, config_.landmarks));
+    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks));
   }
   window_.forget_ended_tracks();
-  return left;
+  return marginalized_keyframes;
 }
 
 }  // namespace edged

@@ -8,23 +8,24 @@
 #include <vector>
 
 #include "edged/estimator/depth_terms.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/external_factors.hpp"
 #include "edged/estimator/initializer.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/options/estimator.hpp"
 
 namespace edged {
 
 struct EstimatorResult {
-  std::string waiting_for;           ///< while not initialised: what is missing, with numbers
-  std::vector<FeatureId> outliers;   ///< tracks that are wrong and should end
-  std::string started;               ///< the estimator has started with this input: how, with numbers
-  std::vector<Landmark> landmarks;   ///< in the cost
-  int landmarks_seen = 0;            ///< of them, seen by the newest state
-  double imu_strain = 0.0;           ///< of the window: see imu_strain() [sigma]
-  std::vector<KeyframeRecord> left;  ///< keyframes that have left the window with this input, in its frame
+  std::string waiting_for;          ///< while not initialised: what is missing, with numbers
+  std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
+  std::string started;              ///< the estimator has started with this input: how, with numbers
+  std::vector<Landmark> landmarks;  ///< in the cost
+  int landmarks_seen = 0;           ///< of them, seen by the newest state
+  double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
+  std::vector<KeyframeRecord>
+      marginalized_keyframes;  ///< keyframes that have left the window with this input, in its frame
   bool standstill = false;
   bool velocity_observed = false;  ///< by an external sensor, within the last moment
   bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
@@ -64,7 +65,7 @@ class Estimator {
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
-  void settle_scale(const EstimatorInput& input);
+  void update_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
   void append(const EstimatorInput& input);
   bool take_depth(const EstimatorInput& input);

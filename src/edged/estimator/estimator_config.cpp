@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/estimator_config.hpp"
+#include "edged/options/estimator.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

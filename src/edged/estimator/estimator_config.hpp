@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
 
@@ -21,7 +21,7 @@ struct CalibrationConfig {
   void visit(ConfigFields& fields);
 };
 
-/// How errors along a track hang together. KLT follows a corner from image to image: what it has drifted by stays. Of
+/// How errors along a track hang together. KLT follows a feature from image to image: what it has drifted by stays. Of
 /// two observations dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov
 /// process, and on top of it what each image has of its own. An event frame has more of that: it is drawn anew each
 /// time. And the more is taken for drift, the more what moves slowly is believed.
@@ -34,7 +34,7 @@ struct TrackNoise {
 };
 
 struct LandmarkConfig {
-  double min_parallax_deg = 0.6;  ///< a corner becomes a landmark once its rays differ by this
+  double min_parallax_deg = 0.6;  ///< a feature becomes a landmark once its rays differ by this
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
   double max_residual_sigma = 2.5;    ///< an observation that fits worse is taken out
@@ -49,7 +49,7 @@ struct StandstillConfig {
   double max_gyro = 0.03;          ///< spread of the angular rate's block means [rad/s]
   double max_accel = 0.25;         ///< spread of the acceleration's block means [m/s^2]
   double max_gyro_mean = 0.15;     ///< a mean rate above this is motion, not bias [rad/s]
-  double max_image_motion = 4e-3;  ///< median travel of the corners over the window, on the unit plane [rad]
+  double max_image_motion = 4e-3;  ///< median travel of the features over the window, on the unit plane [rad]
   double quiet_window_s = 0.7;     ///< quiet for so long, the IMU needs no picture
   double quiet_gyro = 0.008;       ///< spread then, near a sensor's own noise [rad/s]
   double quiet_accel = 0.1;        ///< [m/s^2]
@@ -119,7 +119,7 @@ struct EstimatorConfig {
   double max_noise_scale = 4.0;
   double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
   double sigma_inflation =
-      1.3;  ///< of what covariance() gives: what corners of one image have in common is not modelled
+      1.3;  ///< of what covariance() gives: what features of one image have in common is not modelled
   TrackNoise track_noise;
   CalibrationConfig calibration;
   LandmarkConfig landmarks;

@@ -155,7 +155,7 @@ TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
     }
   }
   EXPECT_GT(keyframes, 12U);
-  EXPECT_GT(left, seen / 2) << "landmarks are fewer than corners";
+  EXPECT_GT(left, seen / 2) << "landmarks are fewer than features";
   EXPECT_LT(depth_error, 0.03 * static_cast<double>(left));
   EXPECT_GT(depth_sigma, 0.5 * depth_error) << "as well known as it says";
 }

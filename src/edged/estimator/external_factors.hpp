@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/window.hpp"
 #include "edged/measurement.hpp"
+#include "edged/options/estimator.hpp"
 
 namespace edged {
 

@@ -18,7 +18,7 @@ constexpr std::size_t kMinPairCorners = 10;
 constexpr double kBiasPrior = 0.15;  // [rad/s]
 constexpr double kPairNoise = 5e-3;  // [rad]
 
-/// A corner seen in two frames, as rays in the body frame's orientation at each.
+/// A feature seen in two frames, as rays in the body frame's orientation at each.
 struct RayPair {
   Vector3d ray_0, ray_1;
 };
@@ -73,7 +73,7 @@ std::vector<RotationPair> rotation_pairs(const std::vector<InitFrame>& frames, c
   return out;
 }
 
-/// The baseline that a pair's corners agree on best under the rotation R. Noise turns every normal f_0 x R f_1 about
+/// The baseline that a pair's features agree on best under the rotation R. Noise turns every normal f_0 x R f_1 about
 /// its rays only: C is the covariance it leaves, without which the baseline leans towards the optical axis.
 Vector3d baseline_of(const RotationPair& pair, const Matrix3d& R) {
   Matrix3d M = Matrix3d::Zero(), C = Matrix3d::Zero();
@@ -85,7 +85,7 @@ Vector3d baseline_of(const RotationPair& pair, const Matrix3d& R) {
   return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d>(M, C).eigenvectors().col(0).normalized();
 }
 
-/// One Gauss-Newton term: the angle of each corner's ray to the plane of its partner and the baseline; the baseline,
+/// One Gauss-Newton term: the angle of each feature's ray to the plane of its partner and the baseline; the baseline,
 /// two angles a pair, is eliminated.
 void add_coplanarity(const RotationPair& pair, const Vector3d& bg, Matrix3d& H, Vector3d& g) {
   const Matrix3d R = pair.imu.dR(bg).toRotationMatrix();

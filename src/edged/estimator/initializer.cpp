@@ -123,7 +123,7 @@ bool Initializer::buffer_view(const EstimatorInput& input) {
   return true;
 }
 
-/// In a fast turn a corner crosses the view within a tenth of a second: views must follow it.
+/// In a fast turn a feature crosses the view within a tenth of a second: views must follow it.
 bool Initializer::view_due(const EstimatorInput& input) const {
   return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s) ||
          turned_rad(pending_imu_) > config_.init_turn_deg * kDegree;
@@ -182,7 +182,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma, const NavState
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma, running);
-  if (!alignment) return {{}, "corners that last for three views"};
+  if (!alignment) return {{}, "features that last for three views"};
   StartResult result = start_from(*alignment, most_scale_sigma);
   result.explained = alignment->explained;
   return result;
@@ -231,7 +231,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);
   const double rms = visual_rms(window);
   if (!(rms <= kMaxStartRms)) {
-    return fmt::format("motion that fits the IMU: corners {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
+    return fmt::format("motion that fits the IMU: features {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
   }
   const double tilt_deg = tilt_sigma(window) / kDegree;
   if (!(tilt_deg <= most_tilt_deg)) {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "edged/estimator/alignment.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -22,7 +22,7 @@ namespace edged {
 struct StartWindow {
   Window window;
   double scale_sigma = 0.0;           ///< of ln scale; 0 from rest, where nothing has been scaled yet
-  std::set<FeatureId> outliers = {};  ///< corners that move by themselves
+  std::set<FeatureId> outliers = {};  ///< features that move by themselves
 };
 
 /// What a packet brought the start.
@@ -63,10 +63,10 @@ class Initializer {
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
-  std::vector<InitFrame> buffer_;                   ///< views
-  std::vector<ImuSample> pending_imu_;              ///< since the last view
-  Timestamp next_solve_;                            ///< a refused window is not solved anew with every view
-  std::string motion_lacks_ = "corners to follow";  ///< what kept the last view from starting in motion
+  std::vector<InitFrame> buffer_;                    ///< views
+  std::vector<ImuSample> pending_imu_;               ///< since the last view
+  Timestamp next_solve_;                             ///< a refused window is not solved anew with every view
+  std::string motion_lacks_ = "features to follow";  ///< what kept the last view from starting in motion
 };
 
 }  // namespace edged

@@ -117,12 +117,12 @@ std::vector<double> misfit_limits(const Window& window, const Fit& fit, double m
 
 void LandmarkConfig::visit(ConfigFields& fields) {
   fields.add("min_parallax_deg", min_parallax_deg,
-             {"deg", 0.05, 10, "rays of a corner must differ by this to place it"});
+             {"deg", 0.05, 10, "rays of a feature must differ by this to place it"});
   fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "nearer landmarks are refused"});
   fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "farther landmarks are refused"});
   fields.add("max_residual_sigma", max_residual_sigma, {"sigma", 1, 20, "observations that fit worse are taken out"});
   fields.add("max_innovation_sigma", max_innovation_sigma,
-             {"sigma", 1, 1000, "corners farther from where the IMU expects their landmark end"});
+             {"sigma", 1, 1000, "features farther from where the IMU expects their landmark end"});
   fields.add("max_misfit", max_misfit,
              {"", 1, 1000,
               "landmarks whose observations fit so much worse than the median landmark's are taken out: they move"});

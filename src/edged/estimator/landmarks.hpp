@@ -7,8 +7,8 @@
 #include <set>
 #include <vector>
 
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/options/estimator.hpp"
 
 namespace edged {
 

@@ -44,7 +44,7 @@ Window window_at_truth(TestWorld& world, int states = 6) {
   return window;
 }
 
-/// Shifts a corner's observation on the unit plane.
+/// Shifts a feature's observation on the unit plane.
 std::function<void(CameraObservations&)> shift(FeatureId id, double x, double y) {
   return [=](CameraObservations& view) {
     for (FeatureObservation& seen : view.features) {
@@ -65,14 +65,14 @@ constexpr LandmarkConfig kGenerous = [] {
   return config;
 }();
 
-/// A corner that all six states of such a window see, and a landmark there.
+/// A feature that all six states of such a window see, and a landmark there.
 FeatureId lasting_corner(TestWorld& world) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   for (const auto& [id, feature] : window.features()) {
     if (feature.anchor && feature.observations.size() == window.states().size()) return id;
   }
-  ADD_FAILURE() << "no corner stays in view";
+  ADD_FAILURE() << "no feature stays in view";
   return 0;
 }
 

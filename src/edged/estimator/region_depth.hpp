@@ -11,7 +11,7 @@ namespace edged {
 /// The depth of a region of one camera's view at the time of a packet. The source must not have it from the landmarks.
 struct RegionDepth {
   std::string camera;
-  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< corners on the unit plane
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< features on the unit plane
   double depth_m = 0.0;                                                           ///< median z-depth
   double sigma_ln = 0.0;   ///< of ln depth_m, what the source's scale is off included
   double spread_ln = 0.0;  ///< of ln depth within the region

@@ -3,9 +3,9 @@
 // How the window moves on: states that leave, and what is kept of them.
 #pragma once
 
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/window.hpp"
+#include "edged/keyframe_record.hpp"
 
 namespace edged {
 

@@ -14,9 +14,9 @@ namespace edged {
 namespace {
 
 constexpr std::size_t kBlocks = 8;      // the window's readings are averaged in blocks: white noise goes, motion stays
-constexpr std::size_t kMinCorners = 8;  // fewer common corners say nothing about image motion
+constexpr std::size_t kMinCorners = 8;  // fewer common features say nothing about image motion
 constexpr double kGlideStretch = 3.0;   // of the quiet window, where the whole picture glides
-constexpr double kGlideShare = 0.7;     // of the corners, that travel as their median does
+constexpr double kGlideShare = 0.7;     // of the features, that travel as their median does
 
 Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
   std::vector<double> x, y;
@@ -33,7 +33,7 @@ void StandstillConfig::visit(ConfigFields& fields) {
   fields.add("max_accel", max_accel, {"m/s^2", 1e-3, 5.0, "largest spread of the acceleration when calm"});
   fields.add("max_gyro_mean", max_gyro_mean, {"rad/s", 1e-3, 1.0, "a mean rate above this is motion, not gyro bias"});
   fields.add("max_image_motion", max_image_motion,
-             {"rad", 1e-5, 0.1, "largest median travel of the corners over the window at rest"});
+             {"rad", 1e-5, 0.1, "largest median travel of the features over the window at rest"});
   fields.add("quiet_window_s", quiet_window_s,
              {"s", 0.1, 10.0, "an IMU as quiet as its own noise for this long is at rest, whatever the cameras see"});
   fields.add("quiet_gyro", quiet_gyro, {"rad/s", 1e-4, 1.0, "largest spread of the angular rate when quiet"});
@@ -123,7 +123,7 @@ bool StandstillDetector::imu_quiet(double window_s) {
   return true;
 }
 
-/// How far the corners that the window's first and last views share have travelled on the unit plane.
+/// How far the features that the window's first and last views share have travelled on the unit plane.
 std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
   std::vector<Eigen::Vector2d> travels;
   for (const auto& [id, point] : views_.back().points) {
@@ -133,8 +133,8 @@ std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
   return travels;
 }
 
-/// Whether nearly all corners travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps seldom
-/// do.
+/// Whether nearly all features travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps
+/// seldom do.
 bool StandstillDetector::image_glides() const {
   const std::vector<Eigen::Vector2d> all = travels();
   if (all.size() < kMinCorners) return false;
@@ -151,11 +151,11 @@ bool StandstillDetector::image_still() {
   for (const Eigen::Vector2d& travel : travels()) lengths.push_back(travel.norm());
   if (lengths.size() < kMinCorners) {
     const bool quiet = std::all_of(views_.begin(), views_.end(), [](const View& v) { return v.events_quiet; });
-    reason_ = fmt::format("{} of {} corners to tell rest from steady motion", lengths.size(), kMinCorners);
+    reason_ = fmt::format("{} of {} features to tell rest from steady motion", lengths.size(), kMinCorners);
     return quiet;
   }
   const double middle = median(std::move(lengths));
-  reason_ = fmt::format("corners move {:.4f} of {:.4f} rad", middle, config_.max_image_motion);
+  reason_ = fmt::format("features move {:.4f} of {:.4f} rad", middle, config_.max_image_motion);
   return middle <= config_.max_image_motion;
 }
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/measurement.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
@@ -22,7 +22,7 @@ class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
-  /// Takes one packet: its IMU, its corners, and whether the event camera is quiet (nothing moves in its view).
+  /// Takes one packet: its IMU, its features, and whether the event camera is quiet (nothing moves in its view).
   void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet);
 
   /// True when the whole window was at rest.

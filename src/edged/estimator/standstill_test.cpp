@@ -23,9 +23,9 @@ struct Readings {
   std::function<Vector3d(double)> gyro = [](double) { return Vector3d(0.01, -0.02, 0.015); };
   std::function<Vector3d(double)> accel = [](double) { return Vector3d(0.05, -0.1, 9.83); };
   double corner_speed = 0.0;  ///< [1/s] on the unit plane
-  int corners = 40;
+  int features = 40;
   bool events_quiet = false;
-  bool walkers = false;  ///< every other corner goes the other way
+  bool walkers = false;  ///< every other feature goes the other way
 };
 
 class Bench {
@@ -41,7 +41,7 @@ class Bench {
       t_ += kPacket_s;
       place_ += kPacket_s * readings.corner_speed;
       CameraObservations seen{"frames", {}};
-      for (int i = 0; i < readings.corners; ++i) {
+      for (int i = 0; i < readings.features; ++i) {
         const double way = readings.walkers && i % 2 == 1 ? -place_ : place_;
         seen.features.push_back({static_cast<FeatureId>(i + 1), {0.01 * i + way, 0.02 * (i % 7)}, 0.005});
       }
@@ -87,7 +87,7 @@ TEST(StandstillDetector, IsNotFooledBySteadyMotionThatTheImuCannotFeel) {
   Bench bench;
   bench.run(1.0, {.corner_speed = 0.025});
   EXPECT_FALSE(bench.detector.still());
-  EXPECT_THAT(bench.detector.reason(), HasSubstr("corners move 0.01"));
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("features move 0.01"));
 }
 
 TEST(StandstillDetector, ToleratesTheJitterOfCorners) {
@@ -129,12 +129,12 @@ TEST(StandstillDetector, TakesTheVibrationOfMotorsForRest) {
 
 TEST(StandstillDetector, BelievesQuietEventsWhereThereAreNoCorners) {
   Bench quiet, busy;
-  quiet.run(1.0, {.corners = 0, .events_quiet = true});
+  quiet.run(1.0, {.features = 0, .events_quiet = true});
   EXPECT_TRUE(quiet.detector.still()) << quiet.detector.reason();
-  busy.run(0.6, {.corners = 0, .events_quiet = false});
+  busy.run(0.6, {.features = 0, .events_quiet = false});
   EXPECT_FALSE(busy.detector.still());
-  EXPECT_THAT(busy.detector.reason(), HasSubstr("0 of 8 corners"));
-  busy.run(0.1, {.corners = 0, .events_quiet = false});
+  EXPECT_THAT(busy.detector.reason(), HasSubstr("0 of 8 features"));
+  busy.run(0.1, {.features = 0, .events_quiet = false});
   EXPECT_TRUE(busy.detector.still()) << "the IMU alone: " << busy.detector.reason();
 }
 
@@ -144,12 +144,12 @@ TEST(StandstillDetector, BelievesMovingCornersMoreThanQuietEvents) {
   EXPECT_FALSE(bench.detector.still());
 }
 
-/// Half of the corners walk to the left, half to the right, as fast as corner_speed would.
+/// Half of the features walk to the left, half to the right, as fast as corner_speed would.
 TEST(StandstillDetector, BelievesAQuietImuThoughAllThatIsSeenWalks) {
   Bench bench;
   bench.run(0.65, {.corner_speed = 0.05, .walkers = true});
   EXPECT_FALSE(bench.detector.still());
-  EXPECT_THAT(bench.detector.reason(), HasSubstr("corners move"));
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("features move"));
   bench.run(0.1, {.corner_speed = 0.05, .walkers = true});
   EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
   EXPECT_TRUE(bench.detector.still_by_imu());
@@ -169,11 +169,11 @@ TEST(StandstillDetector, NeedsTheWholeWindowQuiet) {
   // An IMU that is calm, but not quiet enough to be believed alone.
   const auto swaying = [](double t) { return Vector3d(0.008 * std::sin(9.0 * t), 0, 0); };
   Bench bench;
-  bench.run(1.0, {.gyro = swaying, .corners = 0, .events_quiet = true});
-  bench.run(kPacket_s, {.gyro = swaying, .corners = 0, .events_quiet = false});
-  bench.run(0.3, {.gyro = swaying, .corners = 0, .events_quiet = true});
+  bench.run(1.0, {.gyro = swaying, .features = 0, .events_quiet = true});
+  bench.run(kPacket_s, {.gyro = swaying, .features = 0, .events_quiet = false});
+  bench.run(0.3, {.gyro = swaying, .features = 0, .events_quiet = true});
   EXPECT_FALSE(bench.detector.still());
-  bench.run(0.15, {.gyro = swaying, .corners = 0, .events_quiet = true});
+  bench.run(0.15, {.gyro = swaying, .features = 0, .events_quiet = true});
   EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
 }
 
@@ -200,7 +200,7 @@ Estimator at_rest(TestWorld& world, double duration_s, bool with_corners) {
 
 TEST(Standstill, KeepsTheEstimateWhereItIs) {
   for (const bool with_corners : {true, false}) {
-    SCOPED_TRACE(with_corners ? "corners" : "no corners, quiet events");
+    SCOPED_TRACE(with_corners ? "features" : "no features, quiet events");
     TestWorld world({.rest_s = 1000.0});
     const Estimator estimator = at_rest(world, 60.0, with_corners);
     ASSERT_TRUE(estimator.initialized());
@@ -208,8 +208,9 @@ TEST(Standstill, KeepsTheEstimateWhereItIs) {
     EXPECT_LT(state.T_W_B.translation().norm(), 0.03);  // 0.010 after a minute
     EXPECT_LT(state.v_W.norm(), 0.008);                 // 0.003
     const Vector3d bias_error = state.bias_gyro - TestWorldOptions{}.bias_gyro;
-    EXPECT_LT(bias_error.head<2>().norm(), 1e-3);                     // 1e-4
-    EXPECT_LT(std::abs(bias_error.z()), with_corners ? 1e-3 : 0.02);  // without corners nothing but its prior holds yaw
+    EXPECT_LT(bias_error.head<2>().norm(), 1e-3);  // 1e-4
+    EXPECT_LT(std::abs(bias_error.z()),
+              with_corners ? 1e-3 : 0.02);  // without features nothing but its prior holds yaw
   }
 }
 

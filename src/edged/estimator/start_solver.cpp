@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kMinObservations = 3;  // of a corner
+constexpr std::size_t kMinObservations = 3;  // of a feature
 constexpr double kRayNoise = 5e-3;           // [rad]
 constexpr double kHuber = 1.5;               // [kRayNoise]
 

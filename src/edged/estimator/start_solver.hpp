@@ -16,14 +16,14 @@ namespace edged {
 
 struct StartEquations;
 
-/// One view of a corner.
+/// One view of a feature.
 struct StartObservation {
   std::size_t frame, camera;
   Eigen::Vector2d point;
   double sigma;
 };
 
-/// A corner over the views.
+/// A feature over the views.
 struct StartTrack {
   FeatureId id;
   std::vector<StartObservation> observations;
@@ -67,7 +67,7 @@ class StartSolver {
   StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
               const ImuNoise& noise, double accel_bias_sigma);
 
-  /// Corners seen in three views or more.
+  /// Features seen in three views or more.
   const std::vector<StartTrack>& tracks() const { return tracks_; }
   /// One a frame.
   const std::vector<RelativeMotion>& motion() const { return motion_; }

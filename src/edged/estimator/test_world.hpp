@@ -31,14 +31,14 @@ struct TestWorldOptions {
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
   double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
-  int walker = 0;               ///< so many of the 120 corners are of a body of half a metre that passes by
+  int walker = 0;               ///< so many of the 120 features are of a body of half a metre that passes by
   double walker_comes_s = 0.0;  ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
 class TestWorld {
  public:
-  static constexpr FeatureId kWalkerId = 700;  ///< the walker's corners are from here to 999
+  static constexpr FeatureId kWalkerId = 700;  ///< the walker's features are from here to 999
 
   explicit TestWorld(const TestWorldOptions& options) : options_(options), random_(options.seed) {
     rig_.name = "test";

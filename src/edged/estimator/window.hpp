@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/landmark_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
-#include "edged/estimator/keyframe_record.hpp"
 #include "edged/estimator/region_depth.hpp"
 #include "edged/estimator/walking_scalar.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/keyframe_record.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 

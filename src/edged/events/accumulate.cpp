@@ -93,8 +93,8 @@ cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMo
   return frame;
 }
 
-cv::Mat draw_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
-                         const UndistortTable& table, const EventFrameConfig& config) {
+cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
+                           const UndistortTable& table, const EventFrameConfig& config) {
   return EventFrameRenderer(table, config).render(events, motion, depth);
 }
 

@@ -6,8 +6,8 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 
-#include "edged/events/events_config.hpp"
 #include "edged/events/warp.hpp"
+#include "edged/options/events.hpp"
 
 namespace edged {
 
@@ -37,7 +37,7 @@ class EventFrameRenderer {
 };
 
 /// One event frame, for a single use.
-cv::Mat draw_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
-                         const UndistortTable& table, const EventFrameConfig& config);
+cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
+                           const UndistortTable& table, const EventFrameConfig& config);
 
 }  // namespace edged

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/events/events_config.hpp"
+#include "edged/options/events.hpp"
 
 namespace edged {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 

@@ -11,8 +11,8 @@
 
 #include "edged/camera/undistort.hpp"
 #include "edged/events/depth_grid.hpp"
-#include "edged/events/events_config.hpp"
 #include "edged/measurement.hpp"
+#include "edged/options/events.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 

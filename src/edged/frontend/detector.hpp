@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

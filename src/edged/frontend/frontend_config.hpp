@@ -3,7 +3,7 @@
 // The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
 #pragma once
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 
 namespace edged {
 
@@ -61,7 +61,7 @@ struct PatchConfig {
   void visit(ConfigFields& fields);
 };
 
-/// The first look of a corner, which images are aligned to.
+/// The reference patch of a corner, which images are aligned to.
 struct TemplateConfig {
   bool enabled = true;
   PatchConfig patch;
@@ -99,7 +99,7 @@ struct KeyframeConfig {
   void visit(ConfigFields& fields);
 };
 
-struct DimImageConfig {
+struct LowLightConfig {
   double below_range = 80.0;    ///< grey levels between the image's dark and bright ends; fewer are stretched
   double target_range = 160.0;  ///< to so many
   double max_gain = 12.0;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 #include "edged/time.hpp"
 
 namespace edged {

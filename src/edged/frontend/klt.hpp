@@ -7,7 +7,7 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 

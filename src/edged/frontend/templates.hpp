@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The first looks of corners. Optical flow follows a corner from image to image, and what it drifts by adds up; aligned
-// to its first look, warped as the camera has moved since, it stays.
+// The reference patches of corners. Optical flow follows a corner from image to image, and what it drifts by adds up;
+// aligned to its reference patch, warped as the camera has moved since, it stays.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <span>
 
-#include "edged/frontend/frontend_config.hpp"
 #include "edged/frontend/patch.hpp"
-#include "edged/frontend/track.hpp"
+#include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 

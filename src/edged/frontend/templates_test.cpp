@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-class FirstLooks : public testing::Test {
+class ReferencePatches : public testing::Test {
  protected:
   /// A corner of the scene as seen from identity, and its look.
   Track corner(const Eigen::Vector2d& pixel) {
@@ -28,7 +28,7 @@ class FirstLooks : public testing::Test {
   Templates templates_{scene_.camera(), {.min_similarity = 0.7}};
 };
 
-TEST_F(FirstLooks, AreFoundWhereTheyAreAfterTurnsAndLightChanges) {
+TEST_F(ReferencePatches, AreFoundWhereTheyAreAfterTurnsAndLightChanges) {
   const Track track = corner({130.4, 88.7});
   templates_.take(scene_.image(SE3()), std::span(&track, 1));
   const SE3 T_W_C(so3::exp(Eigen::Vector3d(0.02, -0.03, 0.5)), Eigen::Vector3d(0.1, 0.05, 0.3));
@@ -42,7 +42,7 @@ TEST_F(FirstLooks, AreFoundWhereTheyAreAfterTurnsAndLightChanges) {
   EXPECT_LT((*found - truth).norm(), 0.1);
 }
 
-TEST_F(FirstLooks, StayUntilTheyNoLongerFit) {
+TEST_F(ReferencePatches, StayUntilTheyNoLongerFit) {
   Track track = corner({130.4, 88.7});
   templates_.take(scene_.image(SE3()), std::span(&track, 1));
   // A look that fits is not taken anew, however wrong the track has become.
@@ -64,7 +64,7 @@ TEST_F(FirstLooks, StayUntilTheyNoLongerFit) {
   EXPECT_LT((*again - track.pixel).norm(), 0.1);
 }
 
-TEST_F(FirstLooks, AreForgottenWithTheirTracksAndNeverGuessed) {
+TEST_F(ReferencePatches, AreForgottenWithTheirTracksAndNeverGuessed) {
   const Track track = corner({130.4, 88.7});
   const cv::Mat image = scene_.image(SE3());
   EXPECT_FALSE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
@@ -79,7 +79,7 @@ TEST_F(FirstLooks, AreForgottenWithTheirTracksAndNeverGuessed) {
   EXPECT_FALSE(templates_.align(rim.id, image, rim.pixel, in_camera(rim, SE3())));
 }
 
-TEST_F(FirstLooks, OfMuchOtherSizeAreNotComparedWith) {
+TEST_F(ReferencePatches, OfMuchOtherSizeAreNotComparedWith) {
   const Track track = corner({130.4, 88.7});
   templates_.take(scene_.image(SE3()), std::span(&track, 1));
   const SE3 near(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 1.0));  // half the distance, twice the size

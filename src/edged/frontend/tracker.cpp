@@ -42,8 +42,9 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
 }  // namespace
 
 void TemplateConfig::visit(ConfigFields& fields) {
-  fields.add("enabled", enabled,
-             {.effect = "align corners to their first looks, so that what optical flow drifts by does not add up"});
+  fields.add(
+      "enabled", enabled,
+      {.effect = "align corners to their reference patches, so that what optical flow drifts by does not add up"});
   patch.visit(fields);
 }
 
@@ -97,7 +98,7 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   }
   check_image(image);
   current_.build(image, config_.klt);
-  if (prediction && prediction->first_looks) {
+  if (prediction && prediction->reference_patches) {
     templates_.move(prediction->T_cur_prev);
   } else {
     templates_.clear();
@@ -221,7 +222,7 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   return seeds;
 }
 
-/// expected_C: of each track, for the warp of its first look [m]; empty where that is not known.
+/// expected_C: of each track, for the warp of its reference patch [m]; empty where that is not known.
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
                                               std::span<const Eigen::Vector3d> expected_C) const {
@@ -254,7 +255,7 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   return matches;
 }
 
-/// Those that no first look confirms must lead back to where they come from, and look alike there.
+/// Those that no reference patch confirms must lead back to where they come from, and look alike there.
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
   const Flow backward =

@@ -13,14 +13,14 @@
 
 #include "edged/core/observation.hpp"
 #include "edged/frontend/detector.hpp"
-#include "edged/frontend/frontend_config.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
 #include "edged/frontend/templates.hpp"
-#include "edged/frontend/track.hpp"
+#include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 
@@ -30,7 +30,7 @@ struct TrackPrediction {
   double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
   std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to where the poses expect a corner
-  bool first_looks = true;                                ///< compare corners with their first looks
+  bool reference_patches = true;                          ///< compare corners with their reference patches
 };
 
 /// What happened to the tracks in one image.

@@ -20,8 +20,8 @@ constexpr double kMinFound = 0.3;  // share of them
 constexpr double kFarthest = 1.5;  // [scene depths]: keyframes that lie farther away see it otherwise
 constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
 constexpr std::size_t kFewestAgreeing = 12;
-constexpr double kAgreement_px = 3.0;   // of a corner with the place recognised
-constexpr double kLeastAgreeing = 0.3;  // share of the corners that look like a point
+constexpr double kAgreement_px = 3.0;   // of a feature with the place recognised
+constexpr double kLeastAgreeing = 0.3;  // share of the features that look like a point
 constexpr double kWidest_deg = 60.0;    // between the optical axes
 
 /// How far it has proved findable.

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/final_trajectory.hpp"
 #include "edged/frontend/patch.hpp"
-#include "edged/hindsight.hpp"
-#include "edged/map/map_config.hpp"
 #include "edged/map/place.hpp"
+#include "edged/options/map.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
@@ -28,7 +28,7 @@ struct MapPoint {
   Patch patch;
   std::optional<Descriptor> descriptor;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of the patch's middle in its image
-  int tried = 0, found = 0;                         ///< in images whose sights agreed
+  int tried = 0, found = 0;                         ///< in images whose observations agreed
 };
 
 struct MapKeyframe {
@@ -36,7 +36,7 @@ struct MapKeyframe {
   std::string camera;     ///< whose image it was: others show the same place otherwise
   SE3 T_B_C;
   std::vector<MapPoint> points;
-  std::size_t number = 0;    ///< in FlightRecord
+  std::size_t number = 0;    ///< in TrajectorySmoother
   double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
   int times_found = 0;       ///< images in which points of it were found
 };
@@ -61,7 +61,7 @@ struct MapQuery {
 struct Candidate {
   std::size_t keyframe;  ///< index into KeyframeMap::keyframes
   MapPoint* point;
-  Eigen::Vector3d p_K, depth_sigma_K;  ///< as in MapSight
+  Eigen::Vector3d p_K, depth_sigma_K;  ///< as in MapObservation
   Eigen::Vector2d pixel;               ///< where it is expected
   Eigen::Matrix2d A;                   ///< pixels of the image by pixels of its patch
 };
@@ -86,7 +86,7 @@ class KeyframeMap {
   /// The points of that keyframe and image were looked for, and found.
   void note(const Candidate& candidate, bool found, Timestamp t);
 
-  /// Where the camera is that sees corners with these descriptors at those points of the unit plane. R_O_C as in
+  /// Where the camera is that sees features with these descriptors at those points of the unit plane. R_O_C as in
   /// pose_by_gravity; focal: of the camera [px]. Nothing where no place of the map looks like that.
   std::optional<SE3> recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
                                std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,

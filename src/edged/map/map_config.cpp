@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/map/map_config.hpp"
+#include "edged/options/map.hpp"
 
 namespace edged {
 
@@ -30,7 +30,7 @@ void MapFilterConfig::visit(ConfigFields& fields) {
   fields.add("drift_yaw_deg", drift_yaw_deg, {"deg", 0, 90, "of the odometry's heading in 1 s"});
   fields.add("drift_tilt_deg", drift_tilt_deg, {"deg", 0, 90, "of the odometry's tilt in 1 s"});
   fields.add("pixel_sigma", pixel_sigma, {"px", 0.01, 100, "of where a patch is found"});
-  fields.add("min_sights", min_sights, {"", 3, 1000, "fewer points found do not count"});
+  fields.add("min_observations", min_observations, {"", 3, 1000, "fewer points found do not count"});
   fields.add("min_found_share", min_found_share, {"", 0, 1, "nor does a smaller share of those looked for"});
   fields.add("max_misfit", max_misfit,
              {"sigma", 0.01, 100, "nor points that, once they are fitted, are off by more in the median"});
@@ -39,7 +39,7 @@ void MapFilterConfig::visit(ConfigFields& fields) {
 void MapConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled, {.effect = "look for what was seen before, and hold the pose to it"});
   fields.add("min_interval_s", min_interval_s, {"s", 0, 10, "between images in which the map is looked for"});
-  fields.add("max_sights", max_sights, {"", 8, 1000, "points looked for in an image; more cost time"});
+  fields.add("max_observations", max_observations, {"", 8, 1000, "points looked for in an image; more cost time"});
   fields.add("search_px", search_px,
              {"px", 1, 50, "points are looked for within 3 sigma of where they are expected, at most so far"});
   fields.group("patch", patch);

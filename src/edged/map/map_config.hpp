@@ -3,8 +3,8 @@
 // The options of the map.
 #pragma once
 
-#include "edged/core/config.hpp"
-#include "edged/frontend/frontend_config.hpp"
+#include "edged/config.hpp"
+#include "edged/options/frontend.hpp"
 
 namespace edged {
 
@@ -30,16 +30,16 @@ struct MapFilterConfig {
   double drift_yaw_deg = 0.2;
   double drift_tilt_deg = 0.4;
   double pixel_sigma = 2.0;  ///< of a found patch [px]; its errors are much the same each time
-  int min_sights = 8;
+  int min_observations = 8;
   double min_found_share = 0.4;
-  double max_misfit = 0.75;  ///< of the sights once they are fitted, by their median [sigma]
+  double max_misfit = 0.75;  ///< of the observations once they are fitted, by their median [sigma]
   void visit(ConfigFields& fields);
 };
 
 struct MapConfig {
   bool enabled = true;
   double min_interval_s = 0.24;  ///< between images in which the map is looked for
-  int max_sights = 80;           ///< points looked for in an image
+  int max_observations = 80;     ///< points looked for in an image
   double search_px = 6.0;        ///< a point is looked for within three sigmas of where it is expected, at most so far
   PatchConfig patch;
   KeyframeMapConfig keyframes;

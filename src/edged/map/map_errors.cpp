@@ -6,21 +6,22 @@
 
 namespace edged {
 
-std::optional<SightRow> linearised(const MapSight& sight, const SE3& T_M_B, const SE3& T_M_K, const SE3& T_B_C) {
+std::optional<LinearizedObservation> linearised(const MapObservation& observation, const SE3& T_M_B, const SE3& T_M_K,
+                                                const SE3& T_B_C) {
   using Matrix23d = Eigen::Matrix<double, 2, 3>;
   const SE3 T_B_M = T_M_B.inverse(), T_C_B = T_B_C.inverse();
-  const Eigen::Vector3d p_B = T_B_M * (T_M_K * sight.p_K), p_C = T_C_B * p_B;
+  const Eigen::Vector3d p_B = T_B_M * (T_M_K * observation.p_K), p_C = T_C_B * p_B;
   if (p_C.z() <= 0.0) return std::nullopt;
   Matrix23d of_p_B;
   of_p_B << 1.0 / p_C.z(), 0.0, -p_C.x() / (p_C.z() * p_C.z()), 0.0, 1.0 / p_C.z(), -p_C.y() / (p_C.z() * p_C.z());
   of_p_B *= T_C_B.R();
   const Matrix23d of_p_M = of_p_B * T_B_M.R();
-  SightRow row;
-  row.r = p_C.hnormalized() - sight.seen;
+  LinearizedObservation row;
+  row.r = p_C.hnormalized() - observation.seen;
   row.by_body << -of_p_M, of_p_B * skew(p_B);
-  row.by_keyframe << of_p_M, -of_p_M * T_M_K.R() * skew(sight.p_K);
-  const Eigen::Vector2d along = of_p_M * T_M_K.R() * sight.depth_sigma_K;
-  row.R = sight.sigma * sight.sigma * Eigen::Matrix2d::Identity() + along * along.transpose();
+  row.by_keyframe << of_p_M, -of_p_M * T_M_K.R() * skew(observation.p_K);
+  const Eigen::Vector2d along = of_p_M * T_M_K.R() * observation.depth_sigma_K;
+  row.R = observation.sigma * observation.sigma * Eigen::Matrix2d::Identity() + along * along.transpose();
   return row;
 }
 

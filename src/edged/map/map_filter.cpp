@@ -74,20 +74,20 @@ void MapFilter::remove_keyframe(std::size_t keyframe) {
   T_M_K_.erase(T_M_K_.begin() + static_cast<std::ptrdiff_t>(keyframe));
 }
 
-std::optional<SightRow> MapFilter::linearise(const MapSight& sight, const SE3& T_B_C) const {
-  return linearised(sight, T_M_B(), T_M_K_[sight.keyframe], T_B_C);
+std::optional<LinearizedObservation> MapFilter::linearise(const MapObservation& observation, const SE3& T_B_C) const {
+  return linearised(observation, T_M_B(), T_M_K_[observation.keyframe], T_B_C);
 }
 
-Eigen::Matrix2d MapFilter::expected_covariance(const SightRow& row, std::size_t keyframe) const {
+Eigen::Matrix2d MapFilter::expected_covariance(const LinearizedObservation& row, std::size_t keyframe) const {
   const Eigen::Index k = block_of(keyframe);
   const Eigen::Matrix2d cross = row.by_body * P_.block<6, 6>(0, k) * row.by_keyframe.transpose();
   return row.R + row.by_body * P_.topLeftCorner<6, 6>() * row.by_body.transpose() + cross + cross.transpose() +
          row.by_keyframe * P_.block<6, 6>(k, k) * row.by_keyframe.transpose();
 }
 
-double MapFilter::expected_error(const MapSight& sight, const SE3& T_B_C) const {
-  const std::optional<SightRow> row = linearise(sight, T_B_C);
-  return row ? std::sqrt(expected_covariance(*row, sight.keyframe).trace()) : 0.0;
+double MapFilter::expected_error(const MapObservation& observation, const SE3& T_B_C) const {
+  const std::optional<LinearizedObservation> row = linearise(observation, T_B_C);
+  return row ? std::sqrt(expected_covariance(*row, observation.keyframe).trace()) : 0.0;
 }
 
 void MapFilter::correct(const VectorXd& error) {
@@ -96,18 +96,19 @@ void MapFilter::correct(const VectorXd& error) {
 }
 
 /// The rows' part of the normal equations on the body and the keyframes that they touch, far ones weighed down.
-MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::span<const SightRow> rows) const {
+MapFilter::Information MapFilter::gather(std::span<const MapObservation> observations,
+                                         std::span<const LinearizedObservation> rows) const {
   Information sum;
-  for (const MapSight& sight : sights) sum.place.try_emplace(sight.keyframe, 0);
+  for (const MapObservation& observation : observations) sum.place.try_emplace(observation.keyframe, 0);
   Eigen::Index m = 6;
   for (auto& [keyframe, at] : sum.place) at = std::exchange(m, m + 6);
   sum.H = MatrixXd::Zero(m, m);
   sum.g = VectorXd::Zero(m);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const SightRow& row = rows[i];
-    const double squared = row.r.dot(expected_covariance(row, sights[i].keyframe).inverse() * row.r);
+    const LinearizedObservation& row = rows[i];
+    const double squared = row.r.dot(expected_covariance(row, observations[i].keyframe).inverse() * row.r);
     const Eigen::Matrix2d W = row.R.inverse() / (1.0 + squared / (kCauchy * kCauchy));
-    const Eigen::Index k = sum.place.at(sights[i].keyframe);
+    const Eigen::Index k = sum.place.at(observations[i].keyframe);
     const Eigen::Matrix<double, 6, 2> body_W = row.by_body.transpose() * W,
                                       keyframe_W = row.by_keyframe.transpose() * W;
     sum.H.topLeftCorner<6, 6>() += body_W * row.by_body;
@@ -121,28 +122,28 @@ MapFilter::Information MapFilter::gather(std::span<const MapSight> sights, std::
 }
 
 /// Root of the median squared residual that is left of the rows once the poses are corrected [sigma of each].
-double MapFilter::misfit(std::span<const MapSight> sights, std::span<const SightRow> rows,
+double MapFilter::misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
                          const VectorXd& error) const {
   std::vector<double> squared;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Eigen::Vector2d left = rows[i].r + rows[i].by_body * error.head<6>() +
-                                 rows[i].by_keyframe * error.segment<6>(block_of(sights[i].keyframe));
+                                 rows[i].by_keyframe * error.segment<6>(block_of(observations[i].keyframe));
     squared.push_back(left.dot(rows[i].R.inverse() * left));
   }
   return std::sqrt(median(std::move(squared)) / kMedianOfSquares);
 }
 
-bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, const SE3& T_B_C) {
-  if (static_cast<int>(sights.size()) < config_.min_sights ||
-      static_cast<double>(sights.size()) < config_.min_found_share * static_cast<double>(expected))
+bool MapFilter::update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C) {
+  if (static_cast<int>(observations.size()) < config_.min_observations ||
+      static_cast<double>(observations.size()) < config_.min_found_share * static_cast<double>(expected))
     return false;
-  std::vector<SightRow> rows;
-  for (const MapSight& sight : sights) {
-    std::optional<SightRow> row = linearise(sight, T_B_C);
+  std::vector<LinearizedObservation> rows;
+  for (const MapObservation& observation : observations) {
+    std::optional<LinearizedObservation> row = linearise(observation, T_B_C);
     if (!row) return false;
     rows.push_back(*row);
   }
-  const auto [place, H, g] = gather(sights, rows);
+  const auto [place, H, g] = gather(observations, rows);
   // P' = P - P_t (H^-1 + P_tt)^-1 P_t^T, t the blocks touched; H has no inverse: (H^-1 + P_tt)^-1 = (I + H P_tt)^-1 H.
   const Eigen::Index m = H.rows();
   MatrixXd P_t(P_.rows(), m), P_tt(m, m);
@@ -159,7 +160,7 @@ bool MapFilter::update(std::span<const MapSight> sights, std::size_t expected, c
   const MatrixXd P_m = P_t(moved, Eigen::all);
   VectorXd error = VectorXd::Zero(P_.rows());
   error(moved) = -P_m * (inverse * g);
-  if (!(misfit(sights, rows, error) < config_.max_misfit)) return false;
+  if (!(misfit(observations, rows, error) < config_.max_misfit)) return false;
   correct(error);
   shrink(moved, P_m, inverse * H);
   return true;

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "edged/map/map_config.hpp"
 #include "edged/map/map_errors.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 
@@ -33,9 +33,9 @@ class MapFilter {
   void load(std::vector<SE3> T_M_K, const Eigen::MatrixXd& covariance);
   /// The others' order stays.
   void remove_keyframe(std::size_t keyframe);
-  /// Fits all poses to the sights; expected: how many could have been found. False where they do not agree: nothing has
-  /// changed then.
-  bool update(std::span<const MapSight> sights, std::size_t expected, const SE3& T_B_C);
+  /// Fits all poses to the observations; expected: how many could have been found. False where they do not agree:
+  /// nothing has changed then.
+  bool update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C);
 
   const SE3& T_M_O() const { return T_M_O_; }
   SE3 T_M_B() const { return T_M_O_ * T_O_B_; }
@@ -43,20 +43,21 @@ class MapFilter {
   /// Of the body against the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
   Eigen::MatrixXd keyframe_covariance() const;
-  /// How far a sight may lie from where it is expected on the unit plane: one sigma.
-  double expected_error(const MapSight& sight, const SE3& T_B_C) const;
+  /// How far a observation may lie from where it is expected on the unit plane: one sigma.
+  double expected_error(const MapObservation& observation, const SE3& T_B_C) const;
 
  private:
-  std::optional<SightRow> linearise(const MapSight& sight, const SE3& T_B_C) const;
-  Eigen::Matrix2d expected_covariance(const SightRow& row, std::size_t keyframe) const;
+  std::optional<LinearizedObservation> linearise(const MapObservation& observation, const SE3& T_B_C) const;
+  Eigen::Matrix2d expected_covariance(const LinearizedObservation& row, std::size_t keyframe) const;
   /// Normal equations of the body and of the keyframes in `place`, by where those begin.
   struct Information {
     std::map<std::size_t, Eigen::Index> place;
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
   };
-  Information gather(std::span<const MapSight> sights, std::span<const SightRow> rows) const;
-  double misfit(std::span<const MapSight> sights, std::span<const SightRow> rows, const Eigen::VectorXd& error) const;
+  Information gather(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows) const;
+  double misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
+                const Eigen::VectorXd& error) const;
   void correct(const Eigen::VectorXd& error);
   void shrink(std::span<const Eigen::Index> m, const Eigen::MatrixXd& P_m, const Eigen::MatrixXd& A);
 

@@ -41,9 +41,9 @@ class World {
   }
 
   /// Every third point, as that keyframe had it, seen from the truth at t with that noise.
-  std::vector<MapSight> sights(const std::vector<SE3>& keyframes, std::size_t keyframe, double t,
-                               double noise_px = 0.4) {
-    std::vector<MapSight> out;
+  std::vector<MapObservation> observations(const std::vector<SE3>& keyframes, std::size_t keyframe, double t,
+                                           double noise_px = 0.4) {
+    std::vector<MapObservation> out;
     for (std::size_t i = keyframe % 3; i < points_.size(); i += 3) {
       const Eigen::Vector3d p_C = (truth(t) * T_B_C).inverse() * points_[i];
       const Eigen::Vector2d noise = noise_px * kPixel * normal().head<2>();
@@ -96,8 +96,8 @@ Walk walk(std::uint64_t seed) {
       keyframes.push_back(T_M_B);
       continue;
     }
-    const std::vector<MapSight> sights = world.sights(keyframes, nth / 4 % keyframes.size(), t);
-    filter.update(sights, sights.size(), world.T_B_C);
+    const std::vector<MapObservation> observations = world.observations(keyframes, nth / 4 % keyframes.size(), t);
+    filter.update(observations, observations.size(), world.T_B_C);
     Eigen::Matrix<double, 6, 1> error;
     error << T_M_B.translation() - filter.T_M_B().translation(),
         so3::log((filter.T_M_B().inverse() * T_M_B).rotation());
@@ -136,14 +136,14 @@ class OneKeyframe : public testing::Test {
     const SE3 off(so3::exp({0.0, 0.0, 0.004}), {0.01, -0.006, 0.004});
     T_O_B_ = off * World::truth(4.0);
     filter_.predict(T_O_B_, timestamp_from_seconds(4.0));
-    sights_ = world_.sights({World::truth(0.0)}, 0, 4.0, 0.0);
+    sights_ = world_.observations({World::truth(0.0)}, 0, 4.0, 0.0);
   }
   double error() const { return (filter_.T_M_B().translation() - World::truth(4.0).translation()).norm(); }
 
   World world_;
   MapFilter filter_;
   SE3 T_O_B_;
-  std::vector<MapSight> sights_;
+  std::vector<MapObservation> sights_;
 };
 
 TEST_F(OneKeyframe, PullsTheBodyBack) {
@@ -161,7 +161,7 @@ TEST_F(OneKeyframe, ChangesNothingWhereTooFewOrTooSmallAShareIsFound) {
 
 TEST_F(OneKeyframe, ChangesNothingWhereTheSightsAgreeOnNoPose) {
   const SE3 before = filter_.T_M_O();
-  for (MapSight& sight : sights_) sight.seen += 8.0 * kPixel * world_.normal().head<2>();
+  for (MapObservation& observation : sights_) observation.seen += 8.0 * kPixel * world_.normal().head<2>();
   EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
   EXPECT_EQ(before.translation(), filter_.T_M_O().translation());
 }
@@ -178,15 +178,15 @@ TEST_F(OneKeyframe, NeverTakesAPointThatLiesBehind) {
   EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
 }
 
-/// What a sight's expected error is made of follows the residual's change with each pose: the same body, a keyframe
-/// that is exact, and the other way round.
+/// What a observation's expected error is made of follows the residual's change with each pose: the same body, a
+/// keyframe that is exact, and the other way round.
 TEST_F(OneKeyframe, ExpectsSightsAsFarOffAsTheBodyIsUncertain) {
   filter_.restart(SE3(), World::truth(4.0), timestamp_from_seconds(4.0), 0.1, 0.0);
   double sum = 0.0;
-  for (const MapSight& sight : sights_) {
-    const double z =
-        1.0 / (kPixel * 200.0) * ((World::truth(4.0) * world_.T_B_C).inverse() * (World::truth(0.0) * sight.p_K)).z();
-    sum += filter_.expected_error(sight, world_.T_B_C) * z / (0.1 * std::sqrt(2.0));
+  for (const MapObservation& observation : sights_) {
+    const double z = 1.0 / (kPixel * 200.0) *
+                     ((World::truth(4.0) * world_.T_B_C).inverse() * (World::truth(0.0) * observation.p_K)).z();
+    sum += filter_.expected_error(observation, world_.T_B_C) * z / (0.1 * std::sqrt(2.0));
   }
   EXPECT_NEAR(sum / static_cast<double>(sights_.size()), 1.0, 0.15);  // off the axis z counts, too
 }
@@ -197,8 +197,8 @@ TEST_F(OneKeyframe, ForgetsAKeyframeAndKeepsTheOthers) {
   filter_.remove_keyframe(0);
   ASSERT_EQ(filter_.keyframes().size(), 1U);
   EXPECT_EQ(filter_.keyframes()[0].translation(), kept.translation());
-  const std::vector<MapSight> sights = world_.sights({World::truth(4.0)}, 0, 4.0, 0.0);
-  EXPECT_TRUE(filter_.update(sights, sights.size(), world_.T_B_C));
+  const std::vector<MapObservation> observations = world_.observations({World::truth(4.0)}, 0, 4.0, 0.0);
+  EXPECT_TRUE(filter_.update(observations, observations.size(), world_.T_B_C));
 }
 
 TEST(MapFilter, IsLessSureOfAnOdometryThatDriftsMore) {

@@ -21,16 +21,16 @@ double focal_of(const SavedMap& map, const std::string& camera) {
 }
 
 /// What each keyframe of `other` that is known again says: where its body is, in both frames.
-struct Claim {
+struct Hypothesis {
   SE3 T_A_K, T_B_K;
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
 };
 
-std::vector<Claim> claims_of(const SavedMap& map, const SavedMap& other) {
+std::vector<Hypothesis> hypotheses_of(const SavedMap& map, const SavedMap& other) {
   KeyframeMapConfig config;
   KeyframeMap places(config);
   for (const MapKeyframe& keyframe : map.keyframes) places.add(keyframe);
-  std::vector<Claim> claims;
+  std::vector<Hypothesis> hypotheses;
   for (std::size_t k = 0; k < other.keyframes.size(); ++k) {
     const MapKeyframe& keyframe = other.keyframes[k];
     const double focal = focal_of(map, keyframe.camera);
@@ -44,14 +44,14 @@ std::vector<Claim> claims_of(const SavedMap& map, const SavedMap& other) {
     const SE3 T_B_C = other.T_M_K[k] * keyframe.T_B_C;
     const std::optional<SE3> T_A_C =
         places.recognise({keyframe.camera, {}, map.T_M_K}, descriptors, points, T_B_C.rotation(), focal);
-    if (T_A_C) claims.push_back({*T_A_C * keyframe.T_B_C.inverse(), other.T_M_K[k]});
+    if (T_A_C) hypotheses.push_back({*T_A_C * keyframe.T_B_C.inverse(), other.T_M_K[k]});
   }
-  return claims;
+  return hypotheses;
 }
 
-/// Whether `claim`, too, has its keyframe where T_A_B puts it.
-bool agrees(const SE3& T_A_B, const Claim& claim) {
-  const SE3 off = claim.T_A_K.inverse() * T_A_B * claim.T_B_K;
+/// Whether `hypothesis`, too, has its keyframe where T_A_B puts it.
+bool agrees(const SE3& T_A_B, const Hypothesis& hypothesis) {
+  const SE3 off = hypothesis.T_A_K.inverse() * T_A_B * hypothesis.T_B_K;
   return off.translation().norm() < kSamePlace_m && so3::log(off.rotation()).norm() < kSamePlace_rad;
 }
 
@@ -70,14 +70,14 @@ Eigen::MatrixXd by_common_error(const std::vector<SE3>& T_A_K, const Eigen::Vect
 }  // namespace
 
 std::optional<SE3> find_map_in(const SavedMap& map, const SavedMap& other) {
-  const std::vector<Claim> claims = claims_of(map, other);
-  const auto supporters = [&](const Claim& claim) {
-    return std::ranges::count_if(claims, [&](const Claim& c) { return agrees(claim.T_A_B(), c); });
+  const std::vector<Hypothesis> hypotheses = hypotheses_of(map, other);
+  const auto supporters = [&](const Hypothesis& hypothesis) {
+    return std::ranges::count_if(hypotheses, [&](const Hypothesis& c) { return agrees(hypothesis.T_A_B(), c); });
   };
-  const auto best = std::ranges::max_element(claims, {}, supporters);
-  if (best == claims.end()) return std::nullopt;
+  const auto best = std::ranges::max_element(hypotheses, {}, supporters);
+  if (best == hypotheses.end()) return std::nullopt;
   const auto support = static_cast<std::size_t>(supporters(*best));
-  if (support < kFewestKeyframes || static_cast<double>(support) < kLeastShare * static_cast<double>(claims.size()))
+  if (support < kFewestKeyframes || static_cast<double>(support) < kLeastShare * static_cast<double>(hypotheses.size()))
     return std::nullopt;
   return best->T_A_B();
 }

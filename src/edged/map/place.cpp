@@ -78,17 +78,17 @@ int distance(const Descriptor& a, const Descriptor& b) {
 std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<const Eigen::Vector2d> pixels,
                                                 std::span<const Eigen::Vector2d> points, const Eigen::Vector3d& up_C) {
   constexpr float kSize_px = 31.0F;
-  std::vector<cv::KeyPoint> corners;
+  std::vector<cv::KeyPoint> features;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (const auto deg = upright_deg(points[i], up_C))
-      corners.emplace_back(static_cast<float>(pixels[i].x()), static_cast<float>(pixels[i].y()), kSize_px, *deg, 0.0F,
-                           0, static_cast<int>(i));
+      features.emplace_back(static_cast<float>(pixels[i].x()), static_cast<float>(pixels[i].y()), kSize_px, *deg, 0.0F,
+                            0, static_cast<int>(i));
   }
   cv::Mat rows;
-  if (!corners.empty()) cv::ORB::create(500, 1.2F, 1)->compute(image, corners, rows);  // drops what is near the rim
+  if (!features.empty()) cv::ORB::create(500, 1.2F, 1)->compute(image, features, rows);  // drops what is near the rim
   std::vector<std::optional<Descriptor>> descriptors(pixels.size());
   for (int row = 0; row < rows.rows; ++row) {
-    Descriptor& descriptor = descriptors[static_cast<std::size_t>(corners[row].class_id)].emplace();
+    Descriptor& descriptor = descriptors[static_cast<std::size_t>(features[row].class_id)].emplace();
     std::memcpy(descriptor.data(), rows.ptr(row), sizeof(Descriptor));
   }
   return descriptors;

@@ -16,20 +16,20 @@
 
 namespace edged {
 
-/// 256 comparisons of grey levels around a corner (ORB, by OpenCV).
+/// 256 comparisons of grey levels around a feature (ORB, by OpenCV).
 using Descriptor = std::array<std::uint64_t, 4>;
 
 /// How many bits differ.
 int distance(const Descriptor& a, const Descriptor& b);
 
-/// One for each corner; nothing near the image's rim, and where a camera looks up or down, as gravity has no direction
+/// One for each feature; nothing near the image's rim, and where a camera looks up or down, as gravity has no direction
 /// in the image there. points: the same on the unit plane; up_C: what points up, in the camera.
 std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<const Eigen::Vector2d> pixels,
                                                 std::span<const Eigen::Vector2d> points, const Eigen::Vector3d& up_C);
 
-/// A corner of the present image that looks like a point of the map.
+/// A feature of the present image that looks like a point of the map.
 struct PlaceMatch {
-  Eigen::Vector2d point;  ///< of the corner, on the unit plane
+  Eigen::Vector2d point;  ///< of the feature, on the unit plane
   Eigen::Vector3d p_M;
 };
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFarSigmas = 2.0;  // Cauchy's scale
 constexpr int kIterations = 12;
-constexpr int kTrusting = 3;       // of them that believe all sights: after a long drift, right ones are far off, too
-constexpr double kSettled = 1e-6;  // largest step of an iteration, metres and radians
+constexpr int kTrusting = 3;  // of them that believe all observations: after a long drift, right ones are far off, too
+constexpr double kConverged = 1e-6;  // largest step of an iteration, metres and radians
 
 }  // namespace
 
@@ -81,8 +81,8 @@ void PoseGraph::add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const M
   steps_.push_back({a, b, T_A_B, covariance.inverse()});
 }
 
-void PoseGraph::add_sights(std::size_t body, const SE3& T_B_C, std::span<const MapSight> sights) {
-  views_.push_back({body, T_B_C, {sights.begin(), sights.end()}});
+void PoseGraph::add_observations(std::size_t body, const SE3& T_B_C, std::span<const MapObservation> observations) {
+  views_.push_back({body, T_B_C, {observations.begin(), observations.end()}});
 }
 
 void PoseGraph::take(const Step& step, Equations& equations) const {
@@ -96,16 +96,17 @@ void PoseGraph::take(const Step& step, Equations& equations) const {
 }
 
 void PoseGraph::take(const View& view, bool trusting, Equations& equations) const {
-  for (const MapSight& sight : view.sights) {
-    const auto row = linearised(sight, T_M_B_[view.body], T_M_B_[sight.keyframe], view.T_B_C);
+  for (const MapObservation& observation : view.observations) {
+    const auto row = linearised(observation, T_M_B_[view.body], T_M_B_[observation.keyframe], view.T_B_C);
     if (!row) continue;
     const Eigen::Matrix2d information = row->R.inverse();
     const double far = trusting ? 0.0 : row->r.dot(information * row->r) / (kFarSigmas * kFarSigmas);
     const Eigen::Matrix2d W = information / (1.0 + far);
     const Eigen::Matrix<double, 6, 2> body = row->by_body.transpose() * W, keyframe = row->by_keyframe.transpose() * W;
-    equations.add(view.body, sight.keyframe, body * row->by_body, body * row->by_keyframe, keyframe * row->by_keyframe);
+    equations.add(view.body, observation.keyframe, body * row->by_body, body * row->by_keyframe,
+                  keyframe * row->by_keyframe);
     equations.add(view.body, body * row->r);
-    equations.add(sight.keyframe, keyframe * row->r);
+    equations.add(observation.keyframe, keyframe * row->r);
   }
 }
 
@@ -120,7 +121,7 @@ void PoseGraph::solve() {
     for (std::size_t k = 0; k < T_M_B_.size(); ++k) {
       if (rows_[k] != kKnown) T_M_B_[k] = corrected(T_M_B_[k], errors->segment<6>(rows_[k]));
     }
-    if (i >= kTrusting && errors->lpNorm<Eigen::Infinity>() < kSettled) return;
+    if (i >= kTrusting && errors->lpNorm<Eigen::Infinity>() < kConverged) return;
   }
 }
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "edged/map/map_config.hpp"
 #include "edged/map/map_errors.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
@@ -23,8 +23,8 @@ class PoseGraph {
   /// B was seen to lie at T_A_B from A; the covariance is that of B's error then.
   void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);
   /// What was found in the image of a body, of keyframes by their numbers.
-  void add_sights(std::size_t body, const SE3& T_B_C, std::span<const MapSight> sights);
-  /// Gauss-Newton; sights that lie far off are weighed down by Cauchy's function, but for the first steps.
+  void add_observations(std::size_t body, const SE3& T_B_C, std::span<const MapObservation> observations);
+  /// Gauss-Newton; observations that lie far off are weighed down by Cauchy's function, but for the first steps.
   /// Deterministic.
   void solve();
 
@@ -39,7 +39,7 @@ class PoseGraph {
   struct View {
     std::size_t body;
     SE3 T_B_C;
-    std::vector<MapSight> sights;
+    std::vector<MapObservation> observations;
   };
   static constexpr Eigen::Index kKnown = -1;
   class Equations;

@@ -33,16 +33,16 @@ struct Chain {
 };
 
 /// Points of keyframe 0 as they lie before it, seen from the last pose.
-std::vector<MapSight> sights_from_last(const Chain& chain) {
-  std::vector<MapSight> sights;
+std::vector<MapObservation> observations_from_last(const Chain& chain) {
+  std::vector<MapObservation> observations;
   for (const double x : {-0.5, 0.0, 0.5}) {
     for (const double y : {-0.5, 0.0, 0.5}) {
       const Eigen::Vector3d p_K = chain.truth.back() * Eigen::Vector3d(x, y, 3.0 + x * y);
       const Eigen::Vector3d p_B = chain.truth.back().inverse() * p_K;
-      sights.push_back({0, p_K, Eigen::Vector3d::Zero(), p_B.hnormalized(), 0.001});
+      observations.push_back({0, p_K, Eigen::Vector3d::Zero(), p_B.hnormalized(), 0.001});
     }
   }
-  return sights;
+  return observations;
 }
 
 TEST(PoseGraph, LeavesAllWhereItWasWhenNothingContradicts) {
@@ -56,7 +56,7 @@ TEST(PoseGraph, StraightensALoopWhoseDriftIsKnown) {
   Chain chain;
   const double off = distance(chain.graph.poses().back(), chain.truth.back());
   ASSERT_GT(off, 0.1);
-  chain.graph.add_sights(kPoses - 1, SE3(), sights_from_last(chain));
+  chain.graph.add_observations(kPoses - 1, SE3(), observations_from_last(chain));
   chain.graph.solve();
   EXPECT_LT(distance(chain.graph.poses().front(), SE3()), 1e-12) << "the first one stays";
   EXPECT_LT(distance(chain.graph.poses().back(), chain.truth.back()), 0.05 * off);
@@ -66,10 +66,10 @@ TEST(PoseGraph, StraightensALoopWhoseDriftIsKnown) {
 
 TEST(PoseGraph, IsHardlyMovedByAPointThatIsWrong) {
   Chain right, wrong;
-  std::vector<MapSight> sights = sights_from_last(right);
-  right.graph.add_sights(kPoses - 1, SE3(), sights);
-  sights[3].seen.x() += 0.02;
-  wrong.graph.add_sights(kPoses - 1, SE3(), sights);
+  std::vector<MapObservation> observations = observations_from_last(right);
+  right.graph.add_observations(kPoses - 1, SE3(), observations);
+  observations[3].seen.x() += 0.02;
+  wrong.graph.add_observations(kPoses - 1, SE3(), observations);
   right.graph.solve();
   wrong.graph.solve();
   EXPECT_LT(distance(right.graph.poses().back(), wrong.graph.poses().back()), 0.002);
@@ -78,7 +78,8 @@ TEST(PoseGraph, IsHardlyMovedByAPointThatIsWrong) {
 TEST(PoseGraph, IgnoresAPointThatLiesBehind) {
   Chain chain;
   const std::vector<SE3> before = chain.graph.poses();
-  chain.graph.add_sights(kPoses - 1, SE3(), std::vector<MapSight>{{0, {0, 0, -9}, {0, 0, 0}, {0, 0}, 0.001}});
+  chain.graph.add_observations(kPoses - 1, SE3(),
+                               std::vector<MapObservation>{{0, {0, 0, -9}, {0, 0, 0}, {0, 0}, 0.001}});
   chain.graph.solve();
   EXPECT_LT(distance(before.back(), chain.graph.poses().back()), 1e-12);
 }

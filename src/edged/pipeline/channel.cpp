@@ -9,9 +9,10 @@ namespace edged {
 void HealthConfig::visit(ConfigFields& fields) {
   fields.add("time_constant_s", time_constant_s,
              {"s", 0.01, 100, "of the running mean of the share of tracks that survive an image"});
-  fields.add("min_survival", min_survival, {"", 0, 1, "with a smaller share a camera's observations are ignored"});
-  fields.add("min_event_corners", min_event_corners,
-             {"", 0, 1000, "corners kept on event frames where the standard frames carry all of theirs (fused mode)"});
+  fields.add("min_survival_rate", min_survival_rate,
+             {"", 0, 1, "with a smaller share a camera's observations are ignored"});
+  fields.add("min_event_features", min_event_features,
+             {"", 0, 1000, "features kept on event frames where the standard frames carry all of theirs (fused mode)"});
 }
 
 Eigen::Matrix3d Channel::since_keyframe(const SE3& T_W_B) const {
@@ -44,15 +45,15 @@ void Channel::weigh(const TrackSummary& summary, Timestamp t) {
   if (any_image_ && summary.before > 0) {
     const double share = static_cast<double>(summary.tracked) / summary.before;
     const double gain = 1.0 - std::exp(-to_seconds(t - last_image_) / health_.time_constant_s);
-    survival_ += gain * (share - survival_);
+    survival_rate_ += gain * (share - survival_rate_);
   }
   last_image_ = t;
 }
 
 CameraObservations Channel::observations() const {
   CameraObservations observations = tracker.observations();
-  if (survival_ < health_.min_survival) observations.features.clear();
-  for (FeatureObservation& observation : observations.features) observation.sigma /= survival_;
+  if (survival_rate_ < health_.min_survival_rate) observations.features.clear();
+  for (FeatureObservation& observation : observations.features) observation.sigma /= survival_rate_;
   return observations;
 }
 

@@ -28,13 +28,13 @@ class Channel {
   void track(const cv::Mat& image, Timestamp t, const SE3& T_W_B, TrackPrediction prediction);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
   void reject(const SE3& T_W_B, bool trust_gyro);
-  /// Finds new corners in the image, up to `most` live ones, and makes it the keyframe.
+  /// Finds new features in the image, up to `most` live ones, and makes it the keyframe.
   void mark_keyframe(const cv::Mat& image, const SE3& T_W_B, FeatureId& next_feature, int most);
 
   /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
-  double survival() const { return survival_; }
+  double survival_rate() const { return survival_rate_; }
   /// Tracks as they count: as many as are likely to be there in the next image.
-  double carried() const { return survival_ * static_cast<double>(tracker.tracks().size()); }
+  double carried() const { return survival_rate_ * static_cast<double>(tracker.tracks().size()); }
   /// The observations of the present image, less sure the fewer tracks survive; none when the camera is ignored.
   CameraObservations observations() const;
 
@@ -54,7 +54,7 @@ class Channel {
 
   AlignmentConfig alignment_;
   HealthConfig health_;
-  double survival_ = 1.0;
+  double survival_rate_ = 1.0;
   Timestamp last_image_;
   bool any_image_ = false;
   // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;
@@ -62,7 +62,7 @@ class Channel {
   Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();
 };
 
-/// A camera with its image of a packet: corners are followed on `track` and found on `detect`.
+/// A camera with its image of a packet: features are followed on `track` and found on `detect`.
 struct ChannelView {
   Channel* channel;
   cv::Mat track, detect;

@@ -43,7 +43,7 @@ class ChannelHealth : public testing::Test {
 TEST_F(ChannelHealth, ObservationsOfTracksThatSurviveKeepTheirSigma) {
   Channel channel = start();
   for (int i = 1; i <= 10; ++i) show(channel, scene_.image({}), i);
-  EXPECT_DOUBLE_EQ(channel.survival(), 1.0);
+  EXPECT_DOUBLE_EQ(channel.survival_rate(), 1.0);
   const CameraObservations raw = channel.tracker.observations(), weighed = channel.observations();
   ASSERT_GT(weighed.features.size(), 50U);
   EXPECT_DOUBLE_EQ(weighed.features[0].sigma, raw.features[0].sigma);
@@ -52,13 +52,13 @@ TEST_F(ChannelHealth, ObservationsOfTracksThatSurviveKeepTheirSigma) {
 TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
   Channel channel = start();
   show(channel, darkness(), 1);
-  const double after_one = channel.survival();
+  const double after_one = channel.survival_rate();
   EXPECT_LT(after_one, 1.0);
   for (int i = 2; i <= 30; ++i) {
     channel.mark_keyframe(darkness(), {}, next_id_, 1000);
     show(channel, darkness(), i);
   }
-  EXPECT_LT(channel.survival(), HealthConfig{}.min_survival);
+  EXPECT_LT(channel.survival_rate(), HealthConfig{}.min_survival_rate);
   EXPECT_TRUE(channel.observations().features.empty());
 }
 
@@ -72,7 +72,7 @@ TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
     show(channel, scene_.image({}), i);
     channel.mark_keyframe(scene_.image({}), {}, next_id_, 1000);
   }
-  EXPECT_GT(channel.survival(), 0.95);
+  EXPECT_GT(channel.survival_rate(), 0.95);
   EXPECT_FALSE(channel.observations().features.empty());
 }
 

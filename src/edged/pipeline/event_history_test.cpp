@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A camera of 100 pixels: 35 events make a packet, 50 are drawn.
+// A camera of 100 pixels: 35 events make a packet, 50 are rendered.
 #include "edged/pipeline/event_history.hpp"
 
 #include <gtest/gtest.h>

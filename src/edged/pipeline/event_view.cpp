@@ -36,8 +36,8 @@ bool EventView::quiet(const PacketEvents& events) const {
   return events.event_rate_hz < quiet_rate_per_pixel_ * pixels();
 }
 
-EventsToDraw EventView::drawn_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
-                                     bool thin) const {
+EventsToRender EventView::rendered_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
+                                          bool thin) const {
   const std::span<const Event> window = events.window();
   if (window.size() < least_events_ || body.poses().size() < 2) return {};
   const int every = thin ? thinned_every_ : 1;
@@ -49,11 +49,11 @@ EventsToDraw EventView::drawn_events(const PacketEvents& events, const BodyMotio
   return {window.last(std::max(static_cast<std::size_t>(window.end() - oldest), least_events_)), every};
 }
 
-EventImage EventView::draw(const EventsToDraw& drawn, const RigCamera& camera, const BodyMotion& body,
-                           double scene_depth, const DepthGrid* depths) {
-  std::span<const Event> events = drawn.events;
-  if (drawn.every > 1) {
-    const auto every = static_cast<std::size_t>(drawn.every);
+EventImage EventView::render(const EventsToRender& rendered, const RigCamera& camera, const BodyMotion& body,
+                             double scene_depth, const DepthGrid* depths) {
+  std::span<const Event> events = rendered.events;
+  if (rendered.every > 1) {
+    const auto every = static_cast<std::size_t>(rendered.every);
     thinned_.clear();
     for (std::size_t i = (events.size() - 1) % every; i < events.size(); i += every) thinned_.push_back(events[i]);
     events = thinned_;
@@ -61,8 +61,8 @@ EventImage EventView::draw(const EventsToDraw& drawn, const RigCamera& camera, c
   const std::span<const StampedPose> poses = covering(body.poses(), events.front().t + camera.time_offset);
   const CameraMotion motion = camera_motion(poses, body.moved_on(camera.time_offset), camera.T_B_C, camera.time_offset);
   EventImage image;
-  image.drawn = drawn.events.size();
-  image.frame = renderer_.render(events, motion, scene_depth, depths, drawn.every);
+  image.rendered = rendered.events.size();
+  image.frame = renderer_.render(events, motion, scene_depth, depths, rendered.every);
   const cv::Mat enhanced = enhance(image.frame, enhance_);
   image.track = enhance_track_ ? enhanced : image.frame;
   image.detect = enhance_detect_ ? enhanced : image.frame;

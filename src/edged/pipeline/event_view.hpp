@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What an event camera shows of a packet: which of its events are drawn, where, and how the frame is enhanced.
+// What an event camera shows of a packet: which of its events are rendered, where, and how the frame is enhanced.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -16,13 +16,13 @@ namespace edged {
 
 /// One event frame. All images are empty when there were too few events for one.
 struct EventImage {
-  cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
-  cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): corners are followed on one, found on the other
-  std::size_t drawn = 0;  ///< events it is of, the newest of the packet
+  cv::Mat frame;             ///< motion-compensated, CV_8UC1, undistorted
+  cv::Mat track, detect;     ///< the same, or enhanced (Algorithm 1): features are followed on one, found on the other
+  std::size_t rendered = 0;  ///< events it is of, the newest of the packet
 };
 
-/// Which events an event frame is drawn of: each `every`-th from the newest on, standing for as many.
-struct EventsToDraw {
+/// Which events an event frame is rendered of: each `every`-th from the newest on, standing for as many.
+struct EventsToRender {
   std::span<const Event> events;
   int every = 1;
 };
@@ -37,11 +37,12 @@ class EventView {
   /// smears what does not lie at the scene's one depth (z, [m]). Rotation does not count, its warp knows no depth.
   /// body: at the time of their packet, as predicted. Empty when there are too few. thin: a wide sensor's picture may
   /// be noisier than its events allow.
-  EventsToDraw drawn_events(const PacketEvents& events, const BodyMotion& body, double scene_depth, bool thin) const;
-  /// drawn: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
+  EventsToRender rendered_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
+                                 bool thin) const;
+  /// rendered: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
   /// all.
-  EventImage draw(const EventsToDraw& drawn, const RigCamera& camera, const BodyMotion& body, double scene_depth,
-                  const DepthGrid* depths);
+  EventImage render(const EventsToRender& rendered, const RigCamera& camera, const BodyMotion& body, double scene_depth,
+                    const DepthGrid* depths);
 
   /// The undistorted camera of the images.
   const CameraModel& ideal() const { return renderer_.camera(); }

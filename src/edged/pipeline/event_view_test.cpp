@@ -52,8 +52,8 @@ class EventViewTest : public testing::Test {
     EventView view(camera_.model, config_);
     const PacketEvents packet = packet_of(events);
     const BodyMotion body = moving(speed);
-    const EventsToDraw drawn = view.drawn_events(packet, body, kDepth_m, thin);
-    return drawn.events.empty() ? EventImage{} : view.draw(drawn, camera_, body, kDepth_m, nullptr);
+    const EventsToRender rendered = view.rendered_events(packet, body, kDepth_m, thin);
+    return rendered.events.empty() ? EventImage{} : view.render(rendered, camera_, body, kDepth_m, nullptr);
   }
 
   RigCamera camera_;
@@ -63,17 +63,17 @@ class EventViewTest : public testing::Test {
 TEST_F(EventViewTest, DrawsNothingOfTooFewEvents) {
   const auto least = static_cast<std::size_t>(config_.min_events_per_pixel * kPixels);
   EXPECT_TRUE(draw(least - 1, 0.0).frame.empty());
-  EXPECT_EQ(draw(least - 1, 0.0).drawn, 0U);
-  EXPECT_EQ(draw(least, 0.0).drawn, least);
+  EXPECT_EQ(draw(least - 1, 0.0).rendered, 0U);
+  EXPECT_EQ(draw(least, 0.0).rendered, least);
 }
 
 TEST_F(EventViewTest, ReachesBackUntilTheSceneHasMovedFarEnough) {
   const std::size_t all = 40'000;
-  EXPECT_EQ(draw(all, 0.0).drawn, all);
+  EXPECT_EQ(draw(all, 0.0).rendered, all);
   // 2 m/s at 2 m and 200 px of focal length: 200 px/s, so that 5 px take a quarter of the packet's time.
-  EXPECT_NEAR(static_cast<double>(draw(all, 2.0).drawn), 0.25 * all, 2.0);
+  EXPECT_NEAR(static_cast<double>(draw(all, 2.0).rendered), 0.25 * all, 2.0);
   const double least = config_.min_events_per_pixel * kPixels;
-  EXPECT_EQ(static_cast<double>(draw(all, 200.0).drawn), least) << "never fewer than an image needs";
+  EXPECT_EQ(static_cast<double>(draw(all, 200.0).rendered), least) << "never fewer than an image needs";
 }
 
 TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereToldToThinAndEachForN) {
@@ -82,7 +82,7 @@ TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereToldToThinAndEachForN) 
   config_.thin_width_px = 70;
   EXPECT_EQ(cv::norm(all.frame, draw(20'000, 0.0).frame), 0.0) << "not told to";
   const EventImage thinned = draw(20'000, 0.0, true);
-  EXPECT_EQ(thinned.drawn, all.drawn) << "it reaches back as far";
+  EXPECT_EQ(thinned.rendered, all.rendered) << "it reaches back as far";
   cv::Scalar mean, sigma, thinned_mean, thinned_sigma;
   cv::meanStdDev(all.frame, mean, sigma);
   cv::meanStdDev(thinned.frame, thinned_mean, thinned_sigma);

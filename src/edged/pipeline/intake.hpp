@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "edged/core/jump_gate.hpp"
+#include "edged/counters.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/counters.hpp"
 #include "edged/pipeline/sequencer.hpp"
 #include "edged/rig.hpp"
 

@@ -20,21 +20,21 @@ constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;              // of an odometry that has just started, whose scale is still poor
 constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to say how much of it the map shows
 
-/// The live corners of a camera, and what they look like.
-struct Corners {
+/// The live features of a camera, and what they look like.
+struct Features {
   std::vector<Eigen::Vector2d> pixels, points;
   std::vector<std::optional<Descriptor>> descriptors;
 };
 
-Corners corners_of(const ChannelView& view, const SE3& T_O_C) {
-  Corners corners;
+Features corners_of(const ChannelView& view, const SE3& T_O_C) {
+  Features features;
   for (const Track& track : view.channel->tracker.tracks()) {
-    corners.pixels.push_back(track.pixel);
-    corners.points.push_back(track.point);
+    features.pixels.push_back(track.pixel);
+    features.points.push_back(track.point);
   }
   const Eigen::Vector3d up_C = T_O_C.R().transpose() * Eigen::Vector3d::UnitZ();
-  corners.descriptors = describe(view.track, corners.pixels, corners.points, up_C);
-  return corners;
+  features.descriptors = describe(view.track, features.pixels, features.points, up_C);
+  return features;
 }
 
 }  // namespace
@@ -65,11 +65,11 @@ void Mapper::load(const SavedMap& map) {
   }
   record_.load(map.T_M_K);
   filter_.load(map.T_M_K, map.covariance);
-  if (!map.keyframes.empty()) elsewhere_before_ = Timestamp();
+  if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
-  if (elsewhere_before_) return std::nullopt;
+  if (unlocated_before_) return std::nullopt;
   return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
 }
 
@@ -84,21 +84,22 @@ Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, 
   Search search;
   search.T_B_C = filter.T_M_B().inverse() * filter.T_M_O() * T_O_C;
   search.candidates = map_.visible({view.channel->camera.name, made, filter.keyframes()}, filter.T_M_O() * T_O_C,
-                                   camera, config_.max_sights);
+                                   camera, config_.max_observations);
   for (const Candidate& candidate : search.candidates) {
-    MapSight sight{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K, camera.pixel_to_point(candidate.pixel),
-                   config_.filter.pixel_sigma / camera.mean_focal()};
-    const double stretch = camera.stretch(sight.seen);
-    sight.sigma *= stretch;
+    MapObservation observation{candidate.keyframe, candidate.p_K, candidate.depth_sigma_K,
+                               camera.pixel_to_point(candidate.pixel),
+                               config_.filter.pixel_sigma / camera.mean_focal()};
+    const double stretch = camera.stretch(observation.seen);
+    observation.sigma *= stretch;
     const double expected_px =
-        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(sight, search.T_B_C);
+        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, search.T_B_C);
     const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
     const auto match =
         match_patch(candidate.point->patch, view.track, candidate.pixel, candidate.A, radius, config_.patch);
     search.found.push_back(match.has_value());
     if (!match) continue;
-    sight.seen = camera.pixel_to_point(match->pixel);
-    search.sights.push_back(sight);
+    observation.seen = camera.pixel_to_point(match->pixel);
+    search.observations.push_back(observation);
     search.pixels.push_back(match->pixel);
   }
   return search;
@@ -107,35 +108,37 @@ Mapper::Search Mapper::search(const MapFilter& filter, const ChannelView& view, 
 /// The filter takes what was found, where that agrees.
 bool Mapper::update(MapFilter& filter, const Search& search, Timestamp t) {
   const SE3 T_O_B = filter.T_M_O().inverse() * filter.T_M_B();
-  if (!filter.update(search.sights, search.candidates.size(), search.T_B_C)) return false;
+  if (!filter.update(search.observations, search.candidates.size(), search.T_B_C)) return false;
   for (std::size_t i = 0; i < search.candidates.size(); ++i) map_.note(search.candidates[i], search.found[i], t);
-  std::vector<MapSight> sights = search.sights;
+  std::vector<MapObservation> observations = search.observations;
   found_.clear();
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    const MapKeyframe& keyframe = map_.keyframes()[sights[i].keyframe];
-    found_.push_back({keyframe.t, search.pixels[i], filter.keyframes()[sights[i].keyframe] * sights[i].p_K});
-    sights[i].keyframe = keyframe.number;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const MapKeyframe& keyframe = map_.keyframes()[observations[i].keyframe];
+    found_.push_back(
+        {keyframe.t, search.pixels[i], filter.keyframes()[observations[i].keyframe] * observations[i].p_K});
+    observations[i].keyframe = keyframe.number;
   }
-  record_.add_sights({t, T_O_B}, search.T_B_C, sights, filter.T_M_O());
+  record_.add_observations({t, T_O_B}, search.T_B_C, observations, filter.T_M_O());
   return true;
 }
 
 bool Mapper::localize(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   // In a map of another run no dead reckoning tells right from wrong: two looks that agree must be further apart.
-  const double interval_s = searching_ && !elsewhere_before_ ? kSearchInterval_s : config_.min_interval_s;
+  const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
   const SE3 T_O_C = view.channel->T_W_C(T_O_B);
   const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const Search here = search(filter_, view, T_O_C, old_enough);
-  const auto older = std::ranges::count_if(
-      here.sights, [&](const MapSight& sight) { return map_.keyframes()[sight.keyframe].t < started_; });
+  const auto older = std::ranges::count_if(here.observations, [&](const MapObservation& observation) {
+    return map_.keyframes()[observation.keyframe].t < started_;
+  });
   const bool agreed = update(filter_, here, t);
-  if (!searching_ && !elsewhere_before_) return false;
-  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_sights;
-  const bool found_by_looks = (elsewhere_before_ || !found_by_guess) && recognise(t, view, T_O_C);
-  if (found_by_looks) elsewhere_before_.reset();
+  if (!searching_ && !unlocated_before_) return false;
+  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
+  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, view, T_O_C);
+  if (found_by_looks) unlocated_before_.reset();
   if (found_by_guess || found_by_looks) searching_ = false;
   return found_by_guess || found_by_looks;
 }
@@ -151,15 +154,15 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
 /// By looks alone, of what was there before the newest start, or of the map that was taken up. Two images must agree on
 /// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
 bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
-  const Corners corners = corners_of(view, T_O_C);
+  const Features features = corners_of(view, T_O_C);
   const double focal = view.channel->tracker.camera().mean_focal();
-  const Period before{Timestamp::min(), elsewhere_before_.value_or(started_)};
+  const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
   const std::optional<SE3> T_M_C = map_.recognise({view.channel->camera.name, before, filter_.keyframes()},
-                                                  corners.descriptors, corners.points, T_O_C.rotation(), focal);
+                                                  features.descriptors, features.points, T_O_C.rotation(), focal);
   const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
   if (!T_M_C) return false;
   const SE3 T_M_O = *T_M_C * T_O_C.inverse(), T_O_B = filter_.T_M_O().inverse() * filter_.T_M_B();
-  if (!elsewhere_before_ && !plausible(T_M_O, T_O_B)) return false;
+  if (!unlocated_before_ && !plausible(T_M_O, T_O_B)) return false;
   recognised_ = T_M_O;
   if (!last) return false;
   const SE3 between = (*last * T_O_B).inverse() * (T_M_O * T_O_B);
@@ -168,7 +171,7 @@ bool Mapper::recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C) {
   there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
   if (!update(there, search(there, view, T_O_C, before), t)) return false;
   record_.forget_guess();
-  if (elsewhere_before_) record_.move_before(T_M_O * filter_.T_M_O().inverse());
+  if (unlocated_before_) record_.move_before(T_M_O * filter_.T_M_O().inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
@@ -182,7 +185,7 @@ double Mapper::covered_share(const FeatureTracker& tracker) const {
   };
   std::set<std::pair<int, int>> textured, shown;
   for (const Track& track : tracker.tracks()) textured.insert(cell(track.pixel));
-  for (const FoundPoint& point : found_) {
+  for (const MapMatch& point : found_) {
     if (textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
   }
   return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
@@ -193,26 +196,26 @@ void Mapper::keyframe(Timestamp t, const ChannelView& view, const SE3& T_O_B) {
   if (to_seconds(t - started_) < config_.keyframes.min_known_s) return;
   if (!map_.wants(covered_share(tracker))) return;
   Look look{t, view.channel->camera.name, {}};
-  const Corners corners = corners_of(view, view.channel->T_W_C(T_O_B));
-  for (std::size_t i = 0; i < corners.pixels.size(); ++i) {
-    if (const auto patch = cut_patch(view.track, corners.pixels[i]))
-      look.corners[tracker.tracks()[i].id] = {*patch, corners.descriptors[i], corners.pixels[i]};
+  const Features features = corners_of(view, view.channel->T_W_C(T_O_B));
+  for (std::size_t i = 0; i < features.pixels.size(); ++i) {
+    if (const auto patch = cut_patch(view.track, features.pixels[i]))
+      look.features[tracker.tracks()[i].id] = {*patch, features.descriptors[i], features.pixels[i]};
   }
   looks_.push_back(std::move(look));
 }
 
 void Mapper::take(const KeyframeRecord& record) {
-  record_.settle({record.t, record.T_W_B});
+  record_.refine({record.t, record.T_W_B});
   while (!looks_.empty() && looks_.front().t < record.t) looks_.pop_front();
   if (looks_.empty() || looks_.front().t != record.t) return;
   const Look& look = looks_.front();
   const auto view = std::ranges::find(record.views, look.camera, &KeyframeView::camera);
   MapKeyframe keyframe{record.t, record.t, look.camera, view->T_B_C, {}};
   for (const KeyframePoint& point : view->points) {
-    const auto corner = look.corners.find(point.id);
-    if (corner == look.corners.end()) continue;
-    keyframe.points.push_back({point.point, point.inverse_depth, point.sigma, corner->second.patch,
-                               corner->second.descriptor, corner->second.pixel, 0, 0});
+    const auto feature = look.features.find(point.id);
+    if (feature == look.features.end()) continue;
+    keyframe.points.push_back({point.point, point.inverse_depth, point.sigma, feature->second.patch,
+                               feature->second.descriptor, feature->second.pixel, 0, 0});
   }
   if (!map_.gains_by(keyframe)) return;
   keyframe.number = record_.add_keyframe({record.t, record.T_W_B});
@@ -226,9 +229,9 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
   filter_.remove_keyframe(keyframe);
 }
 
-Hindsight Mapper::hindsight() const {
-  FlightRecord::Path path = record_.path();
-  Hindsight known{std::move(path.poses), {}};
+FinalTrajectory Mapper::final_trajectory() const {
+  TrajectorySmoother::Path path = record_.path();
+  FinalTrajectory known{std::move(path.poses), {}};
   for (const MapKeyframe& keyframe : map_.keyframes()) {
     known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
   }

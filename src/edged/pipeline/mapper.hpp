@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 
-#include "edged/estimator/keyframe_record.hpp"
-#include "edged/hindsight.hpp"
-#include "edged/map/flight_record.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/map/saved_map.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 #include "edged/pipeline/channel.hpp"
 
 namespace edged {
@@ -40,9 +40,9 @@ class Mapper {
 
   const SE3& T_M_O() const { return filter_.T_M_O(); }
   /// What was found in the image of that instant.
-  std::vector<FoundPoint> found(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<FoundPoint>(); }
+  std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
   /// In M.
-  Hindsight hindsight() const;
+  FinalTrajectory final_trajectory() const;
 
   /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
   /// of it has been recognised: so long M is a frame of this run's own.
@@ -51,30 +51,30 @@ class Mapper {
   /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
   /// in another frame than that.
   std::optional<SavedMap> save() const;
-  bool elsewhere() const { return elsewhere_before_.has_value(); }
+  bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
 
  private:
   /// How a keyframe of the window looked.
   struct Look {
-    struct Corner {
+    struct Feature {
       Patch patch;
       std::optional<Descriptor> descriptor;
       Eigen::Vector2d pixel;
     };
     Timestamp t;
     std::string camera;
-    std::map<FeatureId, Corner> corners;
+    std::map<FeatureId, Feature> features;
   };
   /// Points that should be in view, and what was found of them.
   struct Search {
     std::vector<Candidate> candidates;
     std::vector<bool> found;  ///< one a candidate
-    std::vector<MapSight> sights;
-    std::vector<Eigen::Vector2d> pixels;  ///< one a sight
+    std::vector<MapObservation> observations;
+    std::vector<Eigen::Vector2d> pixels;  ///< one a observation
     SE3 T_B_C;
   };
   /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
-  Period known() const { return {.since = elsewhere_before_.value_or(Timestamp::min())}; }
+  Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   Search search(const MapFilter& filter, const ChannelView& view, const SE3& T_O_C, Period made);
   bool update(MapFilter& filter, const Search& search, Timestamp t);
   bool recognise(Timestamp t, const ChannelView& view, const SE3& T_O_C);
@@ -85,9 +85,9 @@ class Mapper {
   MapConfig config_;
   KeyframeMap map_;
   MapFilter filter_;
-  FlightRecord record_;
+  TrajectorySmoother record_;
   std::deque<Look> looks_;
-  std::vector<FoundPoint> found_;  ///< in the newest image that was looked at
+  std::vector<MapMatch> found_;  ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;     ///< newest word of the odometry
   Timestamp started_;       ///< the estimator's newest start
@@ -95,7 +95,7 @@ class Mapper {
   double blind_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
   bool searching_ = false;  ///< since then nothing older has been found again
   /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
-  std::optional<Timestamp> elsewhere_before_;
+  std::optional<Timestamp> unlocated_before_;
   std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
 };
 

@@ -83,9 +83,9 @@ std::optional<Step> Odometry::next() {
 std::optional<NavState> Odometry::newest_state() const { return impl_->prediction.newest(); }
 std::optional<NavState> Odometry::state_at(Timestamp t) const { return impl_->prediction.at(t); }
 void Odometry::load_map(std::string_view bytes) { impl_->packet_odometry.load_map(bytes); }
-bool Odometry::elsewhere() const { return impl_->packet_odometry.elsewhere(); }
+bool Odometry::awaiting_relocalization() const { return impl_->packet_odometry.awaiting_relocalization(); }
 std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.save_map(); }
-Hindsight Odometry::hindsight() const { return impl_->packet_odometry.hindsight(); }
+FinalTrajectory Odometry::final_trajectory() const { return impl_->packet_odometry.final_trajectory(); }
 Rig Odometry::rig() const { return impl_->packet_odometry.rig(); }
 std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) const {
   return impl_->packet_odometry.calibration_covariance(camera);

@@ -260,8 +260,8 @@ TEST(Odometry, TellsAllOfAStep) {
   const CameraStep &cam = *last.find("cam"), &dvs = *last.find(Modality::Events);
   EXPECT_GT(cam.tracks.size(), 10U);
   EXPECT_EQ(dvs.image.size(), cv::Size(kWidth, kHeight));
-  EXPECT_GT(dvs.drawn, 0U);
-  EXPECT_LE(dvs.drawn_events().back().t, last.t);
+  EXPECT_GT(dvs.rendered, 0U);
+  EXPECT_LE(dvs.rendered_events().back().t, last.t);
   EXPECT_GT(odometry.counters().packets.packets, 20U);
 }
 

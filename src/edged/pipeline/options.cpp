@@ -83,16 +83,16 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);
   fields.add("enhance.detect", enhance_detect,
-             {.effect = "find new corners on the enhanced event frame, not the plain one"});
+             {.effect = "find new features on the enhanced event frame, not the plain one"});
   fields.add("enhance.track", enhance_track,
-             {.effect = "follow corners on the enhanced event frame, not the plain one"});
+             {.effect = "follow features on the enhanced event frame, not the plain one"});
   fields.add("alignment_gain", alignment.gain,
              {"", 0, 1,
               "weight of the last event frame's median (measured - predicted) displacement in the running mean "
               "that corrects the next prediction (delta x_last of Eq. 2); 0 is off"});
   fields.add("alignment_max_px", alignment.max_px, {"px", 0, 50, "bound of that correction"});
   fields.group("health", health);
-  fields.group("dim_frames", dim_frames);
+  fields.group("low_light", low_light);
   fields.group("event_tracker", event_tracker);
   fields.group("frame_tracker", frame_tracker);
   fields.group("keyframes", keyframes);
@@ -110,7 +110,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
       {"px", 0.5, 1000, "an event frame reaches back in time until the scene has moved this far by translation"});
   fields.add("thin_width_px", thin_width_px,
              {"px", 1, 1e6,
-              "while frames carry enough corners each n-th event is drawn, n the sensor's width over this, rounded "
+              "while frames carry enough features each n-th event is rendered, n the sensor's width over this, rounded "
               "down"});
   fields.add("min_events_per_pixel", min_events_per_pixel,
              {"", 0, 10, "a packet with fewer events draws no event frame"});

@@ -16,14 +16,14 @@ namespace {
 /// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
-/// Of fewer corners than that on frames there is no map, but of those on event frames beside them.
-constexpr double kCornersForMap = 20.0;
+/// Of fewer features than that on frames there is no map, but of those on event frames beside them.
+constexpr double kFeaturesForMap = 20.0;
 
 /// Without a frame for so long, events no longer count on them.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
 /// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
-constexpr Duration kReckoned = std::chrono::seconds(10);
+constexpr Duration kDeadReckoning = std::chrono::seconds(10);
 
 /// The packetizer takes the time offsets out; what is left over is up to the estimator.
 Rig without_offsets(Rig rig) {
@@ -49,7 +49,7 @@ PacketOdometry::PacketOdometry(const Rig& cameras, const ImuNoise& noise, const 
     if (camera.modality == Modality::Events) {
       event_views_.emplace_back(camera.model, config_);
     } else {
-      dim_frames_.emplace_back(config_.dim_frames);
+      low_light_.emplace_back(config_.low_light);
     }
   }
   make_channels();
@@ -71,10 +71,10 @@ void PacketOdometry::begin_time() {
   estimator_ = fresh_estimator();
   make_channels();
   depth_ = fresh_depth();
-  before_ = hindsight();
+  before_ = final_trajectory();
   mapper_ = Mapper(config_.map);  // its keyframes are of the time before
   judge_.lose("a clock was set back");
-  reckoned_until_ = Timestamp::min();
+  dead_reckoning_until_ = Timestamp::min();
   last_keyframe_.reset();
   last_frame_.reset();
   covariance_.reset();
@@ -85,29 +85,29 @@ Step PacketOdometry::process(Packet packet) {
   EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   Preintegration motion = predict(packet);
   const double scene_depth = measure_depth(packet);
-  const std::vector<EventImage> drawn = draw(packet, scene_depth);
-  const std::vector<ChannelView> views = views_of(packet, drawn);
+  const std::vector<EventImage> rendered = draw(packet, scene_depth);
+  const std::vector<ChannelView> views = views_of(packet, rendered);
   for (const ChannelView& view : views) track(view, packet.t, scene_depth);
   for (const ChannelView& view : views) reject(view);
   const bool keyframe = is_keyframe(packet, views);
   if (keyframe) mark_keyframe(packet.t, views);
   const EstimatorResult result = estimate(packet, std::move(motion), views, keyframe);
   const TrackingStatus status = judge_.judge(result, estimator_.initialized(), packet.t);
-  const bool found_again = follow_map(packet.t, views, result, keyframe);
+  const bool relocalized = follow_map(packet.t, views, result, keyframe);
   update_covariance(packet.t);
   if (is_tracking(status)) mapper_.note(body_.now());
-  Step step = describe(std::move(packet), drawn, result, status);
+  Step step = describe(std::move(packet), rendered, result, status);
   step.keyframe = keyframe;
-  step.found_again = found_again;
+  step.relocalized = relocalized;
   step.scene_depth = scene_depth;
   if (status == TrackingStatus::Lost && estimator_.initialized()) {
     estimator_ = fresh_estimator();
-    reckoned_until_ = judge_.went_blind() ? step.t + kReckoned : step.t;
+    dead_reckoning_until_ = judge_.vision_lost() ? step.t + kDeadReckoning : step.t;
   }
   return step;
 }
 
-Step PacketOdometry::describe(Packet packet, std::span<const EventImage> drawn, const EstimatorResult& result,
+Step PacketOdometry::describe(Packet packet, std::span<const EventImage> rendered, const EstimatorResult& result,
                               TrackingStatus status) const {
   Step step;
   step.t = packet.t;
@@ -122,11 +122,11 @@ Step PacketOdometry::describe(Packet packet, std::span<const EventImage> drawn, 
     const Channel& channel = channels_[i];
     CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
     camera.tracks = channel.tracker.tracks();
-    camera.survival = channel.survival();
-    if (i < drawn.size()) {
-      camera.image = drawn[i].frame;
+    camera.survival_rate = channel.survival_rate();
+    if (i < rendered.size()) {
+      camera.image = rendered[i].frame;
       camera.events = std::move(packet.events[i].events);
-      camera.drawn = drawn[i].drawn;
+      camera.rendered = rendered[i].rendered;
       camera.event_rate_hz = packet.events[i].event_rate_hz;
     } else if (const Frame* frame = packet.find_frame(camera.name)) {
       camera.image = frame->image;
@@ -134,16 +134,16 @@ Step PacketOdometry::describe(Packet packet, std::span<const EventImage> drawn, 
     step.cameras.push_back(std::move(camera));
   }
   step.T_W_O = world_.T_W_S();
-  step.found = mapper_.found(packet.t);
+  step.map_matches = mapper_.map_matches(packet.t);
   step.landmarks = world_.of(result.landmarks);
-  step.left = world_.of(result.left);
+  step.marginalized_keyframes = world_.of(result.marginalized_keyframes);
   step.ln_depth_scale = estimator_.depth_scale();
   return step;
 }
 
 Preintegration PacketOdometry::predict(const Packet& packet) {
   const auto timer = timings_.measure("predict");
-  Preintegration motion = body_.predict(packet.imu, estimator_.initialized() || packet.t < reckoned_until_);
+  Preintegration motion = body_.predict(packet.imu, estimator_.initialized() || packet.t < dead_reckoning_until_);
   gyro_saturated_ |= !motion.gyro_trusted();
   turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
   gyro_clipped_ = motion.gyro_clipped();
@@ -161,16 +161,16 @@ double PacketOdometry::measure_depth(const Packet& packet) {
 
 /// One image an event camera, empty where there were too few events.
 std::vector<EventImage> PacketOdometry::draw(const Packet& packet, double scene_depth) {
-  std::vector<EventImage> drawn(event_views_.size());
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
+  std::vector<EventImage> rendered(event_views_.size());
+  for (std::size_t i = 0; i < rendered.size(); ++i) {
     const auto timer = timings_.measure("event_frame");
     EventView& view = event_views_[i];
-    const EventsToDraw events = view.drawn_events(packet.events[i], body_, scene_depth, frames_carry());
+    const EventsToRender events = view.rendered_events(packet.events[i], body_, scene_depth, frames_carry());
     if (events.events.empty()) continue;
     const std::optional<DepthGrid> depths = event_depths(channels_[i], view.ideal(), scene_depth);
-    drawn[i] = view.draw(events, channels_[i].camera, body_, scene_depth, depths ? &*depths : nullptr);
+    rendered[i] = view.render(events, channels_[i].camera, body_, scene_depth, depths ? &*depths : nullptr);
   }
-  return drawn;
+  return rendered;
 }
 
 /// The landmarks of all cameras as that one sees them now.
@@ -202,15 +202,15 @@ std::optional<DepthGrid> PacketOdometry::event_depths(const Channel& channel, co
 }
 
 /// The cameras that the packet brought an image of.
-std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, std::span<const EventImage> drawn) {
+std::vector<ChannelView> PacketOdometry::views_of(const Packet& packet, std::span<const EventImage> rendered) {
   std::vector<ChannelView> views;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    if (!drawn[i].frame.empty()) views.push_back({&channels_[i], drawn[i].track, drawn[i].detect});
+  for (std::size_t i = 0; i < rendered.size(); ++i) {
+    if (!rendered[i].frame.empty()) views.push_back({&channels_[i], rendered[i].track, rendered[i].detect});
   }
-  for (std::size_t i = drawn.size(); i < channels_.size(); ++i) {
+  for (std::size_t i = rendered.size(); i < channels_.size(); ++i) {
     const Frame* frame = packet.find_frame(channels_[i].camera.name);
     if (frame == nullptr) continue;
-    const cv::Mat image = dim_frames_[i - drawn.size()](frame->image);
+    const cv::Mat image = low_light_[i - rendered.size()](frame->image);
     views.push_back({&channels_[i], image, image});
     last_frame_ = packet.t;
   }
@@ -227,7 +227,7 @@ void PacketOdometry::track(const ChannelView& view, Timestamp t, double scene_de
   };
   // Against one look all errors of a track hang together, and the thresholds of a start do not know that: with events
   // alone 3 of 72 starts are wrong by their scale, 1 without.
-  prediction.first_looks = !estimator_.provisional();
+  prediction.reference_patches = !estimator_.provisional();
   channel.track(view.track, t, T_W_B_of(channel), std::move(prediction));
 }
 
@@ -247,7 +247,7 @@ bool PacketOdometry::is_keyframe(const Packet& packet, std::span<const ChannelVi
   since.any = last_keyframe_.has_value();
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe_;
-  // Only the camera that carries the most: corners on event frames drift and end sooner, and would ask for keyframes
+  // Only the camera that carries the most: features on event frames drift and end sooner, and would ask for keyframes
   // that good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_W_B_of(*leader));
   since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
@@ -265,27 +265,27 @@ bool PacketOdometry::frames_at_work() const {
   return is_fused() && last_frame_ && body_.now().t - *last_frame_ < kFramesMissing;
 }
 
-/// As many corners as event frames keep beside them.
+/// As many features as event frames keep beside them.
 bool PacketOdometry::frames_carry() const {
-  return frames_at_work() && carried_by_frames() >= config_.health.min_event_corners;
+  return frames_at_work() && carried_by_frames() >= config_.health.min_event_features;
 }
 
-/// Frames tell more about a corner than events do, where they see it at all: in good light a few corners on the event
+/// Frames tell more about a feature than events do, where they see it at all: in good light a few features on the event
 /// frame are enough, in the dark, in glare and without frames it takes all it can get. Cameras of a kind share what one
 /// alone would have: more views of the same scene should not cost more.
-int PacketOdometry::corners_wanted(const Channel& channel) const {
+int PacketOdometry::features_wanted(const Channel& channel) const {
   if (channel.camera.modality == Modality::Frames)
-    return config_.frame_tracker.detector.max_features / static_cast<int>(dim_frames_.size());
+    return config_.frame_tracker.detector.max_features / static_cast<int>(low_light_.size());
   const int all = config_.event_tracker.detector.max_features, cameras = static_cast<int>(event_views_.size());
   if (!frames_at_work()) return all / cameras;
-  return std::max(config_.health.min_event_corners, all - static_cast<int>(carried_by_frames())) / cameras;
+  return std::max(config_.health.min_event_features, all - static_cast<int>(carried_by_frames())) / cameras;
 }
 
 void PacketOdometry::mark_keyframe(Timestamp t, std::span<const ChannelView> views) {
   const auto timer = timings_.measure("detect");
   for (const ChannelView& view : views) {
     Channel& channel = *view.channel;
-    channel.mark_keyframe(view.detect, T_W_B_of(channel), next_feature_, corners_wanted(channel));
+    channel.mark_keyframe(view.detect, T_W_B_of(channel), next_feature_, features_wanted(channel));
   }
   last_keyframe_ = t;
   gyro_saturated_ = false;
@@ -329,19 +329,19 @@ bool PacketOdometry::follow_map(Timestamp t, std::span<const ChannelView> views,
   if (result.new_frame || turned_unseen_) mapper_.restart(world_.T_W_S(), body_.now());
   if (!config_.map.enabled) return false;
   const auto timer = timings_.measure("map");
-  bool found_again = false;
+  bool relocalized = false;
   mapper_.predict(body_.now());
   const Channel* leading = &channels_.front();
-  if (is_fused() && channels_[event_views_.size()].carried() >= kCornersForMap)
+  if (is_fused() && channels_[event_views_.size()].carried() >= kFeaturesForMap)
     leading = &channels_[event_views_.size()];
   const auto view = std::ranges::find(views, leading, &ChannelView::channel);
   if (view != views.end()) {
-    found_again = mapper_.localize(t, *view, T_W_B_of(*view->channel));
+    relocalized = mapper_.localize(t, *view, T_W_B_of(*view->channel));
     if (keyframe) mapper_.keyframe(t, *view, T_W_B_of(*view->channel));
   }
-  for (const KeyframeRecord& record : result.left) mapper_.take(record);
+  for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
   world_.move(mapper_.T_M_O());
-  return found_again;
+  return relocalized;
 }
 
 void PacketOdometry::load_map(std::string_view bytes) {
@@ -359,8 +359,8 @@ std::optional<std::string> PacketOdometry::save_map() const {
   return to_bytes(*map);
 }
 
-Hindsight PacketOdometry::hindsight() const {
-  Hindsight all = before_, now = mapper_.hindsight();
+FinalTrajectory PacketOdometry::final_trajectory() const {
+  FinalTrajectory all = before_, now = mapper_.final_trajectory();
   std::ranges::move(now.poses, std::back_inserter(all.poses));
   std::ranges::move(now.keyframes, std::back_inserter(all.keyframes));
   return all;

@@ -9,10 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/core/timing.hpp"
 #include "edged/estimator/estimator.hpp"
-#include "edged/frontend/dim_image.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/frontend/low_light.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
@@ -25,6 +24,7 @@
 #include "edged/pipeline/world_frame.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 
@@ -46,8 +46,8 @@ class PacketOdometry {
   /// As of Odometry.
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
-  bool elsewhere() const { return mapper_.elsewhere(); }
-  Hindsight hindsight() const;
+  bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
+  FinalTrajectory final_trajectory() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
 
@@ -64,7 +64,7 @@ class PacketOdometry {
   std::vector<EventImage> draw(const Packet& packet, double scene_depth);
   std::optional<DepthGrid> event_depths(const Channel& channel, const CameraModel& ideal, double scene_depth) const;
   std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer) const;
-  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> drawn);
+  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> rendered);
   void track(const ChannelView& view, Timestamp t, double scene_depth);
   void reject(const ChannelView& view);
   bool is_keyframe(const Packet& packet, std::span<const ChannelView> views) const;
@@ -72,7 +72,7 @@ class PacketOdometry {
   double carried_by_frames() const;
   bool frames_at_work() const;
   bool frames_carry() const;
-  int corners_wanted(const Channel& channel) const;
+  int features_wanted(const Channel& channel) const;
   void mark_keyframe(Timestamp t, std::span<const ChannelView> views);
   EstimatorResult estimate(const Packet& packet, Preintegration motion, std::span<const ChannelView> views,
                            bool keyframe);
@@ -80,7 +80,7 @@ class PacketOdometry {
   void calibrate();
   void update_covariance(Timestamp t);
   bool is_quiet(const Packet& packet) const;
-  Step describe(Packet packet, std::span<const EventImage> drawn, const EstimatorResult& result,
+  Step describe(Packet packet, std::span<const EventImage> rendered, const EstimatorResult& result,
                 TrackingStatus status) const;
 
   /// The body at the instant of the channel's image: the packet's, but for what the camera's clock is still off by.
@@ -95,14 +95,14 @@ class PacketOdometry {
   Rig given_rig_;  ///< the cameras of the run
   Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
   Estimator estimator_;
-  std::vector<Channel> channels_;            ///< as in rig_
-  std::vector<EventView> event_views_;       ///< of the event cameras, the first channels
-  std::vector<DimImageStretch> dim_frames_;  ///< of the frame cameras, the others
+  std::vector<Channel> channels_;              ///< as in rig_
+  std::vector<EventView> event_views_;         ///< of the event cameras, the first channels
+  std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
   StageTimings timings_;
 
   WorldFrame world_;
   Mapper mapper_;
-  Hindsight before_;  ///< of the times before the newest clock
+  FinalTrajectory before_;  ///< of the times before the newest clock
   StatusJudge judge_;
   FeatureId next_feature_ = 1;
   BodyMotion body_;  ///< predicted, then optimised
@@ -110,7 +110,8 @@ class PacketOdometry {
   std::optional<Timestamp> last_keyframe_, last_frame_;
   std::optional<PoseCovariance> covariance_;
   Timestamp covariance_at_;
-  Timestamp reckoned_until_ = Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
+  Timestamp dead_reckoning_until_ =
+      Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
 };
 
 }  // namespace edged

@@ -38,8 +38,9 @@ void PacketizerConfig::visit(ConfigFields& fields) {
              {"1/px", 0.001, 100, "new events per pixel that cut a packet; fewer give more packets per second"});
   fields.add(
       "window_per_pixel", window_per_pixel,
-      {"1/px", 0.001, 100, "events per pixel that are drawn into one event frame, reaching back past the last cut"});
-  fields.add("max_age_s", max_age_s, {"s", 0.001, 10, "events older than this are not drawn, however few there are"});
+      {"1/px", 0.001, 100, "events per pixel that are rendered into one event frame, reaching back past the last cut"});
+  fields.add("max_age_s", max_age_s,
+             {"s", 0.001, 10, "events older than this are not rendered, however few there are"});
   fields.add("max_interval_s", max_interval_s,
              {"s", 0.001, 1, "longest time between two packets with events (the heartbeat at standstill)"});
   fields.add("min_interval_s", min_interval_s,

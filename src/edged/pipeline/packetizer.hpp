@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "edged/counters.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/counters.hpp"
 #include "edged/pipeline/event_history.hpp"
 #include "edged/pipeline/packet.hpp"
 #include "edged/rig.hpp"

@@ -7,10 +7,10 @@
 #include <memory>
 #include <span>
 
-#include "edged/depth/depth_config.hpp"
 #include "edged/depth/depth_prior.hpp"
 #include "edged/depth/landmark_depth.hpp"
 #include "edged/estimator/region_depth.hpp"
+#include "edged/options/depth.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {

@@ -150,7 +150,7 @@ TEST(PacketsOfSeveralCameras, AreCutByTheCountOfAnyEventCamera) {
   EXPECT_EQ(packets[0].events[0].new_events, 1U);
 }
 
-/// The poses and corners of every step.
+/// The poses and features of every step.
 using Numbers = std::vector<double>;
 Numbers numbers_of_all(Odometry& odometry, const std::vector<Measurement>& all, std::vector<Step>* steps = nullptr) {
   Numbers numbers;
@@ -194,7 +194,7 @@ TEST(OdometryOfSeveralCameras, TellsOfEachInTheOrderOfTheRig) {
 
 TEST(OdometryOfSeveralCameras, SharesTheCornersOfOne) {
   const std::vector<Measurement> all = recording(1500);
-  const auto corners = [&](const std::string& names) {
+  const auto features = [&](const std::string& names) {
     Odometry odometry(four_cameras(), {}, Mode::Frames, using_cameras(names), {kInOrder});
     std::vector<Step> steps;
     numbers_of_all(odometry, all, &steps);
@@ -203,8 +203,8 @@ TEST(OdometryOfSeveralCameras, SharesTheCornersOfOne) {
     return most;
   };
   const auto wanted = static_cast<std::size_t>(OdometryConfig().frame_tracker.detector.max_features);
-  EXPECT_LE(corners("cam0"), wanted);
-  EXPECT_LE(corners("cam0,cam1"), wanted);
+  EXPECT_LE(features("cam0"), wanted);
+  EXPECT_LE(features("cam0,cam1"), wanted);
 }
 
 TEST(OdometryOfSeveralCameras, GivesTheSameBitsHoweverTheyLagWithinTheirDelays) {

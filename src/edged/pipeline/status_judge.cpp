@@ -48,8 +48,8 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
         result.imu_strain, most);
     patience_ *= kMorePatience;
   }
-  went_blind_ = reason_.empty() && drifting_s > config_.lost_after_s;
-  if (went_blind_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
+  vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
+  if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
   if (!reason_.empty()) return TrackingStatus::Lost;
   const bool doubtful = result.provisional || alone_s > config_.degraded_after_s ||
                         result.imu_strain > patience_ * config_.degraded_strain;

@@ -27,7 +27,7 @@ class StatusJudge {
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
   /// The last one was Lost only because nothing was seen any more: it was right until then.
-  bool went_blind() const { return went_blind_; }
+  bool vision_lost() const { return vision_lost_; }
 
  private:
   StatusConfig config_;
@@ -36,7 +36,7 @@ class StatusJudge {
   std::optional<Timestamp> last_supported_;  ///< by landmarks or rest, since the start
   std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
   std::string reason_;
-  bool went_blind_ = false;
+  bool vision_lost_ = false;
 };
 
 }  // namespace edged

@@ -33,7 +33,7 @@ TEST(StatusJudge, FallsToDegradedAndLostWithTheTimeWithoutLandmarks) {
   EXPECT_EQ(judge.judge(blind, true, at(0.8)), TrackingStatus::Degraded);
   EXPECT_EQ(judge.judge(blind, true, at(2.6)), TrackingStatus::Lost);
   EXPECT_THAT(judge.reason(), testing::HasSubstr("2.6 s"));
-  EXPECT_TRUE(judge.went_blind());
+  EXPECT_TRUE(judge.vision_lost());
 }
 
 TEST(StatusJudge, StaysDegradedWithoutLandmarksWhileAVelocitySensorHoldsIt) {
@@ -45,7 +45,7 @@ TEST(StatusJudge, StaysDegradedWithoutLandmarksWhileAVelocitySensorHoldsIt) {
   for (double t = 1.0; t < 20.0; t += 0.5) EXPECT_EQ(judge.judge(held, true, at(t)), TrackingStatus::Degraded);
   EXPECT_EQ(judge.judge(blind, true, at(21.0)), TrackingStatus::Degraded) << "for as long as without the sensor";
   EXPECT_EQ(judge.judge(blind, true, at(22.5)), TrackingStatus::Lost);
-  EXPECT_TRUE(judge.went_blind());
+  EXPECT_TRUE(judge.vision_lost());
 }
 
 TEST(StatusJudge, IsGoodAtRestWithoutAnyLandmark) {
@@ -63,7 +63,7 @@ TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
   strained.imu_strain = 1.0;
   EXPECT_EQ(judge.judge(strained, true, at(0.1)), TrackingStatus::Lost);
   EXPECT_THAT(judge.reason(), testing::HasSubstr("contradict"));
-  EXPECT_FALSE(judge.went_blind()) << "where the body went is not to be believed";
+  EXPECT_FALSE(judge.vision_lost()) << "where the body went is not to be believed";
 }
 
 TEST(StatusJudge, BearsMoreStrainAfterALossByIt) {

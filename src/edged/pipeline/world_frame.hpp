@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "edged/estimator/keyframe_record.hpp"
+#include "edged/keyframe_record.hpp"
 #include "edged/state.hpp"
 
 namespace edged {

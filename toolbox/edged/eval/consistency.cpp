@@ -24,17 +24,18 @@ SE3 gauge(const SE3& truth, const SE3& estimate) {
   return {q, truth.translation() - q * estimate.translation()};
 }
 
-/// Where the estimate has been laid onto the truth. The claim there is itself uncertain, and so is all that is compared
-/// through it.
+/// Where the estimate has been laid onto the truth. The sample there is itself uncertain, and so is all that is
+/// compared through it.
 struct Anchor {
   SE3 T_Wtrue_W, truth;
-  Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the claim, in the true W [m^2]
+  Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the sample, in the true W [m^2]
   double yaw = 0.0;                                    ///< its variance about z [rad^2]
 
-  Anchor(const SE3& true_pose, const ClaimedPose& claim) : T_Wtrue_W(gauge(true_pose, claim.T_W_B)), truth(true_pose) {
-    position = T_Wtrue_W.R() * claim.position * T_Wtrue_W.R().transpose();
-    const Eigen::Vector3d up_B = claim.T_W_B.R().row(2);
-    yaw = up_B.dot(claim.rotation * up_B);
+  Anchor(const SE3& true_pose, const PoseCovarianceSample& sample)
+      : T_Wtrue_W(gauge(true_pose, sample.T_W_B)), truth(true_pose) {
+    position = T_Wtrue_W.R() * sample.position * T_Wtrue_W.R().transpose();
+    const Eigen::Vector3d up_B = sample.T_W_B.R().row(2);
+    yaw = up_B.dot(sample.rotation * up_B);
   }
   /// What it adds to the covariance of a position.
   Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const {
@@ -107,33 +108,33 @@ double Consistency::silent_s() const {
   return sum;
 }
 
-Consistency check_consistency(const Trajectory& truth, const std::vector<ClaimedPose>& claims) {
+Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCovarianceSample>& samples) {
   Trajectory estimate;
-  for (const ClaimedPose& claim : claims) estimate.push_back({claim.t, claim.T_W_B});
+  for (const PoseCovarianceSample& sample : samples) estimate.push_back({sample.t, sample.T_W_B});
   Consistency result;
   Sum position, rotation;
   Spans silent;
   std::optional<Anchor> anchor;
   int start = 0;
-  auto claim = claims.begin();
+  auto sample = samples.begin();
   for (const PosePair& pair : associate(truth, estimate).pairs) {
-    while (claim->t != pair.t) ++claim;
-    if (anchor && claim->start != start) anchor.reset(), silent.end();
+    while (sample->t != pair.t) ++sample;
+    if (anchor && sample->start != start) anchor.reset(), silent.end();
     if (!anchor) {
-      if (!claim->good) continue;
-      anchor.emplace(pair.truth, *claim);
-      start = claim->start;
+      if (!sample->good) continue;
+      anchor.emplace(pair.truth, *sample);
+      start = sample->start;
       ++result.starts;
     }
     const SE3 T_W_B = anchor->T_Wtrue_W * pair.estimate;
     const Eigen::Matrix3d R = anchor->T_Wtrue_W.R();
     const Eigen::Vector3d error = T_W_B.translation() - pair.truth.translation();
-    const Eigen::Matrix3d covariance = R * claim->position * R.transpose() + anchor->of_position(T_W_B.translation());
+    const Eigen::Matrix3d covariance = R * sample->position * R.transpose() + anchor->of_position(T_W_B.translation());
     result.errors.push_back({pair.t, error, covariance.diagonal().cwiseSqrt()});
     const bool position_believable = position.add(error, covariance);
     const bool rotation_believable = rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
-                                                  claim->rotation + anchor->of_rotation(T_W_B));
-    silent.add(pair.t, claim->good && !(position_believable && rotation_believable));
+                                                  sample->rotation + anchor->of_rotation(T_W_B));
+    silent.add(pair.t, sample->good && !(position_believable && rotation_believable));
     ++result.poses;
   }
   result.position = position.mean();

@@ -11,7 +11,7 @@ namespace edged {
 
 /// A pose of the body as estimated, and how well the estimator says to know it since its start, where position and yaw
 /// are exact.
-struct ClaimedPose {
+struct PoseCovarianceSample {
   Timestamp t;
   SE3 T_W_B;
   Eigen::Matrix3d position;  ///< covariance in W [m^2]
@@ -33,7 +33,7 @@ struct TimeSpan {
 };
 
 /// One position error, estimate less truth, laid on as below, and how large it may be.
-struct ClaimedError {
+struct PoseErrorSample {
   Timestamp t;
   Eigen::Vector3d error, sigma;  ///< in the true W [m]
 };
@@ -44,7 +44,7 @@ struct Consistency {
   /// Where the estimate had diverged silently: all of the poses for more than 0.5 s are Good, but with the position or
   /// the rotation beyond the 99.73 %.
   std::vector<TimeSpan> silent;
-  std::vector<ClaimedError> errors;  ///< of each pose
+  std::vector<PoseErrorSample> errors;  ///< of each pose
 
   double silent_s() const;
 };
@@ -53,6 +53,6 @@ struct Consistency {
 /// each start is laid onto the truth, position and yaw; what comes before it is left out. As that pose is not exact
 /// either (after a start in motion it is centimetres off), its covariance counts with each error. Errors below 0.1 mm
 /// and 0.1 mrad are never too large.
-Consistency check_consistency(const Trajectory& truth, const std::vector<ClaimedPose>& claims);
+Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCovarianceSample>& samples);
 
 }  // namespace edged

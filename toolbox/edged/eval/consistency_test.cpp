@@ -22,13 +22,14 @@ Eigen::Matrix3d covariance(const Eigen::Vector3d& sigmas, const Eigen::Vector3d&
 const Eigen::Matrix3d kPosition = covariance({0.01, 0.02, 0.05}, {0.3, -0.2, 0.5});
 const Eigen::Matrix3d kRotation = covariance({0.002, 0.004, 0.01}, {-0.1, 0.4, 0.2});
 
-void make_exact(ClaimedPose& claim, const SE3& T_W_B) {
-  claim.T_W_B = T_W_B;
-  claim.position = claim.rotation = Eigen::Matrix3d::Zero();
+void make_exact(PoseCovarianceSample& sample, const SE3& T_W_B) {
+  sample.T_W_B = T_W_B;
+  sample.position = sample.rotation = Eigen::Matrix3d::Zero();
 }
 
 /// Poses that are off by normal errors of these covariances times `factor`, in another world; the first is exact.
-std::vector<ClaimedPose> claims_of(const Trajectory& truth, double factor = 1.0, const SE3& T_W_Wtrue = kGauge) {
+std::vector<PoseCovarianceSample> covariance_samples_of(const Trajectory& truth, double factor = 1.0,
+                                                        const SE3& T_W_Wtrue = kGauge) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   const auto draw = [&](const Eigen::Matrix3d& P) {
@@ -36,19 +37,19 @@ std::vector<ClaimedPose> claims_of(const Trajectory& truth, double factor = 1.0,
     return Eigen::Vector3d(P.llt().matrixL() * (factor * white));
   };
   const Eigen::Matrix3d R = T_W_Wtrue.R();
-  std::vector<ClaimedPose> claims;
+  std::vector<PoseCovarianceSample> samples;
   for (const StampedPose& pose : truth) {
     const Eigen::Vector3d p = pose.T.translation() - draw(kPosition);
     const Eigen::Quaterniond q = pose.T.rotation() * so3::exp(-draw(kRotation));
-    claims.push_back({pose.t, T_W_Wtrue * SE3(q, p), R * kPosition * R.transpose(), kRotation});
+    samples.push_back({pose.t, T_W_Wtrue * SE3(q, p), R * kPosition * R.transpose(), kRotation});
   }
-  make_exact(claims.front(), T_W_Wtrue * truth.front().T);
-  return claims;
+  make_exact(samples.front(), T_W_Wtrue * truth.front().T);
+  return samples;
 }
 
 TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) {
   const Trajectory truth = winding_motion(200.0);
-  const Consistency found = check_consistency(truth, claims_of(truth));
+  const Consistency found = check_consistency(truth, covariance_samples_of(truth));
   EXPECT_EQ(found.poses, truth.size());
   EXPECT_EQ(found.starts, 1U);
   for (const NormalizedErrors& errors : {found.position, found.rotation}) {
@@ -63,7 +64,7 @@ TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) 
 
 TEST(Consistency, ErrorsTwiceAsLargeAsClaimedAreFourTimesTheMean) {
   const Trajectory truth = winding_motion(200.0);
-  const Consistency found = check_consistency(truth, claims_of(truth, 2.0));
+  const Consistency found = check_consistency(truth, covariance_samples_of(truth, 2.0));
   EXPECT_NEAR(found.position.mean_nees, 12.0, 0.4);
   EXPECT_NEAR(found.rotation.mean_nees, 12.0, 0.4);
   EXPECT_LT(found.position.within, 0.75);
@@ -72,10 +73,10 @@ TEST(Consistency, ErrorsTwiceAsLargeAsClaimedAreFourTimesTheMean) {
 
 TEST(Consistency, EveryErrorComesWithItsSizeAsClaimed) {
   const Trajectory truth = winding_motion(200.0);
-  const Consistency found = check_consistency(truth, claims_of(truth));
+  const Consistency found = check_consistency(truth, covariance_samples_of(truth));
   ASSERT_EQ(found.errors.size(), truth.size());
   Eigen::Array3d squares = Eigen::Array3d::Zero();
-  for (const ClaimedError& e : found.errors) squares += e.error.array().square();
+  for (const PoseErrorSample& e : found.errors) squares += e.error.array().square();
   const Eigen::Array3d spread = (squares / static_cast<double>(truth.size())).sqrt();
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(found.errors.back().sigma[i], std::sqrt(kPosition(i, i)), 1e-9);
@@ -84,20 +85,20 @@ TEST(Consistency, EveryErrorComesWithItsSizeAsClaimed) {
 }
 
 /// Poses from from_s to to_s after the first, moved by d in the world.
-std::vector<ClaimedPose> shifted(std::vector<ClaimedPose> claims, double from_s, double to_s,
-                                 const Eigen::Vector3d& d) {
-  const Timestamp first = claims.front().t;
-  for (ClaimedPose& claim : claims)
-    if (const double s = to_seconds(claim.t - first); s >= from_s && s < to_s) claim.T_W_B.translation() += d;
-  return claims;
+std::vector<PoseCovarianceSample> shifted(std::vector<PoseCovarianceSample> samples, double from_s, double to_s,
+                                          const Eigen::Vector3d& d) {
+  const Timestamp first = samples.front().t;
+  for (PoseCovarianceSample& sample : samples)
+    if (const double s = to_seconds(sample.t - first); s >= from_s && s < to_s) sample.T_W_B.translation() += d;
+  return samples;
 }
 
 TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) {
   const Trajectory truth = winding_motion(20.0);
-  const std::vector<ClaimedPose> claims = claims_of(truth);
+  const std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
   const Eigen::Vector3d far(0.5, 0.5, 0.5);
-  EXPECT_TRUE(check_consistency(truth, shifted(claims, 5.0, 5.45, far)).silent.empty());
-  const Consistency found = check_consistency(truth, shifted(claims, 5.0, 8.0, far));
+  EXPECT_TRUE(check_consistency(truth, shifted(samples, 5.0, 5.45, far)).silent.empty());
+  const Consistency found = check_consistency(truth, shifted(samples, 5.0, 8.0, far));
   ASSERT_EQ(found.silent.size(), 1U);
   EXPECT_NEAR(to_seconds(found.silent[0].begin), 105.0, 0.021);
   EXPECT_NEAR(found.silent_s(), 3.0, 0.041);
@@ -105,26 +106,26 @@ TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) 
 
 TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<ClaimedPose> claims = shifted(claims_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});
-  for (ClaimedPose& claim : claims) claim.good = claim.t < timestamp_from_seconds(105.0);
-  const Consistency found = check_consistency(truth, claims);
+  std::vector<PoseCovarianceSample> samples = shifted(covariance_samples_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});
+  for (PoseCovarianceSample& sample : samples) sample.good = sample.t < timestamp_from_seconds(105.0);
+  const Consistency found = check_consistency(truth, samples);
   EXPECT_TRUE(found.silent.empty());
   EXPECT_NEAR(found.position.within, 1.0 - 3.0 / 20.0, 0.01);
 }
 
 TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<ClaimedPose> claims = claims_of(truth);
+  std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
   const SE3 jump(so3::exp({0.0, 0.0, -0.5}), Eigen::Vector3d(1.0, 0.0, 0.0));
-  const std::size_t half = claims.size() / 2;
-  make_exact(claims[half], kGauge * truth[half].T);
-  for (std::size_t i = half; i < claims.size(); ++i) {
-    claims[i].T_W_B = jump * claims[i].T_W_B;
-    claims[i].position = jump.R() * claims[i].position * jump.R().transpose();
+  const std::size_t half = samples.size() / 2;
+  make_exact(samples[half], kGauge * truth[half].T);
+  for (std::size_t i = half; i < samples.size(); ++i) {
+    samples[i].T_W_B = jump * samples[i].T_W_B;
+    samples[i].position = jump.R() * samples[i].position * jump.R().transpose();
   }
-  EXPECT_GT(check_consistency(truth, claims).silent_s(), 9.0);
-  for (std::size_t i = half; i < claims.size(); ++i) claims[i].start = 1;
-  const Consistency found = check_consistency(truth, claims);
+  EXPECT_GT(check_consistency(truth, samples).silent_s(), 9.0);
+  for (std::size_t i = half; i < samples.size(); ++i) samples[i].start = 1;
+  const Consistency found = check_consistency(truth, samples);
   EXPECT_EQ(found.starts, 2U);
   EXPECT_TRUE(found.silent.empty());
   EXPECT_NEAR(found.position.mean_nees, 3.0, 0.3);
@@ -132,27 +133,27 @@ TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
 
 TEST(Consistency, AFirstPoseThatIsOffByWhatItClaimsCondemnsNoOther) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<ClaimedPose> claims;
+  std::vector<PoseCovarianceSample> samples;
   const Eigen::Matrix3d small = 1e-8 * Eigen::Matrix3d::Identity();
-  for (const StampedPose& pose : truth) claims.push_back({pose.t, kGauge * pose.T, small, small});
+  for (const StampedPose& pose : truth) samples.push_back({pose.t, kGauge * pose.T, small, small});
   // Two centimetres and a degree of yaw off, and known to be.
-  claims.front().T_W_B = SE3(so3::exp({0.0, 0.0, 0.017}), Eigen::Vector3d(0.02, -0.01, 0.01)) * claims.front().T_W_B;
-  EXPECT_LT(check_consistency(truth, claims).position.within, 0.01);
-  claims.front().position = 4e-4 * Eigen::Matrix3d::Identity();
-  claims.front().rotation = 3e-4 * Eigen::Matrix3d::Identity();
-  const Consistency found = check_consistency(truth, claims);
+  samples.front().T_W_B = SE3(so3::exp({0.0, 0.0, 0.017}), Eigen::Vector3d(0.02, -0.01, 0.01)) * samples.front().T_W_B;
+  EXPECT_LT(check_consistency(truth, samples).position.within, 0.01);
+  samples.front().position = 4e-4 * Eigen::Matrix3d::Identity();
+  samples.front().rotation = 3e-4 * Eigen::Matrix3d::Identity();
+  const Consistency found = check_consistency(truth, samples);
   EXPECT_EQ(found.position.within, 1.0);
   EXPECT_EQ(found.rotation.within, 1.0);
 }
 
 TEST(Consistency, WhatIsNotYetGoodAtAStartIsLeftOut) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<ClaimedPose> claims = claims_of(truth);
-  for (std::size_t i = 0; i < 100; ++i) claims[i].good = false;
-  make_exact(claims[100], kGauge * truth[100].T);
-  EXPECT_EQ(check_consistency(truth, claims).poses, claims.size() - 100);
-  for (ClaimedPose& claim : claims) claim.good = false;
-  EXPECT_EQ(check_consistency(truth, claims).poses, 0U);
+  std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
+  for (std::size_t i = 0; i < 100; ++i) samples[i].good = false;
+  make_exact(samples[100], kGauge * truth[100].T);
+  EXPECT_EQ(check_consistency(truth, samples).poses, samples.size() - 100);
+  for (PoseCovarianceSample& sample : samples) sample.good = false;
+  EXPECT_EQ(check_consistency(truth, samples).poses, 0U);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "edged/core/dataset.hpp"
-#include "edged/core/timing.hpp"
 #include "edged/live/live_clock.hpp"
 #include "edged/live/read_ahead.hpp"
 #include "edged/live/shed_report.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "edged/core/dataset.hpp"
-#include "edged/core/timing.hpp"
 #include "edged/live/measurement_queue.hpp"
+#include "edged/timing.hpp"
 
 namespace edged {
 

@@ -3,7 +3,7 @@
 // What goes wrong in a recording: one thing at a known time, in the scene, in the motion or in the sensors.
 #pragma once
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/sim/trajectory.hpp"
 
 namespace edged {

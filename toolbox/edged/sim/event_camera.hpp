@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/measurement.hpp"
 #include "edged/sim/random.hpp"
 

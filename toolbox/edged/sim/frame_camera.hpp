@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/sim/random.hpp"
 
 namespace edged {

@@ -12,13 +12,13 @@ namespace {
 constexpr int kSide = 32;
 
 /// Exposure and mean level of the last of a number of frames of an even wall.
-struct Settled {
+struct Converged {
   double exposure_ms, level;
 };
 
-Settled settle(FrameCamera& camera, float radiance, int frames) {
+Converged settle(FrameCamera& camera, float radiance, int frames) {
   const std::vector<float> picture(kSide * kSide, radiance);
-  Settled settled{};
+  Converged settled{};
   for (int i = 0; i < frames; ++i) {
     settled.exposure_ms = camera.exposure_ms();
     camera.expose(picture, picture, 1e-3 * settled.exposure_ms);
@@ -49,10 +49,10 @@ TEST(FrameCamera, StaysDarkOrSaturatesAtTheBoundsOfItsExposure) {
   FrameCameraConfig config = automatic();
   config.min_exposure_ms = 1.0;
   FrameCamera camera(config, kSide, kSide, 1);
-  const Settled dark = settle(camera, 0.01F, 20);
+  const Converged dark = settle(camera, 0.01F, 20);
   EXPECT_EQ(dark.exposure_ms, 25.0);
   EXPECT_NEAR(dark.level, 0.01 * 25.0 * 2500.0 / 80.0, 0.5);
-  const Settled bright = settle(camera, 20.0F, 20);
+  const Converged bright = settle(camera, 20.0F, 20);
   EXPECT_EQ(bright.exposure_ms, 1.0);
   EXPECT_EQ(bright.level, 255.0);
 }

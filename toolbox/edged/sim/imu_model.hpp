@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
 #include "edged/sim/random.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/sim/flight.hpp"
 #include "edged/sim/trajectory.hpp"
 

@@ -106,10 +106,10 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
     Face face = scene_.faces[i];
     Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();
-    if (face.mover >= 0) {
-      const Mover& mover = scene_.movers[static_cast<std::size_t>(face.mover)];
-      face.centre_W += mover.displacement(t_s);
-      velocity_W = mover.velocity(t_s);
+    if (face.dynamic_object >= 0) {
+      const DynamicObject& dynamic_object = scene_.dynamic_objects[static_cast<std::size_t>(face.dynamic_object)];
+      face.centre_W += dynamic_object.displacement(t_s);
+      velocity_W = dynamic_object.velocity(t_s);
     }
     const double distance = face.normal_W.dot(T_W_C.translation() - face.centre_W);
     if (distance <= 1e-6) continue;

@@ -86,12 +86,12 @@ void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   scene.textures.emplace_back(cv::Mat(1, 1, CV_8UC1, cv::Scalar(180)));
 }
 
-/// Of the faces from `first` on: with the newest mover, and lit by themselves: where they come from may be no light
-/// map.
+/// Of the faces from `first` on: with the newest dynamic_object, and lit by themselves: where they come from may be no
+/// light map.
 void set_moving(Scene& scene, std::size_t first) {
   for (std::size_t i = first; i < scene.faces.size(); ++i) {
     Face& face = scene.faces[i];
-    face.mover = static_cast<int>(scene.movers.size()) - 1;
+    face.dynamic_object = static_cast<int>(scene.dynamic_objects.size()) - 1;
     face.texture %= scene.textures.size();
     face.glows = true;
   }
@@ -103,8 +103,8 @@ void add_person(Scene& scene, const SE3& T_W_C, double at_s, double light, Rando
   const Eigen::Vector3d left = up.cross(T_W_C.rotation() * Eigen::Vector3d::UnitZ()).normalized();
   Eigen::Matrix3d R_W_P;
   R_W_P << left, up.cross(left), up;
-  scene.movers.push_back({.velocity_W = 0.65 * left});
-  const Eigen::Vector3d met_by_s = at_s * scene.movers.back().velocity_W;
+  scene.dynamic_objects.push_back({.velocity_W = 0.65 * left});
+  const Eigen::Vector3d met_by_s = at_s * scene.dynamic_objects.back().velocity_W;
   const Eigen::Vector3d met_W = T_W_C.translation() + left.cross(up) - 0.35 * up;
   const std::size_t first = scene.faces.size();
   add_cuboid(scene, {SE3(Eigen::Quaterniond(R_W_P), met_W - met_by_s), {0.3, 0.15, 0.85}}, light, random);
@@ -135,7 +135,8 @@ Outlook outlook(std::span<const SE3> path_W_C) {
 }
 
 /// Head, trunk and two legs that stride; the trunk is as broad as wanted.
-void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const Mover& walk, double light, Random& random) {
+void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const DynamicObject& walk, double light,
+                Random& random) {
   struct Part {
     double z, half_breadth, half_height, stride_m;
   };
@@ -143,10 +144,10 @@ void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const Mover& w
   const double half = 0.5 * breadth_m;
   for (const Part& part : {Part{0.0, std::clamp(half, 0.07, 0.11), 0.13, 0.0}, Part{-0.45, half, 0.32, 0.0},
                            Part{-1.19, 0.4 * half, 0.42, 0.2}, Part{-1.19, 0.4 * half, 0.42, -0.2}}) {
-    Mover mover = walk;
+    DynamicObject dynamic_object = walk;
     if (part.stride_m != 0.0)
-      mover.swings.push_back({part.stride_m * T_W_P.R().col(0), kStep_rad_s, walk.swings[0].phase});
-    scene.movers.push_back(mover);
+      dynamic_object.swings.push_back({part.stride_m * T_W_P.R().col(0), kStep_rad_s, walk.swings[0].phase});
+    scene.dynamic_objects.push_back(dynamic_object);
     const std::size_t first = scene.faces.size();
     const SE3 T_W_part(T_W_P.rotation(), T_W_P * Eigen::Vector3d(0.0, 0.0, part.z));
     add_cuboid(scene, {T_W_part, {part.half_breadth, 0.06, part.half_height}}, light, random);
@@ -173,10 +174,10 @@ void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance&
     const double omega = 2.0 * std::numbers::pi / random.uniform(4.2, 5.6);
     // They come towards each other, so that the middle of the view is not left alone for long.
     const double phase = (i == 0 ? 0.0 : std::numbers::pi) + random.uniform(-0.4, 0.4) - omega * disturbance.at_s;
-    const Mover walk{.swings = {{kReach_m * view.left_W, omega, phase}},
-                     .from_s = disturbance.at_s,
-                     .to_s = disturbance.end_s(),
-                     .away_W = (i == 0 ? -kAway_m_s : kAway_m_s) * view.left_W};
+    const DynamicObject walk{.swings = {{kReach_m * view.left_W, omega, phase}},
+                             .from_s = disturbance.at_s,
+                             .to_s = disturbance.end_s(),
+                             .away_W = (i == 0 ? -kAway_m_s : kAway_m_s) * view.left_W};
     const Eigen::Vector3d head_W =
         view.mean_W + depth * view.ahead_W + (0.45 + view.slope * depth) * Eigen::Vector3d::UnitZ();
     add_walker(scene, SE3(Eigen::Quaterniond(R_W_P), head_W),
@@ -309,13 +310,13 @@ void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
 
 }  // namespace
 
-Eigen::Vector3d Mover::displacement(double t_s) const {
+Eigen::Vector3d DynamicObject::displacement(double t_s) const {
   Eigen::Vector3d d = t_s * velocity_W + (std::max(0.0, from_s - t_s) + std::max(0.0, t_s - to_s)) * away_W;
   for (const Swing& swing : swings) d += std::sin(swing.omega * t_s + swing.phase) * swing.reach_W;
   return d;
 }
 
-Eigen::Vector3d Mover::velocity(double t_s) const {
+Eigen::Vector3d DynamicObject::velocity(double t_s) const {
   Eigen::Vector3d v = velocity_W + (t_s < from_s ? -1.0 : t_s > to_s ? 1.0 : 0.0) * away_W;
   for (const Swing& swing : swings) v += swing.omega * std::cos(swing.omega * t_s + swing.phase) * swing.reach_W;
   return v;

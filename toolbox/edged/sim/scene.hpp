@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "edged/core/config.hpp"
+#include "edged/config.hpp"
 #include "edged/se3.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/light.hpp"
@@ -18,7 +18,7 @@
 namespace edged {
 
 /// How a thing moves by itself.
-struct Mover {
+struct DynamicObject {
   /// To and fro: reach_W * sin(omega * t + phase).
   struct Swing {
     Eigen::Vector3d reach_W;  ///< [m]
@@ -40,7 +40,7 @@ struct Mover {
 struct Face {
   Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal, u x v = -normal
   double half_u = 0.0, half_v = 0.0;             ///< [m]
-  int mover = -1;                                ///< of the scene, with which it moves; -1: it stays
+  int dynamic_object = -1;                       ///< of the scene, with which it moves; -1: it stays
   std::size_t texture = 0;                       ///< index into the scene
   float texels_per_m = 256.0F;
   float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
@@ -52,7 +52,7 @@ struct Face {
 struct Scene {
   std::vector<Texture> textures;
   std::vector<Face> faces;
-  std::vector<Mover> movers;
+  std::vector<DynamicObject> dynamic_objects;
   std::optional<Lighting> lighting;    ///< none: light 1 everywhere
   std::optional<Spotlight> spotlight;  ///< on top of it
 };

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "edged/estimator/estimator_config.hpp"
 #include "edged/estimator/factors/factor.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {

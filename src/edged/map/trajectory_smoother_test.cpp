@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A body that goes round a wall of points, and odometry that drifts by the same each step.
-#include "edged/map/flight_record.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,43 +37,43 @@ class FlightRecordTest : public testing::Test {
   }
   void add(double t) {
     record_.add({instant(t), T_O_B_});
-    told_.push_back({instant(t), T_M_O_ * T_O_B_});
+    causal_.push_back({instant(t), T_M_O_ * T_O_B_});
   }
   /// The wall as that keyframe has it, seen from where the body is in truth.
   void look(double t, double made_at, std::size_t keyframe) {
-    std::vector<MapSight> sights;
+    std::vector<MapObservation> observations;
     for (const double x : {-1.2, 0.1, 1.3}) {
       for (const double y : {-1.1, 0.0, 1.0}) {
         const Eigen::Vector3d p(x, y, 3.0 + x + 0.8 * y);  // no plane across: turns are told from shifts
         const Eigen::Vector3d p_K = true_pose(made_at).inverse() * p, p_B = true_pose(t).inverse() * p;
-        sights.push_back({keyframe, p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
+        observations.push_back({keyframe, p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
       }
     }
-    record_.add_sights({instant(t), T_O_B_}, SE3(), sights, T_M_O_);
+    record_.add_observations({instant(t), T_O_B_}, SE3(), observations, T_M_O_);
   }
   static double error(const StampedPose& pose) {
     const double t = to_seconds(pose.t - Timestamp{});
     return (pose.T.translation() - true_pose(t).translation()).norm();
   }
 
-  FlightRecord record_{MapFilterConfig{}};
+  TrajectorySmoother record_{MapFilterConfig{}};
   SE3 T_O_B_, T_M_O_;
-  Trajectory told_;
+  Trajectory causal_;
 };
 
 TEST_F(FlightRecordTest, GivesBackWhatWasToldWhereNothingWasFoundAgain) {
   restart(0.0, SE3());
   fly(0.0, 4.0);
-  record_.settle({instant(2.0), SE3()});
-  record_.add_keyframe({instant(2.0), told_[19].T});
+  record_.refine({instant(2.0), SE3()});
+  record_.add_keyframe({instant(2.0), causal_[19].T});
   restart(5.0, SE3(so3::exp({0, 0, 0.3}), {0.1, 0.2, 0.3}));
   fly(5.0, 7.0);
-  const FlightRecord::Path path = record_.path();
-  ASSERT_EQ(path.poses.size(), told_.size());
-  for (std::size_t i = 0; i < told_.size(); ++i) {
-    EXPECT_EQ(path.poses[i].t, told_[i].t);
-    EXPECT_EQ(path.poses[i].T.translation(), told_[i].T.translation());
-    EXPECT_EQ(path.poses[i].T.rotation().coeffs(), told_[i].T.rotation().coeffs());
+  const TrajectorySmoother::Path path = record_.path();
+  ASSERT_EQ(path.poses.size(), causal_.size());
+  for (std::size_t i = 0; i < causal_.size(); ++i) {
+    EXPECT_EQ(path.poses[i].t, causal_[i].t);
+    EXPECT_EQ(path.poses[i].T.translation(), causal_[i].T.translation());
+    EXPECT_EQ(path.poses[i].T.rotation().coeffs(), causal_[i].T.rotation().coeffs());
   }
   EXPECT_EQ(path.keyframes.size(), 1U);
 }
@@ -89,7 +89,7 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
   fly(0.0, 0.5, 0.0);
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 8.5);
-  ASSERT_GT(error(told_.back()), 0.06);
+  ASSERT_GT(error(causal_.back()), 0.06);
   look(8.5, 0.5, keyframe);
   const Trajectory poses = record_.path().poses;
   EXPECT_LT(error(poses.back()), 0.005);
@@ -113,9 +113,9 @@ TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes
       look(now, made_at[keyframe], keyframe);
     }
   }
-  ASSERT_GT(error(std::ranges::max(told_, {}, error)), 0.05) << "it drifts until a place is found again";
-  const FlightRecord::Path path = record_.path();
-  ASSERT_EQ(path.poses.size(), told_.size());
+  ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is found again";
+  const TrajectorySmoother::Path path = record_.path();
+  ASSERT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
@@ -124,11 +124,11 @@ TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
   fly(0.0, 0.5, 0.0);
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 4.0, 0.0);
-  T_O_B_.translation().z() += 0.01;  // one pose that was told wrong, and mended within the window
+  T_O_B_.translation().z() += 0.01;  // one pose that was causal wrong, and mended within the window
   fly(4.0, 4.1, 0.0);
   T_O_B_.translation().z() -= 0.01;
   fly(4.1, 8.5, 0.0);
-  for (const double t : {4.0, 4.1, 4.2}) record_.settle({instant(t), true_pose(t)});
+  for (const double t : {4.0, 4.1, 4.2}) record_.refine({instant(t), true_pose(t)});
   look(8.5, 0.5, keyframe);
   for (const StampedPose& pose : record_.path().poses) EXPECT_LT(error(pose), 1e-3);
 }
@@ -145,7 +145,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   T_M_O_ = off * O;
   record_.restart({instant(5.0), T_O_B_}, T_M_O_, 0.1, 0.05);
   fly(5.0, 8.0, 0.0);
-  EXPECT_GT(error(told_.back()), 0.5);
+  EXPECT_GT(error(causal_.back()), 0.5);
   T_M_O_ = O;
   look(8.0, 0.5, keyframe);
   record_.forget_guess();
@@ -165,8 +165,8 @@ TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   fly(5.0, 8.0, 0.0);
   look(8.0, 7.5, 1);
   record_.forget_guess();
-  const FlightRecord::Path path = record_.path();
-  EXPECT_EQ(path.poses.size(), told_.size());
+  const TrajectorySmoother::Path path = record_.path();
+  EXPECT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
   for (std::size_t k = 0; k < loaded.size(); ++k) {
     EXPECT_LT((path.keyframes[k].inverse() * loaded[k]).log().norm(), 1e-6);
@@ -181,8 +181,8 @@ TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
   fly(2.0, 3.0, 0.0);
   record_.move_before(own.inverse());
   const Trajectory moved = record_.path().poses;
-  EXPECT_LT((moved.front().T.inverse() * own.inverse() * told_.front().T).log().norm(), 1e-12);
-  EXPECT_EQ(moved.back().T.matrix(), told_.back().T.matrix()) << "the present start has been moved by the map";
+  EXPECT_LT((moved.front().T.inverse() * own.inverse() * causal_.front().T).log().norm(), 1e-12);
+  EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the present start has been moved by the map";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/frontend/dim_image.hpp"
+#include "edged/frontend/low_light.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,14 @@ cv::Mat texture(double dark, double bright, double dx, double noise, unsigned se
   return grey;
 }
 
-TEST(DimImage, LeavesALitImageAsItIs) {
-  DimImageStretch stretch({});
+TEST(LowLight, LeavesALitImageAsItIs) {
+  LowLightNormalizer stretch({});
   const cv::Mat lit = texture(20, 200, 0, 1.0, 1);
   EXPECT_EQ(stretch(lit).data, lit.data);
 }
 
-TEST(DimImage, StretchesAFewGreyLevelsToMany) {
-  DimImageStretch stretch({});
+TEST(LowLight, StretchesAFewGreyLevelsToMany) {
+  LowLightNormalizer stretch({});
   const cv::Mat out = stretch(texture(2, 20, 0, 1.2, 1));
   double least = 0, most = 0;
   cv::minMaxLoc(out, &least, &most);
@@ -48,17 +48,17 @@ TEST(DimImage, StretchesAFewGreyLevelsToMany) {
   EXPECT_LT(most, 255.0);
 }
 
-TEST(DimImage, HoldsItsGainWhileTheLightFlickers) {
-  DimImageStretch stretch({});
+TEST(LowLight, HoldsItsGainWhileTheLightFlickers) {
+  LowLightNormalizer stretch({});
   stretch(texture(2, 20, 0, 0.0, 1));
   const cv::Mat a = stretch(texture(2, 20, 0, 0.0, 1)), b = stretch(texture(2, 21, 0, 0.0, 1));
   EXPECT_LT(cv::norm(a, b, cv::NORM_INF), 16.0);  // one level times a gain of 9: no more than the light did
 }
 
-TEST(DimImage, MakesOpticalFlowPossibleInNoise) {
+TEST(LowLight, MakesOpticalFlowPossibleInNoise) {
   constexpr double kShift_px = 3.3;
   KltConfig klt;
-  DimImageStretch stretch({});
+  LowLightNormalizer stretch({});
   const auto median_error = [&](const cv::Mat& from, const cv::Mat& to, std::size_t& found) {
     ImagePyramid a, b;
     a.build(from, klt);

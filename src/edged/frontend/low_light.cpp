@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/frontend/dim_image.hpp"
+#include "edged/frontend/low_light.hpp"
 
 #include <algorithm>
 #include <array>
@@ -36,7 +36,7 @@ Range grey_range(const cv::Mat& image) {
 
 }  // namespace
 
-void DimImageConfig::visit(ConfigFields& fields) {
+void LowLightConfig::visit(ConfigFields& fields) {
   fields.add("below_range", below_range,
              {"grey", 0, 255, "frames with a smaller range of grey levels are smoothed and stretched; 0: none"});
   fields.add("target_range", target_range, {"grey", 10, 230, "range of grey levels they are stretched to"});
@@ -44,7 +44,7 @@ void DimImageConfig::visit(ConfigFields& fields) {
   fields.add("smoothing_px", smoothing_px, {"px", 0.3, 10, "blur before the stretch, standard deviation"});
 }
 
-cv::Mat DimImageStretch::operator()(const cv::Mat& image) {
+cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {
   if (image.empty() || image.type() != CV_8UC1) return image;  // the tracker says what it wants
   const Range range = grey_range(image);
   const double width = std::max(range.bright - range.dark, 1.0);

@@ -15,8 +15,9 @@
 namespace edged {
 
 /// A point of the map that was found again in an image.
-struct FoundPoint {
-  Timestamp keyframe;     ///< when the keyframe was made that it belongs to, IMU clock: how far this sight reaches back
+struct MapMatch {
+  Timestamp
+      keyframe;  ///< when the keyframe was made that it belongs to, IMU clock: how far this observation reaches back
   Eigen::Vector2d pixel;  ///< where it was found: undistorted on the event frame, as given on the standard frame
   Eigen::Vector3d p_W;    ///< where the map has it [m]
 };
@@ -37,7 +38,7 @@ struct MappedKeyframe {
 };
 
 /// Not causal: what came later has its part in it. What was known at its time is in the steps.
-struct Hindsight {
+struct FinalTrajectory {
   Trajectory poses;                       ///< T_W_B at the time of each Good or Degraded step, IMU clock
   std::vector<MappedKeyframe> keyframes;  ///< those that the map still has
 };

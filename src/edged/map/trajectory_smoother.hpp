@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "edged/map/map_config.hpp"
 #include "edged/map/map_errors.hpp"
+#include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 
@@ -18,9 +18,9 @@ namespace edged {
 
 /// Calls come in order of time, `load` or `restart` first. Frames: O of the odometry, a new one each start; M of the
 /// map. Half a megabyte a minute; path() takes six times that while it works.
-class FlightRecord {
+class TrajectorySmoother {
  public:
-  explicit FlightRecord(const MapFilterConfig& config) : config_(config) {}
+  explicit TrajectorySmoother(const MapFilterConfig& config) : config_(config) {}
 
   /// Nothing has started yet.
   bool empty() const { return sessions_.empty(); }
@@ -36,11 +36,12 @@ class FlightRecord {
   /// A pose that was given out: one of the path.
   void add(const StampedPose& T_O_B);
   /// A keyframe has left the odometry's window: where it was at an instant that was added is now better known.
-  void settle(const StampedPose& T_O_K);
-  /// The map keeps that keyframe. Returns its number, by which sights speak of it from now on.
+  void refine(const StampedPose& T_O_K);
+  /// The map keeps that keyframe. Returns its number, by which observations speak of it from now on.
   std::size_t add_keyframe(const StampedPose& T_O_K);
   /// Points were found in an image, by which O lies at T_M_O from now on.
-  void add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights, const SE3& T_M_O);
+  void add_observations(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapObservation> observations,
+                        const SE3& T_M_O);
 
   struct Path {
     Trajectory poses;            ///< T_M_B of all that were added
@@ -55,7 +56,7 @@ class FlightRecord {
     Timestamp t;
     SE3 T;
   };
-  struct Sight {
+  struct Observation {
     std::uint32_t keyframe;
     Eigen::Vector3f p_K, depth_sigma_K;
     Eigen::Vector2f seen;
@@ -65,7 +66,7 @@ class FlightRecord {
     StampedPose T_O_B;
     SE3 T_B_C;
     double sigma;  ///< the smallest
-    std::vector<Sight> sights;
+    std::vector<Observation> observations;
   };
   struct Keyframe {
     StampedPose T_O_K;
@@ -76,8 +77,8 @@ class FlightRecord {
     StampedPose start;  ///< T_O_B
     double position_sigma, yaw_sigma;
     std::vector<Moved> T_M_O;
-    Trajectory told;             ///< T_O_B
-    std::vector<Moved> settled;  ///< T_settled_told, on the left
+    Trajectory causal;           ///< T_O_B
+    std::vector<Moved> refined;  ///< T_refined_causal, on the left
     std::vector<Keyframe> keyframes;
     std::vector<View> views;
   };
@@ -90,7 +91,7 @@ class FlightRecord {
   using Nodes = std::map<Timestamp, Node>;
   class Fit;
 
-  bool found_again() const;
+  bool relocalized() const;
   static SE3 between(const std::vector<Moved>& moved, Timestamp t);
   static SE3 newest(const std::vector<Moved>& moved, Timestamp t);
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "claims.hpp"
+#include "covariance_samples.hpp"
 
 #include <gtest/gtest.h>
 
 namespace edged {
 namespace {
 
-TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
-  Claims gathered;
+TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
+  CovarianceSamples gathered;
   Step step, lost;
   const auto add_at = [&](double t_s, Step& added) {
     added.t = timestamp_from_seconds(t_s);
@@ -25,17 +25,17 @@ TEST(Claims, AreThePosesWithAFreshCovarianceByStart) {
   add_at(6, step);
   step.status = TrackingStatus::Degraded;
   add_at(7, step);
-  step.found_again = true;
+  step.relocalized = true;
   add_at(8, step);
-  const std::vector<ClaimedPose>& claims = gathered.all();
-  ASSERT_EQ(claims.size(), 5u);
+  const std::vector<PoseCovarianceSample>& samples = gathered.all();
+  ASSERT_EQ(samples.size(), 5u);
   const std::vector<double> stamps{2, 4, 6, 7, 8};
-  for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, timestamp_from_seconds(stamps[i]));
-  EXPECT_FALSE(claims[3].good);
-  EXPECT_EQ(claims[0].start, claims[1].start);
-  EXPECT_NE(claims[1].start, claims[2].start);
-  EXPECT_EQ(claims[2].start, claims[3].start);
-  EXPECT_NE(claims[3].start, claims[4].start) << "it has gone to another place";
+  for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(samples[i].t, timestamp_from_seconds(stamps[i]));
+  EXPECT_FALSE(samples[3].good);
+  EXPECT_EQ(samples[0].start, samples[1].start);
+  EXPECT_NE(samples[1].start, samples[2].start);
+  EXPECT_EQ(samples[2].start, samples[3].start);
+  EXPECT_NE(samples[3].start, samples[4].start) << "it has gone to another place";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "run_hindsight.hpp"
+#include "final_trajectory_files.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -50,8 +50,8 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
          vertices;
 }
 
-void write_hindsight(const std::filesystem::path& folder, const OutputFrame& frame, const Hindsight& known,
-                     const std::vector<std::string>& comments) {
+void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
+                            const std::vector<std::string>& comments) {
   TrajectoryWriter tum(folder / "trajectory_final.tum", TrajectoryFormat::Tum, comments);
   for (const StampedPose& pose : known.poses) tum.add(frame(pose));
   tum.flush();

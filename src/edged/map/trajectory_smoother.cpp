@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/map/flight_record.hpp"
+#include "edged/map/trajectory_smoother.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -13,7 +13,7 @@ namespace edged {
 namespace {
 
 // Of the odometry's drift as the filter has it: looks at both ends of a stretch tell more of it than those behind.
-constexpr double kDriftInHindsight = 3.0;
+constexpr double kFinalDriftScale = 3.0;
 constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
 // Looks that are fitted with the keyframes: each hangs together with the one before and with most keyframes, and time
@@ -31,19 +31,20 @@ Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
 }  // namespace
 
 /// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
-class FlightRecord::Fit {
+class TrajectorySmoother::Fit {
  public:
   /// One look of so many. together: keyframes stay where that has found them, which leaves a chain, of which time and
   /// memory are linear.
-  Fit(const FlightRecord& record, std::size_t of, const Fit* together = nullptr)
+  Fit(const TrajectorySmoother& record, std::size_t of, const Fit* together = nullptr)
       : config_(record.config_), of_(of), together_(together), keyframes_(record.keyframes_) {
-    config_.drift_m *= kDriftInHindsight;
-    config_.drift_yaw_deg *= kDriftInHindsight;
-    config_.drift_tilt_deg *= kDriftInHindsight;
+    config_.drift_m *= kFinalDriftScale;
+    config_.drift_yaw_deg *= kFinalDriftScale;
+    config_.drift_tilt_deg *= kFinalDriftScale;
     for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
     for (const Session& session : record.sessions_) add_session(session);
-    for (const Session& session : record.sessions_) add_sights(session, nodes_[&session - record.sessions_.data()]);
-    if (record.found_again()) graph_.solve();
+    for (const Session& session : record.sessions_)
+      add_observations(session, nodes_[&session - record.sessions_.data()]);
+    if (record.relocalized()) graph_.solve();
   }
 
   const SE3& keyframe(std::size_t number) const { return graph_.poses()[keyframes_[number]]; }
@@ -62,8 +63,8 @@ class FlightRecord::Fit {
 
   void add_session(const Session& session) {
     Nodes nodes;
-    for (const StampedPose* told : instants(session))
-      nodes[told->t].T_O_B = between(session.settled, told->t) * told->T;
+    for (const StampedPose* causal : instants(session))
+      nodes[causal->t].T_O_B = between(session.refined, causal->t) * causal->T;
     for (const Keyframe& keyframe : session.keyframes) {
       Node& node = nodes[keyframe.T_O_K.t];
       node.T_O_B = keyframe.T_O_K.T;
@@ -87,19 +88,19 @@ class FlightRecord::Fit {
   }
 
   std::vector<const StampedPose*> instants(const Session& session) const {
-    std::vector<const StampedPose*> told = {&session.start};
-    for (std::size_t i = 0; i < session.views.size(); i += of_) told.push_back(&session.views[i].T_O_B);
-    return told;
+    std::vector<const StampedPose*> causal = {&session.start};
+    for (std::size_t i = 0; i < session.views.size(); i += of_) causal.push_back(&session.views[i].T_O_B);
+    return causal;
   }
 
-  void add_sights(const Session& session, const Nodes& nodes) {
+  void add_observations(const Session& session, const Nodes& nodes) {
     for (std::size_t i = 0; i < session.views.size(); i += of_) {
       const View& view = session.views[i];
-      std::vector<MapSight> sights;
-      for (const Sight& s : view.sights)
-        sights.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
-                          s.seen.cast<double>(), s.stretch * view.sigma});
-      graph_.add_sights(nodes.at(view.T_O_B.t).number, view.T_B_C, sights);
+      std::vector<MapObservation> observations;
+      for (const Observation& s : view.observations)
+        observations.push_back({keyframes_[s.keyframe], s.p_K.cast<double>(), s.depth_sigma_K.cast<double>(),
+                                s.seen.cast<double>(), s.stretch * view.sigma});
+      graph_.add_observations(nodes.at(view.T_O_B.t).number, view.T_B_C, observations);
     }
   }
 
@@ -111,12 +112,12 @@ class FlightRecord::Fit {
   std::vector<Nodes> nodes_;            ///< by session
 };
 
-bool FlightRecord::found_again() const {
+bool TrajectorySmoother::relocalized() const {
   return std::ranges::any_of(sessions_, [](const Session& session) { return !session.views.empty(); });
 }
 
 /// Between the two around t; the first and the last hold beyond.
-SE3 FlightRecord::between(const std::vector<Moved>& moved, Timestamp t) {
+SE3 TrajectorySmoother::between(const std::vector<Moved>& moved, Timestamp t) {
   const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
   if (after == moved.begin()) return after->T;
   const auto before = std::prev(after);
@@ -125,70 +126,71 @@ SE3 FlightRecord::between(const std::vector<Moved>& moved, Timestamp t) {
 }
 
 /// The newest at t, without one the first.
-SE3 FlightRecord::newest(const std::vector<Moved>& moved, Timestamp t) {
+SE3 TrajectorySmoother::newest(const std::vector<Moved>& moved, Timestamp t) {
   const auto after = std::ranges::upper_bound(moved, t, {}, &Moved::t);
   return after == moved.begin() ? after->T : std::prev(after)->T;
 }
 
-void FlightRecord::load(std::span<const SE3> T_M_K) {
+void TrajectorySmoother::load(std::span<const SE3> T_M_K) {
   loaded_.assign(T_M_K.begin(), T_M_K.end());
   keyframes_ = loaded_.size();
 }
 
-void FlightRecord::restart(const StampedPose& T_O_B, const SE3& T_M_O, double position_sigma, double yaw_sigma) {
+void TrajectorySmoother::restart(const StampedPose& T_O_B, const SE3& T_M_O, double position_sigma, double yaw_sigma) {
   sessions_.push_back({T_O_B, position_sigma, yaw_sigma, {{T_O_B.t, T_M_O}}, {}, {{T_O_B.t, SE3()}}, {}, {}});
 }
 
-void FlightRecord::forget_guess() {
+void TrajectorySmoother::forget_guess() {
   std::vector<Moved>& T_M_O = sessions_.back().T_M_O;
   T_M_O.erase(T_M_O.begin(), std::prev(T_M_O.end()));
 }
 
-void FlightRecord::move_before(const SE3& T_M_before) {
+void TrajectorySmoother::move_before(const SE3& T_M_before) {
   for (auto session = sessions_.begin(); session != std::prev(sessions_.end()); ++session) {
     for (Moved& moved : session->T_M_O) moved.T = T_M_before * moved.T;
   }
 }
 
-void FlightRecord::add(const StampedPose& T_O_B) { sessions_.back().told.push_back(T_O_B); }
+void TrajectorySmoother::add(const StampedPose& T_O_B) { sessions_.back().causal.push_back(T_O_B); }
 
-void FlightRecord::settle(const StampedPose& T_O_K) {
+void TrajectorySmoother::refine(const StampedPose& T_O_K) {
   Session& session = sessions_.back();
-  const auto told = std::ranges::lower_bound(session.told, T_O_K.t, {}, &StampedPose::t);
-  if (told == session.told.end() || told->t != T_O_K.t || session.settled.back().t >= T_O_K.t) return;
-  session.settled.push_back({T_O_K.t, T_O_K.T * told->T.inverse()});
+  const auto causal = std::ranges::lower_bound(session.causal, T_O_K.t, {}, &StampedPose::t);
+  if (causal == session.causal.end() || causal->t != T_O_K.t || session.refined.back().t >= T_O_K.t) return;
+  session.refined.push_back({T_O_K.t, T_O_K.T * causal->T.inverse()});
 }
 
-std::size_t FlightRecord::add_keyframe(const StampedPose& T_O_K) {
+std::size_t TrajectorySmoother::add_keyframe(const StampedPose& T_O_K) {
   sessions_.back().keyframes.push_back({T_O_K, keyframes_});
   return keyframes_++;
 }
 
-void FlightRecord::add_sights(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapSight> sights,
-                              const SE3& T_M_O) {
-  View view{T_O_B, T_B_C, std::ranges::min(sights, {}, &MapSight::sigma).sigma, {}};
-  for (const MapSight& s : sights)
-    view.sights.push_back({static_cast<std::uint32_t>(s.keyframe), s.p_K.cast<float>(), s.depth_sigma_K.cast<float>(),
-                           s.seen.cast<float>(), static_cast<float>(s.sigma / view.sigma)});
+void TrajectorySmoother::add_observations(const StampedPose& T_O_B, const SE3& T_B_C,
+                                          std::span<const MapObservation> observations, const SE3& T_M_O) {
+  View view{T_O_B, T_B_C, std::ranges::min(observations, {}, &MapObservation::sigma).sigma, {}};
+  for (const MapObservation& s : observations)
+    view.observations.push_back({static_cast<std::uint32_t>(s.keyframe), s.p_K.cast<float>(),
+                                 s.depth_sigma_K.cast<float>(), s.seen.cast<float>(),
+                                 static_cast<float>(s.sigma / view.sigma)});
   sessions_.back().T_M_O.push_back({T_O_B.t, T_M_O});
   sessions_.back().views.push_back(std::move(view));
 }
 
-FlightRecord::Path FlightRecord::path() const {
+TrajectorySmoother::Path TrajectorySmoother::path() const {
   std::size_t looks = 0;
   for (const Session& session : sessions_) looks += session.views.size();
   const std::size_t of = looks / kMostTogether + 1;
   const Fit together(*this, of);
   const std::optional<Fit> chain = of > 1 ? std::optional<Fit>(std::in_place, *this, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
-  const bool as_told = !found_again();
+  const bool as_given = !relocalized();
   Path path;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const Session& session = sessions_[i];
     const std::vector<Moved> T_M_O = fit.T_M_O(i);
-    for (const auto& [t, T_O_B] : session.told) {
+    for (const auto& [t, T_O_B] : session.causal) {
       path.poses.push_back(
-          {t, as_told ? newest(session.T_M_O, t) * T_O_B : between(T_M_O, t) * between(session.settled, t) * T_O_B});
+          {t, as_given ? newest(session.T_M_O, t) * T_O_B : between(T_M_O, t) * between(session.refined, t) * T_O_B});
     }
   }
   for (std::size_t k = 0; k < keyframes_; ++k) path.keyframes.push_back(fit.keyframe(k));

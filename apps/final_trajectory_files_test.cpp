@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "run_hindsight.hpp"
+#include "final_trajectory_files.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,22 +14,24 @@
 namespace edged {
 namespace {
 
-class RunHindsight : public testing::Test {
+class FinalTrajectoryFiles : public testing::Test {
  protected:
-  RunHindsight() { std::filesystem::create_directories(folder_); }
-  ~RunHindsight() override { std::filesystem::remove_all(folder_); }
+  FinalTrajectoryFiles() { std::filesystem::create_directories(folder_); }
+  ~FinalTrajectoryFiles() override { std::filesystem::remove_all(folder_); }
   std::vector<std::string> lines(const char* file) const {
     std::ifstream in(folder_ / file);
     std::vector<std::string> all;
     for (std::string line; std::getline(in, line);) all.push_back(line);
     return all;
   }
-  void write(const Hindsight& known) const { write_hindsight(folder_, OutputFrame({}, "body"), known, {"head"}); }
+  void write(const FinalTrajectory& known) const {
+    write_final_trajectory(folder_, OutputFrame({}, "body"), known, {"head"});
+  }
 
-  const std::filesystem::path folder_ = testing::TempDir() + "edged_hindsight_" + std::to_string(getpid());
+  const std::filesystem::path folder_ = testing::TempDir() + "edged_final_" + std::to_string(getpid());
 };
 
-TEST_F(RunHindsight, LeavesCompleteFilesWithoutAPoseOrAMap) {
+TEST_F(FinalTrajectoryFiles, LeavesCompleteFilesWithoutAPoseOrAMap) {
   write({});
   EXPECT_TRUE(read_tum(folder_ / "trajectory_final.tum").empty());
   EXPECT_EQ(lines("trajectory_final.tum")[0], "# head");
@@ -39,7 +41,7 @@ TEST_F(RunHindsight, LeavesCompleteFilesWithoutAPoseOrAMap) {
   EXPECT_EQ(lines("map.ply")[4], "element vertex 0");
 }
 
-TEST_F(RunHindsight, HoldsPosesKeyframesAndPoints) {
+TEST_F(FinalTrajectoryFiles, HoldsPosesKeyframesAndPoints) {
   const SE3 T(so3::exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
   const MappedKeyframe::Point point{{0.5, -0.25, 2.0}, 77, 9, 4}, bad{{0.0, 0.0, std::nan("")}, 1, 0, 0};
   const Timestamp t = timestamp_from_ns(1'500'000'000);

@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "claims.hpp"
+#include "covariance_samples.hpp"
 
 namespace edged {
 
-void Claims::add(const Step& step) {
+void CovarianceSamples::add(const Step& step) {
   const bool good = step.status == TrackingStatus::Good;
   // Packets after the first of a loss only skip a number.
-  if (step.status == TrackingStatus::Lost || step.found_again) ++start_;
+  if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
   if (!step.covariance || !is_tracking(step.status)) return;
   const auto& [position, rotation] = *step.covariance;
-  const auto old = [&](const ClaimedPose& last) {
+  const auto old = [&](const PoseCovarianceSample& last) {
     return last.start == start_ && last.good && last.position == position;
   };
-  if (good && !claims_.empty() && old(claims_.back())) return;
-  claims_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
+  if (good && !samples_.empty() && old(samples_.back())) return;
+  samples_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
 }
 
 }  // namespace edged

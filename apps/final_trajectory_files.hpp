@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "edged/camera/output_frame.hpp"
-#include "edged/hindsight.hpp"
+#include "edged/final_trajectory.hpp"
 
 namespace edged {
 
 /// trajectory_final.tum with the poses of `frame`, keyframes.csv and map.ply with those of the body. comments head the
 /// first. All are complete where there is no map, or not a pose.
-void write_hindsight(const std::filesystem::path& folder, const OutputFrame& frame, const Hindsight& known,
-                     const std::vector<std::string>& comments);
+void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
+                            const std::vector<std::string>& comments);
 
 /// Their points, for viewers of point clouds.
 std::string map_ply(const std::vector<MappedKeyframe>& keyframes);

@@ -12,14 +12,14 @@ namespace edged {
 
 /// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start,
 /// and so does being found again.
-class Claims {
+class CovarianceSamples {
  public:
   /// Every step, in time order.
   void add(const Step& step);
-  const std::vector<ClaimedPose>& all() const { return claims_; }
+  const std::vector<PoseCovarianceSample>& all() const { return samples_; }
 
  private:
-  std::vector<ClaimedPose> claims_;
+  std::vector<PoseCovarianceSample> samples_;
   int start_ = 0;
 };
 
