@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "edged/config.hpp"
 #include "edged/rig.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 
@@ -74,6 +76,25 @@ struct DepthFactorConfig {
   void visit(ConfigFields& fields);
 };
 
+/// A barometer, or a range finder above flat ground.
+struct HeightConfig {
+  bool enabled = true;
+  double sigma_m = 0.3;     ///< of a sample that has none of its own
+  double bias_walk = 0.05;  ///< [m/sqrt(s)]
+  void visit(ConfigFields& fields);
+};
+
+/// Wheel odometry, optical flow with range, a DVL.
+struct VelocityConfig {
+  bool enabled = true;
+  double sigma_mps = 0.1;              ///< of a sample that has none of its own
+  std::string position_m = "0 0 0";    ///< of the sensor in B
+  std::string rotation_deg = "0 0 0";  ///< roll, pitch, yaw of its axes in B
+  /// The last two; InputError where they are no three numbers.
+  SE3 T_B_S() const;
+  void visit(ConfigFields& fields);
+};
+
 struct EstimatorConfig {
   int recent_states = 3;                                 ///< newest states, keyframes or not
   int keyframes = 8;                                     ///< older keyframes
@@ -104,6 +125,8 @@ struct EstimatorConfig {
   LandmarkConfig landmarks;
   StandstillConfig standstill;
   DepthFactorConfig depth_factor;
+  HeightConfig height;  ///< the options of these two stand by themselves, not in visit
+  VelocityConfig velocity;
   void visit(ConfigFields& fields);
 };
 

@@ -18,9 +18,10 @@ class CameraViews {
   /// With the states' poses at Window::linearisation_point.
   static CameraViews at_first_estimates(const Window& window);
 
-  const CameraOnBody& camera(std::size_t camera) const { return cameras_[camera]; }
   /// place: of the state in the window, the oldest being 0.
-  const CameraAt& at(std::size_t camera, std::size_t place) const { return views_[camera * states_ + place]; }
+  CameraView at(std::size_t camera, std::size_t place) const {
+    return {cameras_[camera], views_[camera * states_ + place]};
+  }
   /// From the pose that was taken to the present one.
   const Vector6d& moved(std::size_t place) const { return moved_[place]; }
 

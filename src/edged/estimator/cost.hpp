@@ -15,32 +15,32 @@ namespace edged {
 /// marginalised, not dropped.
 enum class Observations { All, OfKeyframes };
 
-/// An observation of a landmark and its neighbour towards the anchor.
+/// An observation of a landmark and the one before it in the track of the same camera. The errors of two cameras are
+/// independent: the first observation of another camera than the anchor's stands beside the anchor's.
 struct TrackStep {
-  StateId before, seen;
+  ObservationKey before, seen;
   double correlation;  ///< of the errors of the two
   double sigma;        ///< of what the observation before does not tell, on the unit plane
 };
 
-/// The observations of a landmark one after the other, from its anchor's on, then those before the anchor's, back in
-/// time.
+/// The observations of a landmark one after the other: of the anchor's camera from the anchor on, then back in time
+/// from there; then each other camera's in order.
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
                                    Observations observations = Observations::All);
 
 /// A residual (2) of a landmark: weight * (e - correlation * e of the residual before).
 struct LandmarkResidual {
-  StateId seen;
+  ObservationKey seen;
   std::size_t place;      ///< of the state in the window, the oldest being 0
   Eigen::Vector2d point;  ///< on the unit plane
-  double correlation;     ///< 0 where the observation before is the anchor's: that is exact by the landmark's choice
+  double correlation;     ///< 0 where the one before is the anchor's, which is exact by the landmark's choice
   double weight;          ///< 1 / sigma
 };
 
 /// All that the views of a landmark say of it.
 struct LandmarkTerm {
   FeatureId id = 0;
-  std::size_t camera = 0;
-  StateId anchor = 0;
+  ObservationKey anchor;
   std::size_t anchor_place = 0;
   Eigen::Vector2d point;                  ///< in the anchor view
   const double* inverse_depth = nullptr;  ///< in the window
@@ -50,7 +50,8 @@ struct LandmarkTerm {
 
 /// The terms of a window, each once. They borrow from it: use them before it changes in more than its blocks' values.
 struct Cost {
-  std::vector<Factor> factors;
+  std::shared_ptr<const LinearPriorFactor> prior;  ///< what marginalisation has left; null without
+  std::vector<std::shared_ptr<const Factor>> factors;
   std::vector<LandmarkTerm> landmarks;
 };
 

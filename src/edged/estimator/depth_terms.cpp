@@ -29,7 +29,7 @@ std::optional<Middle> middle_landmarks(const Window& window, StateId state, cons
   const SE3 T_E_W = (window.states().at(state).T_W_B() * T_B_E(window, region)).inverse();
   std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
   for (const auto& [id, feature] : window.features()) {
-    if (!feature.anchor || !feature.seen.contains(state) || feature.inverse_depth <= 0.0) continue;
+    if (!feature.anchor || !feature.seen_at(state) || feature.inverse_depth <= 0.0) continue;
     const Eigen::Vector3d p_E = T_E_W * window.position(feature);
     if (p_E.z() * feature.inverse_depth < kNearestShare) continue;
     const Eigen::Array2d point = p_E.hnormalized();
@@ -56,33 +56,22 @@ double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::
   return std::max(kLeastSigma, std::hypot(config.noise_share * depth.sigma_ln, sampling));
 }
 
-Factor depth_factor(const Window& window, StateId state, const Middle& middle) {
+std::shared_ptr<const Factor> depth_factor(const Window& window, StateId state, const Middle& middle) {
   const RegionDepth& depth = *window.states().at(state).depth;
-  const BlockKey scale = *window.scale_block();
-  std::vector<BlockKey> poses = {{BlockKind::Pose, state}}, depths;
+  const BlockKey scale = *window.walking(BlockKind::LogScale);
   std::vector<DepthLandmark> landmarks;
   for (const FeatureId id : middle.landmarks) {
     const Feature& feature = window.features().at(id);
-    const BlockKey anchor{BlockKind::Pose, *feature.anchor};
-    const auto known = std::find(poses.begin(), poses.end(), anchor);
-    landmarks.push_back({window.calibrated(feature.camera).T_B_C, feature.seen.at(*feature.anchor).point,
-                         static_cast<std::size_t>(known - poses.begin())});
-    if (known == poses.end()) poses.push_back(anchor);
-    depths.push_back({BlockKind::InverseDepth, id});
+    const ObservationKey& anchor = *feature.anchor;
+    landmarks.push_back(
+        {id, window.calibrated(anchor.camera).T_B_C, feature.observations.at(anchor).point, anchor.state});
   }
   double weight = 1.0 / sigma_ln(window.depth_config(), depth, middle.in_region);
   // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
   if (window.depth_config().form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(*window.block(scale));
-  Factor factor{FactorKind::SceneDepth};
-  factor.state = state;
-  factor.lasting = poses.size() == 1;
-  factor.cost = std::make_unique<DepthFactor>(window.depth_config().form, T_B_E(window, depth), std::move(landmarks),
-                                              poses.size(), depth.depth_m, weight);
-  factor.loss = window.depth_loss();
-  factor.blocks = {scale};
-  factor.blocks.insert(factor.blocks.end(), poses.begin(), poses.end());
-  factor.blocks.insert(factor.blocks.end(), depths.begin(), depths.end());
-  return factor;
+  const DepthMeasurement measured{window.depth_config().form,        state, T_B_E(window, depth), depth.depth_m, weight,
+                                  window.depth_config().cauchy_scale};
+  return std::make_shared<DepthFactor>(measured, scale, std::move(landmarks));
 }
 
 }  // namespace
@@ -103,7 +92,7 @@ bool depth_due(const Window& window) {
                       [&](const auto& state) { return state.second.depth && state.second.t > before; });
 }
 
-void add_depth_factors(const Window& window, std::vector<Factor>& out) {
+void add_depth_factors(const Window& window, std::vector<std::shared_ptr<const Factor>>& out) {
   for (const auto& [id, state] : window.states()) {
     if (!state.depth) continue;
     const auto middle = middle_landmarks(window, id, *state.depth);
@@ -125,19 +114,6 @@ double worst_depth_error(const Window& window, const LogScale& scale) {
     if (state.depth) worst = std::max(worst, depth_error_sigmas(window, id, *state.depth, scale).value_or(0.0));
   }
   return worst;
-}
-
-LinearPrior begin_scale(Window& window, double dt_s) {
-  const BlockKey before = *window.scale_block(), after = window.begin_scale();
-  const double ln_s = *window.block(after);
-  // Without any walk a piece is the one before, up to what numbers can hold.
-  const double sigma = std::max(1e-4, window.depth_config().scale_walk * std::sqrt(dt_s));
-  LinearPrior walk;
-  walk.blocks = {before, after};
-  walk.x0 = {{ln_s}, {ln_s}};
-  walk.J = Eigen::RowVector2d(-1.0, 1.0) / sigma;
-  walk.r = Eigen::VectorXd::Zero(1);
-  return walk;
 }
 
 }  // namespace edged

@@ -6,6 +6,7 @@
 // held as ln s, one value for the whole window; its random walk acts at the window's old end, where a keyframe leaves.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ bool depth_due(const Window& window);
 
 /// The factor of every state with a depth and enough landmarks in its region. A median has no derivative: the factor
 /// takes the mean over the landmarks around it, the middle half but twelve at most, chosen anew at every call.
-void add_depth_factors(const Window& window, std::vector<Factor>& out);
+void add_depth_factors(const Window& window, std::vector<std::shared_ptr<const Factor>>& out);
 
 /// Residual of a depth at a state over its standard deviation, that of s included; nothing without enough landmarks.
 std::optional<double> depth_error_sigmas(const Window& window, StateId state, const RegionDepth& depth,
@@ -27,8 +28,5 @@ std::optional<double> depth_error_sigmas(const Window& window, StateId state, co
 
 /// The largest of these over the depths in the window; 0 without any.
 double worst_depth_error(const Window& window, const LogScale& scale);
-
-/// Begins a new piece of ln s after the present one, and returns the walk between the two (docs/math.md, D3).
-LinearPrior begin_scale(Window& window, double dt_s);
 
 }  // namespace edged

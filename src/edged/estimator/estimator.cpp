@@ -71,6 +71,7 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
       config_(config),
       window_(rig, config.cauchy_scale, config.depth_factor),
       standstill_(config.standstill),
+      external_(config.height, config.velocity),
       initializer_(rig, noise, config),
       depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
@@ -80,6 +81,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   result.standstill = standstill_.still();
   if (start(input, result) || !initialized_) return result;
   append(input);
+  result.velocity_observed = external_.velocity_observed(input.t);
   result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
   const bool new_depth = take_depth(input);
@@ -148,11 +150,11 @@ std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t cam
   return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;
 }
 
-std::optional<double> Estimator::depth(FeatureId id) const {
+std::optional<double> Estimator::depth(FeatureId id, const std::string& camera) const {
   const auto found = window_.features().find(id);
   if (found == window_.features().end() || !found->second.anchor) return std::nullopt;
-  const StateId newest = window_.newest_id();
-  const double z = (window_.T_W_C(newest, found->second.camera).inverse() * window_.position(found->second)).z();
+  const ObservationKey view{window_.newest_id(), window_.camera_index(camera)};
+  const double z = (window_.T_W_C(view).inverse() * window_.position(found->second)).z();
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
 
@@ -171,6 +173,7 @@ void Estimator::append(const EstimatorInput& input) {
   const StateId id = input.motion.gyro_clipped()
                          ? window_.add_state(std::move(state), of_unseen_turn(input.observations))
                          : window_.add_state(std::move(state), input.observations);
+  external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   if (!rested) return;
   NavState rest;
   rest.bias_gyro = standstill_.mean_gyro_B();
@@ -200,7 +203,9 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   for (const auto& [id, feature] : window_.features()) {
     if (!feature.anchor) continue;
     result.landmarks.push_back({id, window_.position(feature)});
-    if (feature.last_seen == newest_id) ++result.landmarks_seen;
+    if (std::ranges::any_of(feature.last_seen, [&](const auto& seen) { return seen.second == newest_id; })) {
+      ++result.landmarks_seen;
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/estimator_input.hpp"
+#include "edged/estimator/external_factors.hpp"
 #include "edged/estimator/initializer.hpp"
 #include "edged/estimator/standstill.hpp"
 #include "edged/estimator/window.hpp"
@@ -26,9 +27,10 @@ struct EstimatorResult {
   std::vector<KeyframeRecord>
       marginalized_keyframes;  ///< keyframes that have left the window with this input, in its frame
   bool standstill = false;
-  bool new_frame = false;    ///< the estimator has started (again) with this input, in a frame of its own
-  bool provisional = false;  ///< the start does not know the scale well enough yet
-  bool plausible = true;     ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
+  bool velocity_observed = false;  ///< by an external sensor, within the last moment
+  bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
+  bool provisional = false;        ///< the start does not know the scale well enough yet
+  bool plausible = true;  ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
 };
 
 class Estimator {
@@ -54,8 +56,8 @@ class Estimator {
   /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
   std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
 
-  /// z-depth of a landmark in its own camera at the newest state [m].
-  std::optional<double> depth(FeatureId id) const;
+  /// z-depth of a landmark in a camera at the newest state [m].
+  std::optional<double> depth(FeatureId id, const std::string& camera) const;
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
   std::optional<LogScale> depth_scale() const;
 
@@ -75,6 +77,7 @@ class Estimator {
   EstimatorConfig config_;
   Window window_;
   StandstillDetector standstill_;
+  ExternalFactors external_;
   Initializer initializer_;
   bool initialized_ = false;
   double scale_sigma_ = kFree;  ///< of ln scale

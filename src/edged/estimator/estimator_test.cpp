@@ -65,8 +65,8 @@ double mean_sigma(const Window& window) {
   double sum = 0.0;
   int n = 0;
   for (const auto& [id, feature] : window.features()) {
-    const auto seen = feature.seen.find(window.newest_id());
-    if (seen == feature.seen.end()) continue;
+    const auto seen = feature.observations.find({window.newest_id(), 0});
+    if (seen == feature.observations.end()) continue;
     sum += seen->second.sigma;
     ++n;
   }

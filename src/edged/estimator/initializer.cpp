@@ -45,9 +45,9 @@ double visual_rms(const Window& window) {
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const Eigen::Vector3d p_W = window.position(feature);
-    for (const auto& [state, seen] : feature.seen) {
-      if (state == *feature.anchor) continue;
-      const Eigen::Vector3d p_C = window.T_W_C(state, feature.camera).inverse() * p_W;
+    for (const auto& [view, seen] : feature.observations) {
+      if (view == *feature.anchor) continue;
+      const Eigen::Vector3d p_C = window.T_W_C(view).inverse() * p_W;
       sum += std::min((p_C.hnormalized() - seen.point).squaredNorm() / (seen.sigma * seen.sigma), 25.0);
       ++n;
     }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/landmark_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace edged {
 namespace {
@@ -18,6 +20,47 @@ using Transposed = Eigen::Matrix<double, Size, 2>;
 template <int Rows, int Columns>
 Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Transposed<Columns>& b) {
   return a.lazyProduct(b.transpose());
+}
+
+/// A residual at the weight of its loss, and its Jacobians: by the poses of the anchor, of the observation and of the
+/// one before; by the calibrations of the anchor's camera and of another that observes; by the inverse depth.
+struct WeightedResidual {
+  Vector2d r;
+  Transposed<6> anchor, seen, before;
+  Transposed<4> calibration, seen_calibration;
+  Vector2d depth;
+};
+
+WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& error, const ObservationError& before,
+                          const ceres::LossFunction& loss) {
+  WeightedResidual out;
+  out.r = at.weight * (error.e - at.correlation * before.e);
+  double rho[3];
+  loss.Evaluate(out.r.squaredNorm(), rho);
+  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -at.correlation * weight;
+  out.r *= root;
+  out.anchor = weight * error.by_anchor.transpose();
+  out.calibration = weight * error.by_anchor_calibration.transpose();
+  out.seen_calibration = weight * error.by_seen_calibration.transpose();
+  out.depth = weight * error.by_rho;
+  out.seen = weight * error.by_seen.transpose();
+  out.before.setZero();
+  if (at.correlation == 0.0) return out;
+  out.anchor += weight_before * before.by_anchor.transpose();
+  out.calibration += weight_before * before.by_anchor_calibration.transpose();
+  out.seen_calibration += weight_before * before.by_seen_calibration.transpose();
+  out.depth += weight_before * before.by_rho;
+  out.before = weight_before * before.by_seen.transpose();
+  return out;
+}
+
+/// The entry of the block at a place, which is added where there is none.
+template <typename Coupling>
+std::size_t entry_of(Index global, std::vector<Coupling>& couplings) {
+  const auto found = std::ranges::find(couplings, global, &Coupling::global);
+  const auto entry = static_cast<std::size_t>(found - couplings.begin());
+  if (found == couplings.end()) couplings.push_back({global});
+  return entry;
 }
 
 }  // namespace
@@ -47,18 +90,23 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
   coupling_.setZero();
   depth_ = {};
   depth_.landmark = term.id;
-  depth_.calibration = calibrations_[term.camera];
   depth_.poses.reserve(term.residuals.size() + 1);
   depth_.poses.push_back({poses_[term.anchor_place]});
-  for (const LandmarkResidual& residual : term.residuals) depth_.poses.push_back({poses_[residual.place]});
+  depth_.calibrations.push_back({calibrations_[term.anchor.camera]});
+  pose_of_.clear();
+  calibration_of_.clear();
+  for (const LandmarkResidual& residual : term.residuals) {
+    pose_of_.push_back(entry_of(poses_[residual.place], depth_.poses));
+    calibration_of_.push_back(entry_of(calibrations_[residual.seen.camera], depth_.calibrations));
+  }
 }
 
 /// Residuals at the present values, Jacobians where they are taken.
 void LandmarkEquations::linearise(const LandmarkTerm& term) {
   const CameraViews &now = present_, &taken = taken_;
-  const std::size_t c = term.camera;
-  const AnchoredLandmark landmark(now.camera(c), now.at(c, term.anchor_place), term.point, *term.inverse_depth);
-  const AnchoredLandmark first(taken.camera(c), taken.at(c, term.anchor_place), term.point, *term.inverse_depth);
+  const std::size_t anchor = term.anchor.camera;
+  const AnchoredLandmark landmark(now.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
+  const AnchoredLandmark first(taken.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
   const LandmarkDerivatives derivatives(first);
   ObservationError error, before;
   bool defined = false, before_defined = false;
@@ -66,8 +114,8 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
     const LandmarkResidual& at = term.residuals[i];
     before = error;
     before_defined = defined;
-    defined = derivatives.error(taken.at(c, at.place), at.point, error) &&
-              (at_present_ || landmark.error(now.at(c, at.place), at.point, error.e));
+    defined = derivatives.error(taken.at(at.seen.camera, at.place), at.point, error) &&
+              (at_present_ || landmark.error(now.at(at.seen.camera, at.place).at, at.point, error.e));
     if (defined && (before_defined || at.correlation == 0.0)) accumulate(i, error, before, term);
   }
 }
@@ -76,72 +124,73 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
 void LandmarkEquations::accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
                                    const LandmarkTerm& term) {
   const LandmarkResidual& at = term.residuals[residual];
-  Vector2d r = at.weight * (error.e - at.correlation * before.e);
-  double rho[3];
-  loss_->Evaluate(r.squaredNorm(), rho);
-  const double root = std::sqrt(rho[1]), weight = at.weight * root, weight_before = -at.correlation * weight;
-  r *= root;
-  Transposed<6> J_anchor = weight * error.by_anchor.transpose();
-  Transposed<4> J_calibration = weight * error.by_calibration.transpose();
-  Vector2d J_depth = weight * error.by_rho;
-  const Transposed<6> J_seen = weight * error.by_seen.transpose();
-  Transposed<6> J_before = Transposed<6>::Zero();
   const bool correlated = at.correlation != 0.0;
-  if (correlated) {
-    J_anchor += weight_before * before.by_anchor.transpose();
-    J_calibration += weight_before * before.by_calibration.transpose();
-    J_depth += weight_before * before.by_rho;
-    J_before = weight_before * before.by_seen.transpose();
-  }
+  WeightedResidual J = weighted(at, error, before, *loss_);
   if (!at_present_) {
-    r -= J_anchor.transpose() * taken_.moved(term.anchor_place) + J_seen.transpose() * taken_.moved(at.place);
-    if (correlated) r -= J_before.transpose() * taken_.moved(term.residuals[residual - 1].place);
+    J.r -= J.anchor.transpose() * taken_.moved(term.anchor_place) + J.seen.transpose() * taken_.moved(at.place);
+    if (correlated) J.r -= J.before.transpose() * taken_.moved(term.residuals[residual - 1].place);
   }
+  const std::size_t seen = pose_of_[residual], seen_before = correlated ? pose_of_[residual - 1] : 0;
+  // Another camera at the anchor's own state.
+  if (seen == 0) J.anchor += std::exchange(J.seen, Transposed<6>::Zero());
+  if (correlated && seen_before == 0) J.anchor += std::exchange(J.before, Transposed<6>::Zero());
 
-  const auto add_view = [&](DepthByPose& view, const Transposed<6>& J_view) {
-    view.coupling += J_view * J_depth;
-    equations_.g.segment<6>(view.global) += J_view * r;
-    equations_.add(view.global, view.global, product(J_view, J_view));
-    equations_.add(view.global, depth_.poses.front().global, product(J_view, J_anchor));
-    equations_.add(depth_.calibration, view.global, product(J_calibration, J_view));
+  const Index anchor_calibration = depth_.calibrations.front().global;
+  DepthByPose &anchor = depth_.poses.front(), &view = depth_.poses[seen], &view_before = depth_.poses[seen_before];
+  const auto add_view = [&](DepthByPose& of, const Transposed<6>& J_view) {
+    of.coupling += J_view * J.depth;
+    equations_.g.segment<6>(of.global) += J_view * J.r;
+    equations_.add(of.global, of.global, product(J_view, J_view));
+    equations_.add(of.global, anchor.global, product(J_view, J.anchor));
+    equations_.add(anchor_calibration, of.global, product(J.calibration, J_view));
   };
-  DepthByPose &view = depth_.poses[residual + 1], &view_before = depth_.poses[residual];
-  add_view(view, J_seen);
-  if (correlated) {
-    add_view(view_before, J_before);
-    equations_.add(view.global, view_before.global, product(J_seen, J_before));
+  if (seen != 0) add_view(view, J.seen);
+  if (seen_before != 0) {
+    add_view(view_before, J.before);
+    equations_.add(view.global, view_before.global, product(J.seen, J.before));
   }
-  Transposed<10> J;
-  J << J_anchor, J_calibration;
-  H_ += product(J, J);
-  g_ += J * r;
-  coupling_ += J * J_depth;
-  depth_.h += J_depth.squaredNorm();
-  depth_.g += J_depth.dot(r);
+  if (calibration_of_[residual] != 0) {
+    DepthByCalibration& camera = depth_.calibrations[calibration_of_[residual]];
+    camera.coupling += J.seen_calibration * J.depth;
+    equations_.g.segment<4>(camera.global) += J.seen_calibration * J.r;
+    equations_.add(camera.global, camera.global, product(J.seen_calibration, J.seen_calibration));
+    equations_.add(camera.global, anchor_calibration, product(J.seen_calibration, J.calibration));
+    equations_.add(camera.global, anchor.global, product(J.seen_calibration, J.anchor));
+    if (seen != 0) equations_.add(camera.global, view.global, product(J.seen_calibration, J.seen));
+    if (seen_before != 0) equations_.add(camera.global, view_before.global, product(J.seen_calibration, J.before));
+  }
+  Transposed<10> own;
+  own << J.anchor, J.calibration;
+  H_ += product(own, own);
+  g_ += own * J.r;
+  coupling_ += own * J.depth;
+  depth_.h += J.depth.squaredNorm();
+  depth_.g += J.depth.dot(J.r);
 }
 
-/// Of the anchor and the calibration, which all residuals share.
+/// Of the anchor and its camera's calibration, which all residuals share.
 void LandmarkEquations::add_own() {
-  const Index anchor = depth_.poses.front().global, calibration = depth_.calibration;
+  const Index anchor = depth_.poses.front().global, calibration = depth_.calibrations.front().global;
   equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());
   equations_.add<4, 6>(calibration, anchor, H_.bottomLeftCorner<4, 6>());
   equations_.add<4, 4>(calibration, calibration, H_.bottomRightCorner<4, 4>());
   equations_.g.segment<6>(anchor) += g_.head<6>();
   equations_.g.segment<4>(calibration) += g_.tail<4>();
   depth_.poses.front().coupling = coupling_.head<6>();
-  depth_.by_calibration = coupling_.tail<4>();
+  depth_.calibrations.front().coupling = coupling_.tail<4>();
 }
 
 void LandmarkEquations::add_depth(Index place) {
   for (const DepthByPose& pose : depth_.poses) equations_.add<1, 6>(place, pose.global, pose.coupling.transpose());
-  equations_.add<1, 4>(place, depth_.calibration, depth_.by_calibration.transpose());
+  for (const DepthByCalibration& camera : depth_.calibrations) {
+    equations_.add<1, 4>(place, camera.global, camera.coupling.transpose());
+  }
   equations_.H(place, place) += depth_.h;
   equations_.g[place] += depth_.g;
 }
 
 /// (S1)
 void LandmarkEquations::eliminate_depth() {
-  const Eigen::Vector4d share = depth_.by_calibration / -depth_.h;
   for (std::size_t i = 0; i < depth_.poses.size(); ++i) {
     const DepthByPose& row = depth_.poses[i];
     const Vector6d row_share = row.coupling / -depth_.h;
@@ -149,11 +198,20 @@ void LandmarkEquations::eliminate_depth() {
       const DepthByPose& column = depth_.poses[j];
       equations_.add<6, 6>(row.global, column.global, row_share * column.coupling.transpose());
     }
-    equations_.add<4, 6>(depth_.calibration, row.global, share * row.coupling.transpose());
     equations_.g.segment<6>(row.global) += row_share * depth_.g;
   }
-  equations_.add<4, 4>(depth_.calibration, depth_.calibration, share * depth_.by_calibration.transpose());
-  equations_.g.segment<4>(depth_.calibration) += share * depth_.g;
+  for (std::size_t i = 0; i < depth_.calibrations.size(); ++i) {
+    const DepthByCalibration& row = depth_.calibrations[i];
+    const Eigen::Vector4d share = row.coupling / -depth_.h;
+    for (const DepthByPose& pose : depth_.poses) {
+      equations_.add<4, 6>(row.global, pose.global, share * pose.coupling.transpose());
+    }
+    for (std::size_t j = 0; j <= i; ++j) {
+      const DepthByCalibration& column = depth_.calibrations[j];
+      equations_.add<4, 4>(row.global, column.global, share * column.coupling.transpose());
+    }
+    equations_.g.segment<4>(row.global) += share * depth_.g;
+  }
 }
 
 void LandmarkEquations::add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated) {
@@ -170,13 +228,14 @@ void LandmarkEquations::add(const LandmarkTerm& term, std::vector<DepthEquation>
 }
 
 double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss) {
-  const std::size_t c = term.camera;
-  const AnchoredLandmark landmark(views.camera(c), views.at(c, term.anchor_place), term.point, *term.inverse_depth);
+  const CameraView anchor = views.at(term.anchor.camera, term.anchor_place);
+  const AnchoredLandmark landmark(anchor, term.point, *term.inverse_depth);
   double sum = 0.0;
   Vector2d e = Vector2d::Zero(), before;
   for (const LandmarkResidual& at : term.residuals) {
     before = e;
-    if (!landmark.error(views.at(c, at.place), at.point, e)) return std::numeric_limits<double>::infinity();
+    if (!landmark.error(views.at(at.seen.camera, at.place).at, at.point, e))
+      return std::numeric_limits<double>::infinity();
     double rho[3];
     loss.Evaluate((at.weight * (e - at.correlation * before)).squaredNorm(), rho);
     sum += 0.5 * rho[0];

@@ -33,10 +33,11 @@ class LandmarkEquations {
   ceres::LossFunction* loss_;
   std::vector<Eigen::Index> poses_, calibrations_;  ///< global places, by a state's place and a camera's index
 
-  // Of the landmark at hand. Columns: the anchor's pose, the camera's calibration.
+  // Of the landmark at hand. Columns: the anchor's pose, the calibration of its camera.
   Eigen::Matrix<double, 10, 10> H_;
   Eigen::Matrix<double, 10, 1> g_, coupling_;
   DepthEquation depth_;
+  std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its place in depth_
 };
 
 /// Half the sum of its squares, the loss applied; infinite where it is behind a camera.

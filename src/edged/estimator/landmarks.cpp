@@ -13,12 +13,20 @@
 namespace edged {
 namespace {
 
-/// The oldest keyframe that sees the feature.
-std::optional<StateId> oldest_keyframe(const Window& window, const Feature& feature) {
-  for (const auto& [state, observation] : feature.seen) {
-    if (window.states().at(state).keyframe) return state;
+/// That of the oldest keyframe that sees the feature.
+std::optional<ObservationKey> oldest_view(const Window& window, const Feature& feature) {
+  for (const auto& [view, observation] : feature.observations) {
+    if (window.states().at(view.state).keyframe) return view;
   }
   return std::nullopt;
+}
+
+/// Two views of one camera fit nearly any point: three must agree, or two cameras at one instant, whose baseline is
+/// known.
+bool can_be_judged(const Feature& feature) {
+  const auto same_instant = [](const auto& a, const auto& b) { return a.first.state == b.first.state; };
+  const auto& seen = feature.observations;
+  return seen.size() > 2 || std::adjacent_find(seen.begin(), seen.end(), same_instant) != seen.end();
 }
 
 bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
@@ -26,18 +34,18 @@ bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
 }
 
 void triangulate_feature(Window& window, FeatureId id, const Feature& feature, const LandmarkConfig& config) {
-  const std::optional<StateId> anchor = oldest_keyframe(window, feature);
-  if (!anchor || feature.seen.size() < 3) return;
+  const std::optional<ObservationKey> anchor = oldest_view(window, feature);
+  if (!anchor || !can_be_judged(feature)) return;
   std::vector<View> views;
   double sigma = 0.0;
-  for (const auto& [state, observation] : feature.seen) {
-    views.push_back({window.T_W_C(state, feature.camera), observation.point});
+  for (const auto& [view, observation] : feature.observations) {
+    views.push_back({window.T_W_C(view), observation.point});
     sigma = observation.sigma;
   }
   const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
   if (!point || point->rms_residual > config.max_residual_sigma * sigma) return;
-  const auto inverse_depth = inverse_depth_in(window, *anchor, feature.camera, point->p_W, config);
-  if (inverse_depth) window.make_landmark(id, *anchor, *inverse_depth);
+  const auto inverse_depth = inverse_depth_in(window, *anchor, point->p_W, config);
+  if (inverse_depth) window.make_landmark(id, {*anchor, *inverse_depth});
 }
 
 /// How well observations fit the window as it stands.
@@ -48,52 +56,53 @@ class Fit {
   }
 
   /// Where a landmark is expected less where it was seen, on the unit plane; false when it is behind the camera.
-  bool error(const Feature& feature, StateId state, Eigen::Vector2d& e) const {
-    const std::size_t camera = feature.camera;
-    const AnchoredLandmark landmark(views_.camera(camera), views_.at(camera, place_.at(*feature.anchor)),
-                                    feature.seen.at(*feature.anchor).point, feature.inverse_depth);
-    return landmark.error(views_.at(camera, place_.at(state)), feature.seen.at(state).point, e);
+  bool error(const Feature& feature, const ObservationKey& view, Eigen::Vector2d& e) const {
+    const CameraView anchor = at(*feature.anchor);
+    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).point, feature.inverse_depth);
+    return landmark.error(at(view).at, feature.observations.at(view).point, e);
   }
 
   /// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
-  double sigmas(const Feature& feature, StateId state) const {
+  double sigmas(const Feature& feature, const ObservationKey& view) const {
     Eigen::Vector2d e;
-    if (!error(feature, state, e)) return std::numeric_limits<double>::infinity();
-    return e.norm() / feature.seen.at(state).sigma;
+    if (!error(feature, view, e)) return std::numeric_limits<double>::infinity();
+    return e.norm() / feature.observations.at(view).sigma;
   }
 
   /// Root mean square of a landmark's residuals [sigma]; nothing when it has too few observations to be judged by.
   std::optional<double> rms_sigmas(const Feature& feature) const {
     constexpr std::size_t kFewestObservations = 4;
-    if (!feature.anchor || feature.seen.size() < kFewestObservations) return std::nullopt;
+    if (!feature.anchor || feature.observations.size() < kFewestObservations) return std::nullopt;
     double sum = 0.0;
-    for (const auto& [state, observation] : feature.seen) {
-      if (state != *feature.anchor) sum += std::pow(sigmas(feature, state), 2);
+    for (const auto& [view, observation] : feature.observations) {
+      if (view != *feature.anchor) sum += std::pow(sigmas(feature, view), 2);
     }
-    return std::sqrt(sum / (2.0 * static_cast<double>(feature.seen.size() - 1)));
+    return std::sqrt(sum / (2.0 * static_cast<double>(feature.observations.size() - 1)));
   }
 
  private:
+  CameraView at(const ObservationKey& view) const { return views_.at(view.camera, place_.at(view.state)); }
+
   CameraViews views_;
   std::map<StateId, std::size_t> place_;  ///< of a state in the window
 };
 
-/// The states whose observations are beyond the limit, but for the anchor's.
-std::vector<StateId> bad_observations(const Fit& fit, const Feature& feature, double max_sigmas) {
-  std::vector<StateId> bad;
-  for (const auto& [state, observation] : feature.seen) {
-    if (state != *feature.anchor && fit.sigmas(feature, state) > max_sigmas) bad.push_back(state);
+/// The observations beyond the limit, but for the anchor's.
+std::vector<ObservationKey> bad_observations(const Fit& fit, const Feature& feature, double max_sigmas) {
+  std::vector<ObservationKey> bad;
+  for (const auto& [view, observation] : feature.observations) {
+    if (view != *feature.anchor && fit.sigmas(feature, view) > max_sigmas) bad.push_back(view);
   }
   return bad;
 }
 
-/// One a camera: what its landmarks may be off by, over all their views [sigma].
+/// One a camera: what the landmarks anchored in it may be off by, over all their views [sigma].
 std::vector<double> misfit_limits(const Window& window, const Fit& fit, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
   constexpr double kLeastMedian = 0.2;  // [sigma]: the best of fits condemns nothing
   std::vector<std::vector<double>> rms(window.cameras().size());
   for (const auto& [id, feature] : window.features()) {
-    if (const auto value = fit.rms_sigmas(feature)) rms[feature.camera].push_back(*value);
+    if (const auto value = fit.rms_sigmas(feature)) rms[feature.anchor->camera].push_back(*value);
   }
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
@@ -126,27 +135,35 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
   const bool ended_too = tracks == Tracks::All;
   // Landmarks out of sight still hold the window together, but must not take the places of those in view.
   std::vector<int> landmarks(window.cameras().size(), 0), total(window.cameras().size(), 0);
+  const auto count = [&](const Feature& feature) {
+    for (const auto& [camera, last_seen] : feature.last_seen) {
+      ++total[camera];
+      if (window.alive(feature, camera)) ++landmarks[camera];
+    }
+  };
+  const auto has_room = [&](const Feature& feature) {
+    return std::ranges::any_of(feature.last_seen, [&](const auto& seen) {
+      const std::size_t camera = seen.first;
+      return total[camera] < 2 * config.max_per_camera &&
+             (!window.alive(feature, camera) || landmarks[camera] < config.max_per_camera);
+    });
+  };
   std::vector<std::map<FeatureId, Feature>::const_iterator> candidates;
   for (auto entry = window.features().begin(); entry != window.features().end(); ++entry) {
     const Feature& feature = entry->second;
     if (feature.anchor) {
-      ++total[feature.camera];
-      if (window.alive(feature)) ++landmarks[feature.camera];
+      count(feature);
     } else if (ended_too || window.alive(feature)) {
       candidates.push_back(entry);
     }
   }
   std::ranges::stable_sort(candidates, std::ranges::greater(),
-                           [](const auto& entry) { return entry->second.seen.size(); });
+                           [](const auto& entry) { return entry->second.observations.size(); });
   for (const auto& candidate : candidates) {
     const auto& [id, feature] = *candidate;
-    const std::size_t camera = feature.camera;
-    const bool alive = window.alive(feature);
-    if (total[camera] >= 2 * config.max_per_camera || (alive && landmarks[camera] >= config.max_per_camera)) continue;
+    if (!has_room(feature)) continue;
     triangulate_feature(window, id, feature, config);
-    if (!feature.anchor) continue;
-    ++total[camera];
-    if (alive) ++landmarks[camera];
+    if (feature.anchor) count(feature);
   }
 }
 
@@ -158,12 +175,12 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
     std::vector<FeatureId> far;
     std::size_t seen = 0;
     for (const auto& [id, feature] : window.features()) {
-      if (feature.camera != camera || !feature.anchor || !feature.seen.contains(newest)) continue;
+      if (!feature.anchor || !feature.observations.contains({newest, camera})) continue;
       ++seen;
-      if (fit.sigmas(feature, newest) > config.max_innovation_sigma) far.push_back(id);
+      if (fit.sigmas(feature, {newest, camera}) > config.max_innovation_sigma) far.push_back(id);
     }
     if (2 * far.size() > seen) continue;
-    for (const FeatureId id : far) window.forget_observation(id, newest);
+    for (const FeatureId id : far) window.forget_observation(id, {newest, camera});
     unexpected.insert(unexpected.end(), far.begin(), far.end());
   }
   return unexpected;
@@ -173,21 +190,22 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   const Fit fit(window);
   const std::vector<double> limits = misfit_limits(window, fit, config.max_misfit);
   std::vector<FeatureId> wrong, gone;
-  std::vector<std::pair<FeatureId, StateId>> taken_out;
+  std::vector<std::pair<FeatureId, ObservationKey>> taken_out;
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     // Before its worst observations are taken out: that it has some says more about it than those that are left.
     const bool misfit = !depth_in_bounds(feature.inverse_depth, config) ||
-                        fit.rms_sigmas(feature).value_or(0.0) > limits[feature.camera];
-    const auto bad = misfit ? std::vector<StateId>() : bad_observations(fit, feature, config.max_residual_sigma);
-    const bool newest_bad = !bad.empty() && bad.back() == feature.last_seen;
+                        fit.rms_sigmas(feature).value_or(0.0) > limits[feature.anchor->camera];
+    const auto bad = misfit ? std::vector<ObservationKey>() : bad_observations(fit, feature, config.max_residual_sigma);
+    const bool newest_bad = std::ranges::any_of(
+        bad, [&](const ObservationKey& view) { return view.state == feature.last_seen.at(view.camera); });
     // Right after a change of anchor a landmark has one observation until its camera's next image.
-    const bool goes = misfit || (feature.seen.size() - bad.size() < 2 && !window.alive(feature));
+    const bool goes = misfit || (feature.observations.size() - bad.size() < 2 && !window.alive(feature));
     if (goes) gone.push_back(id);
-    for (const StateId state : bad) taken_out.emplace_back(id, state);
+    for (const ObservationKey& view : bad) taken_out.emplace_back(id, view);
     if (window.alive(feature) && (goes || newest_bad)) wrong.push_back(id);
   }
-  for (const auto& [id, state] : taken_out) window.forget_observation(id, state);
+  for (const auto& [id, view] : taken_out) window.forget_observation(id, view);
   for (const FeatureId id : gone) window.forget_feature(id);
   return wrong;
 }
@@ -199,12 +217,12 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   const Fit fit(window);
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features()) {
-    if (feature.camera != camera || !feature.anchor) continue;
+    if (!feature.anchor || !feature.last_seen.contains(camera)) continue;
     Eigen::Vector2d before = Eigen::Vector2d::Zero(), error;
     for (const TrackStep& step : track_steps(window, feature)) {
       if (step.before == *feature.anchor) before.setZero();
       if (!fit.error(feature, step.seen, error)) break;
-      if (newness == Newness::Any || step.seen == newest) {
+      if (step.seen.camera == camera && (newness == Newness::Any || step.seen.state == newest)) {
         residuals.push_back((error - step.correlation * before).norm() / step.sigma);
       }
       before = error;
@@ -214,9 +232,9 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 
-std::optional<double> inverse_depth_in(const Window& window, StateId state, std::size_t camera,
-                                       const Eigen::Vector3d& p_W, const LandmarkConfig& config) {
-  const double inverse_depth = 1.0 / (window.T_W_C(state, camera).inverse() * p_W).z();
+std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_W,
+                                       const LandmarkConfig& config) {
+  const double inverse_depth = 1.0 / (window.T_W_C(view).inverse() * p_W).z();
   return depth_in_bounds(inverse_depth, config) ? std::optional(inverse_depth) : std::nullopt;
 }
 

@@ -35,9 +35,9 @@ enum class Newness { Newest, Any };
 /// too few of them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
-/// The inverse depth at which a point of the world would be anchored in the view of a camera at a state [1/m]; nothing
+/// The inverse depth at which a point of the world would be anchored in a view [1/m]; nothing
 /// out of the depth bounds.
-std::optional<double> inverse_depth_in(const Window& window, StateId state, std::size_t camera,
-                                       const Eigen::Vector3d& p_W, const LandmarkConfig& config);
+std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_W,
+                                       const LandmarkConfig& config);
 
 }  // namespace edged

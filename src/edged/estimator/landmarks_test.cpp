@@ -70,7 +70,7 @@ FeatureId lasting_corner(TestWorld& world) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   for (const auto& [id, feature] : window.features()) {
-    if (feature.anchor && feature.seen.size() == window.states().size()) return id;
+    if (feature.anchor && feature.observations.size() == window.states().size()) return id;
   }
   ADD_FAILURE() << "no feature stays in view";
   return 0;
@@ -83,11 +83,23 @@ TEST(TriangulateFeatures, PutsLandmarksWhereThePointsAreInEveryCamera) {
   std::size_t landmarks[2] = {0, 0};
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
-    ++landmarks[feature.camera];
+    ++landmarks[feature.anchor->camera];
     EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 1e-4) << id;
   }
   EXPECT_GT(landmarks[0], 40U);
   EXPECT_GT(landmarks[1], 40U);
+}
+
+TEST(TriangulateFeatures, PlacesWhatTwoCamerasSeeAtOneInstant) {
+  TestWorld world({.cameras = 2, .shared_ids = true, .pixel_noise = 0.0});
+  Window window = window_at_truth(world, 1);
+  triangulate_features(window, kGenerous);
+  EXPECT_GT(count_landmarks(window), 20);
+  for (const auto& [id, feature] : window.features()) {
+    EXPECT_TRUE(!feature.anchor || feature.observations.size() == 2) << "one camera tells no depth";
+    if (!feature.anchor) continue;
+    EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 1e-6) << id;
+  }
 }
 
 TEST(TriangulateFeatures, WaitsForParallax) {
@@ -104,7 +116,7 @@ TEST(TriangulateFeatures, KeepsTheBudgetOfEachCameraAndPrefersTheLongestTracks) 
   triangulate_features(window, {.max_per_camera = 15});
   std::size_t landmarks[2] = {0, 0}, shortest_landmark[2] = {99, 99}, longest_track[2] = {0, 0};
   for (const auto& [id, feature] : window.features()) {
-    const std::size_t observations = feature.seen.size(), c = feature.camera;
+    const std::size_t observations = feature.observations.size(), c = feature.last_seen.begin()->first;
     if (feature.anchor) {
       ++landmarks[c];
       shortest_landmark[c] = std::min(shortest_landmark[c], observations);
@@ -144,7 +156,7 @@ TEST(TriangulateFeatures, AnchorsInTheOldestKeyframe) {
   fly(window, world, {.states = 1, .keyframes = false});
   fly(window, world, {.states = 5});
   triangulate_features(window, kGenerous);
-  EXPECT_EQ(window.features().at(id).anchor, std::next(window.states().begin())->first);
+  EXPECT_EQ(window.features().at(id).anchor, (ObservationKey{std::next(window.states().begin())->first, 0}));
 }
 
 TEST(RemoveOutliers, KeepsWhatFits) {
@@ -163,7 +175,7 @@ TEST(RemoveOutliers, ReportsATrackWhoseNewestObservationIsWrongAndKeepsTheLandma
   triangulate_features(window, kGenerous);
   fly(window, world, {.states = 1, .spoil = shift(id, 0.05, 0.0)});  // 10 px
   EXPECT_THAT(remove_outliers(window, kGenerous), ElementsAre(id));
-  EXPECT_EQ(window.features().at(id).seen.size(), window.states().size() - 1);
+  EXPECT_EQ(window.features().at(id).observations.size(), window.states().size() - 1);
   EXPECT_TRUE(window.features().at(id).anchor.has_value());
 }
 
@@ -175,7 +187,7 @@ TEST(RemoveOutliers, TakesOutAnOldWrongObservationWithoutEndingTheTrack) {
   fly(window, world, {.states = 1, .spoil = shift(id, 0.05, 0.0)});
   fly(window, world, {.states = 2});
   EXPECT_THAT(remove_outliers(window, kGenerous), IsEmpty());
-  EXPECT_EQ(window.features().at(id).seen.size(), window.states().size() - 1);
+  EXPECT_EQ(window.features().at(id).observations.size(), window.states().size() - 1);
 }
 
 TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoObservationAlone) {
@@ -257,12 +269,12 @@ TEST(InverseDepthIn, KeepsALandmarkWhereItIsInTheWorld) {
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const Eigen::Vector3d before = window.position(feature);
-    const StateId to = feature.seen.rbegin()->first;
-    const auto inverse_depth = inverse_depth_in(window, to, feature.camera, before, kGenerous);
+    const ObservationKey to = feature.observations.rbegin()->first;
+    const auto inverse_depth = inverse_depth_in(window, to, before, kGenerous);
     ASSERT_TRUE(inverse_depth);
-    window.make_landmark(id, to, *inverse_depth);
+    window.make_landmark(id, {to, *inverse_depth});
     // The ray is the new anchor's own observation, half a pixel beside the old one's: the depth is kept.
-    const double depth = (window.T_W_C(to, feature.camera).inverse() * before).z();
+    const double depth = (window.T_W_C(to).inverse() * before).z();
     EXPECT_NEAR(1.0 / *inverse_depth, depth, 1e-9);
     EXPECT_LT((window.position(feature) - before).norm(), 8.0 * 0.5 / 200.0 * depth);
     ++moved;
@@ -274,8 +286,8 @@ TEST(InverseDepthIn, IsNothingOutOfTheBounds) {
   TestWorld world({.pixel_noise = 0.0});
   const Window window = window_at_truth(world);
   const Eigen::Vector3d p_W = world.point_W(lasting_corner(world));
-  EXPECT_TRUE(inverse_depth_in(window, window.newest_id(), 0, p_W, kGenerous));
-  EXPECT_FALSE(inverse_depth_in(window, window.newest_id(), 0, p_W, {.max_depth_m = 1.0}));
+  EXPECT_TRUE(inverse_depth_in(window, {window.newest_id(), 0}, p_W, kGenerous));
+  EXPECT_FALSE(inverse_depth_in(window, {window.newest_id(), 0}, p_W, {.max_depth_m = 1.0}));
 }
 
 }  // namespace

@@ -61,13 +61,18 @@ struct DepthByPose {
   Vector6d coupling = Vector6d::Zero();
 };
 
+/// The same with the calibration of one of its cameras.
+struct DepthByCalibration {
+  Eigen::Index global = 0;
+  Eigen::Vector4d coupling = Eigen::Vector4d::Zero();
+};
+
 /// A landmark's inverse depth in the normal equations; eliminated from them, its step is -(g + couplings^T d) / h.
 struct DepthEquation {
   std::uint64_t landmark = 0;  ///< FeatureId
   double h = 0.0, g = 0.0;
-  std::vector<DepthByPose> poses;  ///< the anchor's, then that of every residual's state
-  Eigen::Index calibration = 0;    ///< global place of its camera's
-  Eigen::Vector4d by_calibration = Eigen::Vector4d::Zero();
+  std::vector<DepthByPose> poses;                ///< each once: the anchor's, then the others that see it
+  std::vector<DepthByCalibration> calibrations;  ///< each once, in the same order
 };
 
 /// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in

@@ -22,10 +22,8 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
   const StateId first = window.oldest_id();
   const std::set<BlockKey> leaving = {{BlockKind::Pose, first}, {BlockKind::Motion, first}};
   Cost touching = cost_of(window);
-  std::erase_if(touching.factors, [&](const Factor& f) {
-    return std::none_of(f.blocks.begin(), f.blocks.end(), [&](const BlockKey& k) { return leaving.contains(k); });
-  });
-  window.drop_oldest(marginalize(window, touching, leaving), window.newest_id(), {});
+  std::erase_if(touching.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
+  window.drop_oldest(marginalize(window, touching, leaving));
 
   // Start elsewhere: the prior alone must bring the states back.
   for (const auto& [id, state] : window.states()) {
@@ -47,22 +45,22 @@ TEST(Marginalize, KeepsTheInformationOfTheNormalEquations) {
   const LinearPrior prior = marginalize(window, cost, {});  // nothing leaves: J^T J is H, J^T r is g
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(prior.J.cols(), prior.J.cols());
   Eigen::VectorXd g = Eigen::VectorXd::Zero(prior.J.cols());
-  for (const Factor& factor : cost.factors) {
-    Eigen::VectorXd r(factor.cost->num_residuals());
+  for (const auto& factor : cost.factors) {
+    Eigen::VectorXd r(factor->num_residuals());
     std::vector<const double*> x;
     std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J;
     std::vector<double*> J_data;
-    for (const BlockKey& key : factor.blocks) {
+    for (const BlockKey& key : factor->blocks()) {
       x.push_back(window.block(key));
       J.emplace_back(r.size(), block_size(key.kind));
     }
     for (auto& j : J) J_data.push_back(j.data());
-    ASSERT_TRUE(factor.cost->Evaluate(x.data(), r.data(), J_data.data()));
+    ASSERT_TRUE(factor->Evaluate(x.data(), r.data(), J_data.data()));
     Eigen::MatrixXd row = Eigen::MatrixXd::Zero(r.size(), H.cols());
     for (std::size_t i = 0; i < J.size(); ++i) {
       Eigen::Index offset = 0;
       for (const BlockKey& key : prior.blocks) {
-        if (key == factor.blocks[i])
+        if (key == factor->blocks()[i])
           row.middleCols(offset, tangent_size(key.kind)) = J[i].leftCols(tangent_size(key.kind));
         offset += tangent_size(key.kind);
       }

@@ -24,15 +24,15 @@ struct LinearFactor {
 
 /// False where the factor is not defined at the present values.
 bool linearise(const Window& window, const Factor& factor, const Layout& layout, Linearisation at, LinearFactor& out) {
-  const std::size_t n = factor.blocks.size();
-  const int rows = factor.cost->num_residuals();
+  const std::size_t n = factor.blocks().size();
+  const int rows = factor.num_residuals();
   std::vector<const double*> now(n), taken(n);
   std::vector<RowMajorMatrix> J(n);
   std::vector<double*> J_data(n);
   out.blocks.clear();
   Index columns = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const BlockKey& key = factor.blocks[i];
+    const BlockKey& key = factor.blocks()[i];
     now[i] = window.block(key);
     taken[i] = at == Linearisation::Present ? now[i] : window.linearisation_point(key);
     J[i].resize(rows, block_size(key.kind));
@@ -41,10 +41,10 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
     columns += tangent_size(key.kind);
   }
   out.r.resize(rows);
-  if (!factor.cost->Evaluate(taken.data(), out.r.data(), J_data.data())) return false;
-  if (now != taken && !factor.cost->Evaluate(now.data(), out.r.data(), nullptr)) return false;
+  if (!factor.Evaluate(taken.data(), out.r.data(), J_data.data())) return false;
+  if (now != taken && !factor.Evaluate(now.data(), out.r.data(), nullptr)) return false;
   double rho[3] = {0.0, 1.0, 0.0};
-  if (factor.loss != nullptr) factor.loss->Evaluate(out.r.squaredNorm(), rho);
+  if (factor.loss() != nullptr) factor.loss()->Evaluate(out.r.squaredNorm(), rho);
   const double weight = std::sqrt(rho[1]);
   out.r *= weight;
   out.J.resize(rows, columns);
@@ -53,15 +53,15 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
     out.J.middleCols(block.local, block.size) = weight * J[i].leftCols(block.size);
     if (now[i] == taken[i]) continue;
     VectorXd moved(block.size);
-    tangent_difference(factor.blocks[i].kind, now[i], taken[i], moved.data());
+    tangent_difference(factor.blocks()[i].kind, now[i], taken[i], moved.data());
     out.r -= out.J.middleCols(block.local, block.size) * moved;
   }
   return true;
 }
 
 /// The window's prior, whose J^T J is known: only turns take its derivatives away from those at its own place.
-void add_prior(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations) {
-  const LinearPrior& prior = window.prior();
+void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at,
+               NormalEquations& equations) {
   MatrixXd H = prior.information;
   VectorXd d(H.cols());
   std::vector<Placed> blocks;
@@ -91,11 +91,11 @@ void add_prior(const Window& window, const Layout& layout, Linearisation at, Nor
 
 double value_of(const Window& window, const Factor& factor) {
   std::vector<const double*> now;
-  for (const BlockKey& key : factor.blocks) now.push_back(window.block(key));
-  VectorXd r(factor.cost->num_residuals());
-  if (!factor.cost->Evaluate(now.data(), r.data(), nullptr)) return std::numeric_limits<double>::infinity();
+  for (const BlockKey& key : factor.blocks()) now.push_back(window.block(key));
+  VectorXd r(factor.num_residuals());
+  if (!factor.Evaluate(now.data(), r.data(), nullptr)) return std::numeric_limits<double>::infinity();
   double rho[3] = {r.squaredNorm(), 1.0, 0.0};
-  if (factor.loss != nullptr) factor.loss->Evaluate(rho[0], rho);
+  if (factor.loss() != nullptr) factor.loss()->Evaluate(rho[0], rho);
   return 0.5 * rho[0];
 }
 
@@ -106,12 +106,9 @@ NormalEquations normal_equations(const Window& window, const Cost& cost, const L
   NormalEquations equations(layout.size);
   LinearFactor linear;
   MatrixXd H;
-  for (const Factor& factor : cost.factors) {
-    if (factor.kind == FactorKind::Prior) {
-      add_prior(window, layout, at, equations);
-      continue;
-    }
-    if (!linearise(window, factor, layout, at, linear)) continue;
+  if (cost.prior) add_prior(window, cost.prior->prior(), layout, at, equations);
+  for (const auto& factor : cost.factors) {
+    if (!linearise(window, *factor, layout, at, linear)) continue;
     H.setZero(linear.J.cols(), linear.J.cols());
     H.selfadjointView<Eigen::Lower>().rankUpdate(linear.J.transpose());
     equations.add(H, linear.J.transpose() * linear.r, linear.blocks);
@@ -122,8 +119,8 @@ NormalEquations normal_equations(const Window& window, const Cost& cost, const L
 }
 
 double value_of(const Window& window, const Cost& cost) {
-  double sum = 0.0;
-  for (const Factor& factor : cost.factors) sum += value_of(window, factor);
+  double sum = cost.prior ? value_of(window, *cost.prior) : 0.0;
+  for (const auto& factor : cost.factors) sum += value_of(window, *factor);
   const CameraViews views(window);
   for (const LandmarkTerm& term : cost.landmarks) sum += value_of(term, views, *window.visual_loss());
   return sum;

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "edged/estimator/cost.hpp"
-#include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/marginalization.hpp"
 
 namespace edged {
@@ -23,53 +22,64 @@ StateId youngest_keyframe(const Window& window) {
   return youngest;
 }
 
-/// Whether a factor goes into the prior when the oldest state leaves.
-bool goes(const Factor& factor, const std::set<BlockKey>& leaving, StateId oldest) {
-  if (factor.kind == FactorKind::Prior) return true;
-  // It leaves with its own state, all its landmarks anchored there; others are made anew of what stays.
-  if (factor.kind == FactorKind::SceneDepth) return factor.state == oldest && factor.lasting;
-  return std::ranges::any_of(factor.blocks, [&](const BlockKey& key) { return leaving.contains(key); });
+/// The landmarks anchored in the oldest state, and the observation in which those that the youngest keyframe still sees
+/// are anchored anew: that of the same camera where there is one.
+using Inherited = std::map<FeatureId, std::optional<ObservationKey>>;
+
+Inherited inherited_landmarks(const Window& window) {
+  const StateId oldest = window.oldest_id(), youngest = youngest_keyframe(window);
+  Inherited inherited;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor || feature.anchor->state != oldest) continue;
+    std::optional<ObservationKey>& anchor = inherited[id];
+    if (youngest == oldest || !feature.seen_at(youngest)) continue;
+    anchor = feature.observations.lower_bound({youngest, 0})->first;
+    const ObservationKey same_camera{youngest, feature.anchor->camera};
+    if (feature.observations.contains(same_camera)) anchor = same_camera;
+  }
+  return inherited;
 }
 
-/// The terms that go into the prior when the oldest state leaves. inherited: the landmarks anchored there, and whether
-/// the new_anchor goes on with them; of landmarks anchored in younger keyframes only an observation goes.
-Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const std::map<FeatureId, bool>& inherited,
-                  StateId new_anchor) {
+/// The terms that go into the prior when the oldest state leaves. Of landmarks anchored in younger keyframes only an
+/// observation goes; of those that go on, what is seen up to the new anchor.
+Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const Inherited& inherited) {
   const StateId oldest = window.oldest_id();
+  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
   Cost cost = cost_of(window, Observations::OfKeyframes);
-  std::erase_if(cost.factors, [&](const Factor& factor) { return !goes(factor, leaving, oldest); });
-  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor != oldest; });
+  std::erase_if(cost.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
+  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor.state != oldest; });
   for (LandmarkTerm& term : cost.landmarks) {
-    // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
-    if (!inherited.at(term.id)) continue;
-    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) { return residual.seen > new_anchor; });
+    const std::optional<ObservationKey>& anchor = inherited.at(term.id);
+    if (!anchor) continue;
+    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) {
+      return residual.seen.state >= anchor->state && residual.seen != *anchor;
+    });
   }
   return cost;
 }
 
 /// A landmark as one of its views sees it. The errors of a track are a walk, so that of its depth the view that is
 /// farthest from the anchor's tells nearly all.
-KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, StateId state) {
-  const SE3 T_W_A = window.T_W_C(*feature.anchor, feature.camera);
+KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
+  const SE3 T_W_A = window.T_W_C(*feature.anchor);
   const Eigen::Vector3d p_W = window.position(feature);
   double share = std::numeric_limits<double>::infinity();  // of the inverse depth: its sigma
-  for (const auto& [other, observation] : feature.seen) {
+  for (const auto& [other, observation] : feature.observations) {
     if (other == *feature.anchor) continue;
-    const SE3 T_C_W = window.T_W_C(other, feature.camera).inverse();
+    const SE3 T_C_W = window.T_W_C(other).inverse();
     const Eigen::Vector3d p_C = T_C_W * p_W, along_C = T_C_W.R() * (p_W - T_W_A.translation());
     const Eigen::Vector2d by_share = (along_C.head<2>() - p_C.hnormalized() * along_C.z()) / p_C.z();
     share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
   }
-  const double inverse_depth = 1.0 / (window.T_W_C(state, feature.camera).inverse() * p_W).z();
-  return {id, feature.seen.at(state).point, inverse_depth, share * std::abs(inverse_depth)};
+  const double inverse_depth = 1.0 / (window.T_W_C(view).inverse() * p_W).z();
+  return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
 }
 
 /// Keyframes that stay keep what they saw of a landmark whose observations there go.
-void keep_points(Window& window, FeatureId id, const Feature& feature, std::optional<StateId> new_anchor) {
-  for (const auto& [state, observation] : feature.seen) {
-    if (state == *feature.anchor || (new_anchor && state >= *new_anchor) || !window.states().at(state).keyframe)
-      continue;
-    window.keep_point(state, feature.camera, point_of(window, id, feature, state));
+void keep_points(Window& window, FeatureId id, const Feature& feature, const std::optional<ObservationKey>& anchor) {
+  for (const auto& [view, observation] : feature.observations) {
+    if (view.state == feature.anchor->state || (anchor && view.state >= anchor->state)) continue;
+    if (window.states().at(view.state).keyframe) window.keep_point(view, point_of(window, id, feature, view));
   }
 }
 
@@ -77,14 +87,17 @@ KeyframeRecord record_of(const Window& window, StateId id) {
   const WindowState& state = window.states().at(id);
   KeyframeRecord record{state.t, state.T_W_B(), {}};
   for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
-    const SE3 T_B_C = record.T_W_B.inverse() * window.T_W_C(id, camera);
+    const SE3 T_B_C = record.T_W_B.inverse() * window.T_W_C({id, camera});
     const auto kept = state.kept.find(camera);
     record.views.push_back({window.cameras()[camera].given.name, T_B_C, {}});
     if (kept != state.kept.end()) record.views.back().points = kept->second;
   }
   for (const auto& [feature_id, feature] : window.features()) {
-    if (!feature.anchor || !feature.seen.contains(id)) continue;
-    record.views[feature.camera].points.push_back(point_of(window, feature_id, feature, id));
+    if (!feature.anchor) continue;
+    for (auto seen = feature.observations.lower_bound({id, 0});
+         seen != feature.observations.end() && seen->first.state == id; ++seen) {
+      record.views[seen->first.camera].points.push_back(point_of(window, feature_id, feature, seen->first));
+    }
   }
   return record;
 }
@@ -105,34 +118,36 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
 }
 
 KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
-  const StateId id = window.oldest_id(), new_anchor = youngest_keyframe(window);
+  const StateId id = window.oldest_id();
   KeyframeRecord record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
-  const std::optional<BlockKey> scale = window.scale_block();
-  if (scale) leaving.insert(*scale);
-  std::map<FeatureId, bool> inherited;
-  for (const auto& [feature_id, feature] : window.features()) {
-    if (feature.anchor != id) continue;
-    inherited[feature_id] = new_anchor != id && feature.seen.contains(new_anchor);
-    keep_points(window, feature_id, feature, inherited[feature_id] ? std::optional(new_anchor) : std::nullopt);
+  for (const BlockKey& scalar : window.walking()) leaving.insert(scalar);
+  const Inherited inherited = inherited_landmarks(window);
+  for (const auto& [feature_id, anchor] : inherited) {
+    keep_points(window, feature_id, window.features().at(feature_id), anchor);
   }
-  Cost cost = cost_leaving(window, leaving, inherited, new_anchor);
-  LinearPrior scale_walk;
-  if (scale) {
-    const auto next = std::next(window.states().begin());
-    scale_walk = begin_scale(window, to_seconds(next->second.t - record.t));
-    cost.factors.push_back(
-        {FactorKind::SoftPrior, std::make_unique<LinearPriorFactor>(scale_walk), nullptr, scale_walk.blocks});
+  Cost cost = cost_leaving(window, leaving, inherited);
+  const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
+  for (const BlockKey& scalar : window.walking()) {
+    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.begin_piece(scalar.kind, dt_s)));
   }
-  std::map<FeatureId, double> inverse_depths;  // in the new_anchor
-  for (const auto& [feature_id, seen_by_heir] : inherited) {
-    if (!seen_by_heir) continue;
-    const Feature& feature = window.features().at(feature_id);
-    const auto there = inverse_depth_in(window, new_anchor, feature.camera, window.position(feature), config);
-    if (there) inverse_depths.emplace(feature_id, *there);
+  std::map<FeatureId, NewAnchor> anchors;
+  for (const auto& [feature_id, anchor] : inherited) {
+    if (!anchor) continue;
+    const auto there = inverse_depth_in(window, *anchor, window.position(window.features().at(feature_id)), config);
+    if (there) anchors.emplace(feature_id, NewAnchor{*anchor, *there});
   }
-  window.drop_oldest(marginalize(window, cost, leaving), new_anchor, inverse_depths);
+  window.drop_oldest(marginalize(window, cost, leaving), anchors);
   return record;
+}
+
+void forget_walk(Window& window, BlockKind kind) {
+  std::set<BlockKey> leaving;
+  for (const BlockKey& key : window.prior()->blocks()) {
+    if (key.kind == kind) leaving.insert(key);
+  }
+  const Cost known{window.prior(), {}, {}};
+  window.end_walk(kind, leaving.empty() ? window.prior()->prior() : marginalize(window, known, leaving));
 }
 
 }  // namespace edged

@@ -18,4 +18,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s);
 /// the youngest keyframe with the observations from there on, so that nothing is used twice.
 KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
 
+/// A scalar that walks has jumped: it goes with its factors, and out of the prior.
+void forget_walk(Window& window, BlockKind kind);
+
 }  // namespace edged

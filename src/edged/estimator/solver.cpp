@@ -48,7 +48,10 @@ class Neighbourhood {
       window_.move(key, {d.data() + offset, static_cast<std::size_t>(tangent_size(key.kind))});
     }
     for (const DepthEquation& depth : eliminated_) {
-      double coupled = depth.g + depth.by_calibration.dot(d.segment<4>(depth.calibration));
+      double coupled = depth.g;
+      for (const DepthByCalibration& camera : depth.calibrations) {
+        coupled += camera.coupling.dot(d.segment<4>(camera.global));
+      }
       for (const DepthByPose& pose : depth.poses) coupled += pose.coupling.dot(d.segment<6>(pose.global));
       const double step = -coupled / depth.h;
       window_.move({BlockKind::InverseDepth, depth.landmark}, {&step, 1});

@@ -76,46 +76,58 @@ class CeresBlocks {
 };
 
 /// The term's residuals as cost functions of Ceres.
-void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& all, ceres::Problem& problem) {
-  const auto pose = [&](StateId state) { return all.at({BlockKind::Pose, state}); };
-  const auto view = [&](StateId state, const Eigen::Vector2d& point) {
-    return LandmarkView{point, window.states().at(state).rate()};
+void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& all, ceres::Problem& problem,
+                  std::vector<std::unique_ptr<ceres::CostFunction>>& owned) {
+  std::vector<StateId> poses;
+  std::vector<std::size_t> cameras;
+  const auto place_in = [](auto& known, auto value) {
+    const auto found = std::ranges::find(known, value);
+    const auto place = static_cast<std::size_t>(found - known.begin());
+    if (found == known.end()) known.push_back(value);
+    return place;
   };
-  const SE3& T_B_C = window.cameras()[term.camera].given.T_B_C;
-  const LandmarkView anchor = view(term.anchor, term.point);
+  const auto view = [&](const ObservationKey& image, const Eigen::Vector2d& point) {
+    const BodyRate rate = window.states().at(image.state).rate();
+    return LandmarkView{point, rate, place_in(poses, image.state), place_in(cameras, image.camera)};
+  };
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];
-    std::vector<double*> blocks = {pose(term.anchor), pose(at.seen)};
-    std::optional<LandmarkView> before;
-    if (at.correlation != 0.0) {
-      before = view(term.residuals[i - 1].seen, term.residuals[i - 1].point);
-      blocks.push_back(pose(term.residuals[i - 1].seen));
+    poses.clear(), cameras.clear();
+    std::vector<LandmarkView> views = {view(term.anchor, term.point), view(at.seen, at.point)};
+    if (at.correlation != 0.0) views.push_back(view(term.residuals[i - 1].seen, term.residuals[i - 1].point));
+    std::vector<double*> blocks;
+    std::vector<SE3> T_B_C;
+    for (const StateId state : poses) blocks.push_back(all.at({BlockKind::Pose, state}));
+    for (const std::size_t camera : cameras) {
+      blocks.push_back(all.at({BlockKind::Calibration, camera}));
+      T_B_C.push_back(window.cameras()[camera].given.T_B_C);
     }
-    blocks.insert(blocks.end(),
-                  {all.at({BlockKind::Calibration, term.camera}), all.at({BlockKind::InverseDepth, term.id})});
-    problem.AddResidualBlock(
-        new LandmarkCost(T_B_C, anchor, view(at.seen, at.point), 1.0 / at.weight, before, at.correlation),
-        window.visual_loss(), blocks);
+    blocks.push_back(all.at({BlockKind::InverseDepth, term.id}));
+    owned.push_back(std::make_unique<LandmarkCost>(T_B_C, std::move(views), 1.0 / at.weight, at.correlation));
+    problem.AddResidualBlock(owned.back().get(), window.visual_loss(), blocks);
   }
 }
 
 /// The final cost; `all` are the blocks there.
 double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) {
-  Cost cost = cost_of(window);
+  const Cost cost = cost_of(window);
+  std::vector<std::unique_ptr<ceres::CostFunction>> landmarks;
   PoseManifold manifold;
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.*kManifoldOwnership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
   for (const auto& [id, state] : window.states()) {
     problem.AddParameterBlock(all.at({BlockKind::Pose, id}), 7, &manifold);
   }
-  for (Factor& factor : cost.factors) {
+  for (const auto& factor : cost.factors) {  // the problem leaves what it does not own as it is
     std::vector<double*> blocks;
-    for (const BlockKey& key : factor.blocks) blocks.push_back(all.at(key));
-    problem.AddResidualBlock(factor.cost.release(), factor.loss, blocks);
+    for (const BlockKey& key : factor->blocks()) blocks.push_back(all.at(key));
+    problem.AddResidualBlock(const_cast<Factor*>(factor.get()), const_cast<ceres::LossFunction*>(factor->loss()),
+                             blocks);
   }
-  for (const LandmarkTerm& term : cost.landmarks) add_landmark(window, term, all, problem);
+  for (const LandmarkTerm& term : cost.landmarks) add_landmark(window, term, all, problem, landmarks);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.max_num_iterations = iterations;
@@ -148,9 +160,10 @@ Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
 }
 
 TEST(Solve, ComesToWhereCeresComes) {
-  for (const int iterations : {1, 2, 20}) {
-    SCOPED_TRACE(iterations);
-    const TestWorldOptions options{.cameras = 2};
+  for (const auto& [iterations, shared] :
+       {std::pair(1, false), std::pair(2, false), std::pair(20, false), std::pair(2, true), std::pair(20, true)}) {
+    SCOPED_TRACE(testing::Message() << iterations << (shared ? ", the cameras see the same landmarks" : ""));
+    const TestWorldOptions options{.cameras = 2, .shared_ids = shared};
     TestWorld world(options);
     Window window = disturbed_window(world, options);
     CeresBlocks blocks(window);
@@ -189,7 +202,7 @@ TEST(Solve, IsNotUsableWithALandmarkBehindItsCamera) {
   const auto landmark =
       std::ranges::find_if(window.features(), [](const auto& f) { return f.second.anchor.has_value(); });
   ASSERT_NE(landmark, window.features().end());
-  const StateId seen = landmark->second.seen.rbegin()->first;
+  const StateId seen = landmark->second.observations.rbegin()->first.state;
   displace(window, seen, {0.0, 3.1, 0.0}, {0.0, 0.0, 0.0});
   const std::vector<double> turned = window.estimates();
   EXPECT_FALSE(solve(window, 5).usable);
@@ -197,8 +210,10 @@ TEST(Solve, IsNotUsableWithALandmarkBehindItsCamera) {
 }
 
 /// The gradient that the normal equations have against differences of the cost.
-TEST(NormalEquations, HaveTheGradientOfTheCost) {
-  const TestWorldOptions options{.cameras = 2};
+class NormalEquationsOf : public testing::TestWithParam<bool> {};
+
+TEST_P(NormalEquationsOf, TheWindowHaveTheGradientOfTheCost) {
+  const TestWorldOptions options{.cameras = 2, .shared_ids = GetParam()};
   TestWorld world(options);
   Window window = disturbed_window(world, options);
   Cost cost = cost_of(window);
@@ -224,6 +239,10 @@ TEST(NormalEquations, HaveTheGradientOfTheCost) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Cameras, NormalEquationsOf, testing::Values(false, true), [](const auto& test) {
+  return test.param ? "that_see_the_same_landmarks" : "with_landmarks_of_their_own";
+});
 
 }  // namespace
 }  // namespace edged

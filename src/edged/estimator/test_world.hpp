@@ -15,13 +15,14 @@
 namespace edged {
 
 struct TestWorldOptions {
-  double rest_s = 0.0;                                   ///< at the beginning
-  int cameras = 1;                                       ///< 2: one more, "events", turned and shifted against "frames"
-  double speed = 1.0;                                    ///< scales the amplitude of the motion; 0: rotation only
-  double turn = 1.0;                                     ///< scales the amplitude of the rotation
-  double tempo = 1.0;                                    ///< how fast the motion runs
-  double turn_only_s = 0.0;                              ///< no translation before this, at full speed a second later
-  double near_m = 1.5, far_m = 4.0;                      ///< heights of the points over the origin
+  double rest_s = 0.0;               ///< at the beginning
+  int cameras = 1;                   ///< 2: one more, "events", turned and shifted against "frames"
+  bool shared_ids = false;           ///< all cameras call a point the same: they observe it together
+  double speed = 1.0;                ///< scales the amplitude of the motion; 0: rotation only
+  double turn = 1.0;                 ///< scales the amplitude of the rotation
+  double tempo = 1.0;                ///< how fast the motion runs
+  double turn_only_s = 0.0;          ///< no translation before this, at full speed a second later
+  double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< of scale and axes: measured = (I + E) true + bias
   double pixel_noise = 0.5;                              ///< [px]
   double pixel_walk = 0.0;                               ///< [px/sqrt(s)] how fast tracks drift from their points
@@ -44,8 +45,10 @@ class TestWorld {
     rig_.cameras.push_back({"frames", Modality::Frames, CameraModel(240, 180, 200, 200, 119.5, 89.5),
                             SE3(so3::exp({0.01, 0.02, -0.01}), {0.02, 0.01, 0.03}), Duration(0)});
     if (options_.cameras > 1) {
+      const Eigen::Vector3d turned =
+          options_.shared_ids ? Eigen::Vector3d(0.02, -0.05, 0.1) : Eigen::Vector3d(0.2, -0.15, 0.4);
       rig_.cameras.push_back({"events", Modality::Events, CameraModel(240, 180, 210, 200, 125, 85),
-                              SE3(so3::exp({0.2, -0.15, 0.4}), {-0.06, 0.03, 0.01}), Duration(0)});
+                              SE3(so3::exp(turned), {-0.06, 0.03, 0.01}), Duration(0)});
     }
     noise_.gyro_noise = 2e-4;
     noise_.accel_noise = 4e-3;
@@ -84,6 +87,16 @@ class TestWorld {
     return sample;
   }
 
+  HeightSample height(double t, double sigma) {
+    return {timestamp_from_seconds(t), T_W_B(t).translation().z() + sigma * normal(), sigma};
+  }
+
+  /// Of a sensor in the body's axes and place.
+  VelocitySample velocity(double t, double sigma) {
+    return {timestamp_from_seconds(t), T_W_B(t).R().transpose() * v_W(t) + sigma * normal3(),
+            Eigen::Vector3d::Constant(sigma)};
+  }
+
   /// Point i of the world; camera c calls it i + 1 + 1000 c.
   const Eigen::Vector3d& point_W(FeatureId id) const { return points_W_.at((id - 1) % 1000); }
 
@@ -99,7 +112,8 @@ class TestWorld {
       const Eigen::Vector3d p_C = T_C_W * (walks ? walker_[i] + walked : points_W_[i - walker_.size()]);
       const auto pixel = camera.model.project(p_C);
       if (!pixel || !camera.model.contains(*pixel)) continue;
-      const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + 1000 * camera_index;
+      const std::size_t of_camera = options_.shared_ids ? 0 : 1000 * camera_index;
+      const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + of_camera;
       Eigen::Vector2d noise(normal(), normal());
       noise *= options_.pixel_noise;
       if (options_.pixel_walk > 0.0) noise += drifted(id, t);

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "edged/core/check.hpp"
+#include "edged/estimator/factors/imu_factor.hpp"
+#include "edged/estimator/factors/standstill_factor.hpp"
 
 namespace edged {
 namespace {
@@ -25,7 +27,23 @@ LinearPrior near_present(BlockKey key, std::span<const double> present, const Ei
   return prior;
 }
 
+/// The observations from one state on, up to another.
+void forget(Feature& feature, StateId first, StateId end) {
+  feature.observations.erase(feature.observations.lower_bound({first, 0}), feature.observations.lower_bound({end, 0}));
+}
+
+bool is_of(const Factor& factor, StateId state) {
+  return std::ranges::any_of(factor.blocks(), [&](const BlockKey& key) {
+    return key.id == state && (key.kind == BlockKind::Pose || key.kind == BlockKind::Motion);
+  });
+}
+
 }  // namespace
+
+bool Feature::seen_at(StateId state) const {
+  const auto first = observations.lower_bound({state, 0});
+  return first != observations.end() && first->first.state == state;
+}
 
 NavState WindowState::nav() const {
   NavState nav;
@@ -60,17 +78,14 @@ WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Pre
 }
 
 Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
-    : depth_config_(depth),
-      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)),
-      depth_loss_(std::make_unique<ceres::CauchyLoss>(depth.cauchy_scale)) {
+    : prior_(std::make_shared<LinearPriorFactor>(LinearPrior{})),
+      depth_config_(depth),
+      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {
   for (const RigCamera& given : rig.cameras) {
     cameras_.push_back({given, {0.0, 0.0, 0.0, to_seconds(given.time_offset)}});
   }
   free_calibration({0.0, 0.0, 0.0});
-  if (!depth.enabled) return;
-  ln_scale_[0] = 0.0;
-  add_soft_prior(
-      near_present({BlockKind::LogScale, 0}, {&ln_scale_[0], 1}, Eigen::VectorXd::Constant(1, depth.scale_sigma)));
+  if (depth.enabled) begin_walk(BlockKind::LogScale, 0.0, {depth.scale_sigma, depth.scale_walk});
 }
 
 std::size_t Window::camera_index(const std::string& name) const {
@@ -88,15 +103,25 @@ RigCamera Window::calibrated(std::size_t camera) const {
   return found;
 }
 
-SE3 Window::T_W_C(StateId state, std::size_t camera) const {
-  const WindowState& at = states_.at(state);
-  const WindowCamera& by = cameras_[camera];
+SE3 Window::T_W_C(const ObservationKey& image) const {
+  const WindowState& at = states_.at(image.state);
+  const WindowCamera& by = cameras_[image.camera];
   return camera_pose(at.T_W_B(), at.rate(), by.given.T_B_C, by.calibration.data());
 }
 
+bool Window::alive(const Feature& feature, std::size_t camera) const {
+  const auto seen = feature.last_seen.find(camera);
+  return seen != feature.last_seen.end() && seen->second == cameras_[camera].last_image;
+}
+
+bool Window::alive(const Feature& feature) const {
+  return std::ranges::any_of(feature.last_seen,
+                             [&](const auto& seen) { return seen.second == cameras_[seen.first].last_image; });
+}
+
 Eigen::Vector3d Window::position(const Feature& feature) const {
-  const Eigen::Vector2d& point = feature.seen.at(*feature.anchor).point;
-  return T_W_C(*feature.anchor, feature.camera) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
+  const Eigen::Vector2d& point = feature.observations.at(*feature.anchor).point;
+  return T_W_C(*feature.anchor) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
 }
 
 WindowState& Window::state(StateId id) {
@@ -114,7 +139,10 @@ Feature& Window::feature(FeatureId id) {
 StateId Window::add_state(WindowState state, const std::vector<CameraObservations>& observations) {
   EDGED_CHECK(states_.empty() || state.t > newest().t, "a state at {} ns after one at {} ns", to_ns(state.t),
               to_ns(newest().t));
-  states_.emplace(next_state_, std::move(state));
+  const std::optional<StateId> before = states_.empty() ? std::nullopt : std::optional(newest_id());
+  const WindowState& added = states_.emplace(next_state_, std::move(state)).first->second;
+  if (before) add(std::make_shared<ImuFactor>(*before, next_state_, added.imu));
+  if (before && added.rested) add(std::make_shared<StandstillFactor>(*before, next_state_));
   for (const CameraObservations& view : observations) observe(view);
   return next_state_++;
 }
@@ -125,13 +153,10 @@ void Window::observe(const CameraObservations& view) {
   WindowCamera& camera = cameras_[index];
   camera.last_image = newest_id();
   for (const FeatureObservation& observation : view.features) {
-    const auto [entry, unknown] = features_.try_emplace(observation.id);
-    Feature& feature = entry->second;
-    if (unknown) feature.camera = index;
-    EDGED_CHECK(feature.camera == index, "camera '{}' sees feature {} of '{}'", view.camera, observation.id,
-                cameras_[feature.camera].given.name);
-    feature.last_seen = newest_id();
-    FeatureObservation& kept = feature.seen.insert_or_assign(newest_id(), observation).first->second;
+    Feature& feature = features_[observation.id];
+    feature.last_seen[index] = newest_id();
+    const ObservationKey image{newest_id(), index};
+    FeatureObservation& kept = feature.observations.insert_or_assign(image, observation).first->second;
     kept.sigma *= camera.noise_scale;
   }
 }
@@ -141,49 +166,77 @@ void Window::set_depth(const RegionDepth& depth) {
   state(newest_id()).depth = depth;
 }
 
+void Window::add(std::shared_ptr<Factor> factor) {
+  check(*factor);
+  const auto same = [&](const auto& other) { return other->blocks() == factor->blocks() && other->absorb(*factor); };
+  if (std::ranges::none_of(factors_, same)) factors_.push_back(std::move(factor));
+}
+
 void Window::drop_state(StateId id, Preintegration joined) {
-  const WindowState& leaving = state(id);
-  EDGED_CHECK(!leaving.keyframe && id != oldest_id() && id != newest_id(), "state {} cannot be dropped", id);
-  std::next(states_.find(id))->second.imu = std::move(joined);
-  for (auto& [feature_id, feature] : features_) feature.seen.erase(id);
-  states_.erase(id);
-  drop_orphaned_priors();
+  const auto leaving = states_.find(id);
+  EDGED_CHECK(leaving != states_.end() && !leaving->second.keyframe && id != oldest_id() && id != newest_id(),
+              "state {} cannot be dropped", id);
+  const auto before = std::prev(leaving), after = std::next(leaving);
+  after->second.imu = std::move(joined);
+  const DroppedState dropped{before->first, id, after->first, after->second.imu, leaving->second.imu};
+  std::vector<std::shared_ptr<Factor>> kept = std::move(factors_);
+  factors_.clear();
+  for (std::shared_ptr<Factor>& factor : kept) {
+    if (is_of(*factor, id)) factor = factor->without(dropped);
+    if (factor != nullptr) add(std::move(factor));
+  }
+  for (auto& [feature_id, feature] : features_) forget(feature, id, id + 1);
+  states_.erase(leaving);
+  forget_orphaned_factors();
 }
 
-void Window::keep_point(StateId id, std::size_t camera, const KeyframePoint& point) {
-  EDGED_CHECK(state(id).keyframe && camera < cameras_.size(), "state {}, camera {}", id, camera);
-  state(id).kept[camera].push_back(point);
+void Window::keep_point(const ObservationKey& image, const KeyframePoint& point) {
+  EDGED_CHECK(state(image.state).keyframe && image.camera < cameras_.size(), "state {}, camera {}", image.state,
+              image.camera);
+  state(image.state).kept[image.camera].push_back(point);
 }
 
-void Window::drop_oldest(LinearPrior prior, StateId new_anchor, const std::map<FeatureId, double>& inherited) {
+void Window::drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>& inherited) {
   EDGED_CHECK(states_.size() > 1, "the only state cannot leave");
   const StateId oldest = oldest_id();
-  for (const auto& [id, inverse_depth] : inherited) {
-    make_landmark(id, new_anchor, inverse_depth);
-    std::erase_if(feature(id).seen, [&](const auto& observation) { return observation.first < new_anchor; });
+  for (const auto& [id, anchor] : inherited) {
+    make_landmark(id, anchor);
+    forget(feature(id), 0, anchor.key.state);
   }
-  std::erase_if(features_, [&](const auto& entry) { return entry.second.anchor == oldest; });
-  for (auto& [id, feature] : features_) feature.seen.erase(oldest);
+  std::erase_if(features_, [&](const auto& entry) {
+    const std::optional<ObservationKey>& anchor = entry.second.anchor;
+    return anchor && anchor->state == oldest;
+  });
+  for (auto& [id, feature] : features_) forget(feature, oldest, oldest + 1);
   states_.erase(oldest);
-  if (!ln_scale_.empty()) ln_scale_.erase(ln_scale_.begin(), std::prev(ln_scale_.end()));
-  check(prior);
+  for (auto& [kind, scalar] : walking_) {
+    for (const auto& [piece, value] : scalar.pieces()) {
+      for (const auto& factor : factors_) factor->replace({kind, piece}, scalar.present());
+    }
+    scalar.leave_behind();
+  }
+  set_prior(std::move(prior));
+  forget_orphaned_factors();
+}
+
+void Window::set_prior(LinearPrior prior) {
   EDGED_CHECK(prior.information.cols() == prior.J.cols(), "a prior of {} columns whose J^T J has {}", prior.J.cols(),
               prior.information.cols());
-  prior_ = std::move(prior);
-  drop_orphaned_priors();
+  prior_ = std::make_shared<LinearPriorFactor>(std::move(prior));
+  check(*prior_);
 }
 
-void Window::make_landmark(FeatureId id, StateId anchor, double inverse_depth) {
+void Window::make_landmark(FeatureId id, const NewAnchor& anchor) {
   Feature& track = feature(id);
-  EDGED_CHECK(track.seen.contains(anchor) && state(anchor).keyframe, "state {} is no keyframe that sees feature {}",
-              anchor, id);
-  track.anchor = anchor;
-  track.inverse_depth = inverse_depth;
+  EDGED_CHECK(track.observations.contains(anchor.key) && state(anchor.key.state).keyframe,
+              "state {} is no keyframe whose camera {} sees feature {}", anchor.key.state, anchor.key.camera, id);
+  track.anchor = anchor.key;
+  track.inverse_depth = anchor.inverse_depth;
 }
 
-void Window::forget_observation(FeatureId id, StateId state) {
-  EDGED_CHECK(feature(id).anchor != state, "landmark {} is anchored in state {}", id, state);
-  feature(id).seen.erase(state);
+void Window::forget_observation(FeatureId id, const ObservationKey& image) {
+  EDGED_CHECK(feature(id).anchor != image, "landmark {} is anchored in state {}", id, image.state);
+  feature(id).observations.erase(image);
 }
 
 void Window::forget_ended_tracks() {
@@ -193,13 +246,14 @@ void Window::forget_ended_tracks() {
 void Window::rescale_noise(std::size_t camera, double factor) {
   cameras_.at(camera).noise_scale *= factor;
   for (auto& [id, feature] : features_) {
-    if (feature.camera != camera) continue;
-    for (auto& [state, observation] : feature.seen) observation.sigma *= factor;
+    for (auto& [image, observation] : feature.observations) {
+      if (image.camera == camera) observation.sigma *= factor;
+    }
   }
 }
 
 void Window::free_calibration(const CalibrationConfig& config) {
-  std::erase_if(soft_priors_, [](const LinearPrior& soft) { return is_calibration(soft.blocks.front()); });
+  std::erase_if(soft_priors_, [](const auto& soft) { return is_calibration(soft->blocks().front()); });
   const double rotation = config.rotation_sigma_deg * std::numbers::pi / 180.0;
   const Eigen::Vector4d of_camera(rotation, rotation, rotation, config.time_offset_sigma_ms * 1e-3);
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
@@ -209,39 +263,49 @@ void Window::free_calibration(const CalibrationConfig& config) {
 }
 
 void Window::add_soft_prior(LinearPrior prior) {
-  check(prior);
-  soft_priors_.push_back(std::move(prior));
+  auto soft = std::make_shared<LinearPriorFactor>(std::move(prior));
+  check(*soft);
+  soft_priors_.push_back(std::move(soft));
 }
 
-void Window::check(const LinearPrior& prior) const {
-  Eigen::Index columns = 0;
-  for (const BlockKey& key : prior.blocks) {
-    // Not of inverse depths either: landmarks come and go without asking for priors.
+void Window::check(const Factor& factor) const {
+  for (const BlockKey& key : factor.blocks()) {
+    // Not of inverse depths either: landmarks come and go without asking for factors.
     EDGED_CHECK(block(key) != nullptr && key.kind != BlockKind::InverseDepth,
-                "a prior of block {} of kind {}, which does not stay in the window", key.id,
+                "a factor of block {} of kind {}, which does not stay in the window", key.id,
                 static_cast<int>(key.kind));
-    columns += tangent_size(key.kind);
   }
-  EDGED_CHECK(prior.J.cols() == columns && prior.x0.size() == prior.blocks.size(),
-              "a prior of {} blocks with {} columns, {} of them in J", prior.blocks.size(), columns, prior.J.cols());
 }
 
-void Window::drop_orphaned_priors() {
-  std::erase_if(soft_priors_, [&](const LinearPrior& soft) {
-    return std::any_of(soft.blocks.begin(), soft.blocks.end(), [&](BlockKey key) { return block(key) == nullptr; });
-  });
+void Window::forget_orphaned_factors() {
+  const auto orphaned = [&](const auto& factor) {
+    return std::ranges::any_of(factor->blocks(), [&](const BlockKey& key) { return block(key) == nullptr; });
+  };
+  std::erase_if(soft_priors_, orphaned);
+  std::erase_if(factors_, orphaned);
 }
 
-std::optional<BlockKey> Window::scale_block() const {
-  if (ln_scale_.empty()) return std::nullopt;
-  return BlockKey{BlockKind::LogScale, ln_scale_.rbegin()->first};
+void Window::begin_walk(BlockKind kind, double value, const Walk& walk) {
+  const auto [scalar, is_new] = walking_.try_emplace(kind, kind, value, walk.per_root_s);
+  EDGED_CHECK(is_new, "a second scalar of kind {}", static_cast<int>(kind));
+  add_soft_prior(near_present(scalar->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
 }
 
-BlockKey Window::begin_scale() {
-  EDGED_CHECK(!ln_scale_.empty(), "a window without depth factors has no scale of theirs");
-  const auto [piece, ln_s] = *ln_scale_.rbegin();
-  ln_scale_.emplace(piece + 1, ln_s);
-  return {BlockKind::LogScale, piece + 1};
+std::optional<BlockKey> Window::walking(BlockKind kind) const {
+  const auto found = walking_.find(kind);
+  return found == walking_.end() ? std::nullopt : std::optional(found->second.present());
+}
+
+std::vector<BlockKey> Window::walking() const {
+  std::vector<BlockKey> present;
+  for (const auto& [kind, scalar] : walking_) present.push_back(scalar.present());
+  return present;
+}
+
+void Window::end_walk(BlockKind kind, LinearPrior prior) {
+  walking_.erase(kind);
+  set_prior(std::move(prior));
+  forget_orphaned_factors();
 }
 
 const double* Window::block(BlockKey key) const {
@@ -249,24 +313,25 @@ const double* Window::block(BlockKey key) const {
     const auto found = features_.find(key.id);
     return found == features_.end() || !found->second.anchor ? nullptr : &found->second.inverse_depth;
   }
-  if (key.kind == BlockKind::LogScale) {
-    const auto found = ln_scale_.find(key.id);
-    return found == ln_scale_.end() ? nullptr : &found->second;
+  if (const auto scalar = walking_.find(key.kind); scalar != walking_.end()) {
+    const auto found = scalar->second.pieces().find(key.id);
+    return found == scalar->second.pieces().end() ? nullptr : &found->second;
   }
   if (key.kind == BlockKind::Calibration) {
     return key.id < cameras_.size() ? cameras_[key.id].calibration.data() : nullptr;
   }
   if (key.kind == BlockKind::ImuIntrinsics) return imu_intrinsics_.data();
   const auto found = states_.find(key.id);
-  if (found == states_.end()) return nullptr;
+  if (found == states_.end() || (key.kind != BlockKind::Pose && key.kind != BlockKind::Motion)) return nullptr;
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
 const double* Window::linearisation_point(BlockKey key) const {
   if (is_calibration(key)) return block(key);
-  const auto in_prior = std::find(prior_.blocks.begin(), prior_.blocks.end(), key);
-  if (in_prior == prior_.blocks.end()) return block(key);
-  return prior_.x0[static_cast<std::size_t>(in_prior - prior_.blocks.begin())].data();
+  const LinearPrior& prior = prior_->prior();
+  const auto in_prior = std::ranges::find(prior.blocks, key);
+  if (in_prior == prior.blocks.end()) return block(key);
+  return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
 }
 
 void Window::move(BlockKey key, std::span<const double> step) {
@@ -283,7 +348,9 @@ void Window::for_each_block(Self& self, const Visit& visit) {
   for (auto& [id, feature] : self.features_) {
     if (feature.anchor) visit(std::span(&feature.inverse_depth, 1));
   }
-  for (auto& [piece, ln_s] : self.ln_scale_) visit(std::span(&ln_s, 1));
+  for (auto& [kind, scalar] : self.walking_) {
+    for (auto& [piece, value] : scalar.pieces()) visit(std::span(&value, 1));
+  }
   for (auto& camera : self.cameras_) visit(std::span(camera.calibration));
   visit(std::span(self.imu_intrinsics_));
 }

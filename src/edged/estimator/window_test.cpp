@@ -51,7 +51,7 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
   triangulate_features(window, {});
   std::size_t observations = 0;
   for (const auto& [id, feature] : window.features()) {
-    if (feature.anchor) observations += feature.seen.size() - 1;
+    if (feature.anchor) observations += feature.observations.size() - 1;
   }
   EXPECT_GT(observations, 100U);
   EXPECT_EQ(terms_of(window), 3U + 1U + 5U + observations);
@@ -66,7 +66,7 @@ TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
   const double decay = std::exp(-kTrackedPeriod_s / 2.0);
   for (const auto& [modality, correlation] : {std::pair(Modality::Frames, 0.9), std::pair(Modality::Events, 0.6)}) {
     const auto landmark = std::ranges::find_if(window.features(), [&, m = modality](const auto& entry) {
-      return entry.second.anchor && window.cameras()[entry.second.camera].given.modality == m;
+      return entry.second.anchor && window.cameras()[entry.second.anchor->camera].given.modality == m;
     });
     ASSERT_NE(landmark, window.features().end());
     EXPECT_NEAR(track_steps(window, landmark->second).front().correlation, correlation * decay, 1e-9);
@@ -115,10 +115,10 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   TestWorld world(options);
   Window window = tracked_window(world, options);
   EXPECT_EQ(window.soft_priors().size(), 3U);  // calibrations of camera and IMU, gauge
-  window.drop_oldest({}, window.newest_id(), {});
+  window.drop_oldest({});
   ASSERT_EQ(window.soft_priors().size(), 2U);
-  EXPECT_EQ(window.soft_priors().front().blocks.front().kind, BlockKind::Calibration);
-  EXPECT_EQ(window.soft_priors().back().blocks.front().kind, BlockKind::ImuIntrinsics);
+  EXPECT_EQ(window.soft_priors().front()->blocks().front().kind, BlockKind::Calibration);
+  EXPECT_EQ(window.soft_priors().back()->blocks().front().kind, BlockKind::ImuIntrinsics);
 }
 
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
@@ -127,7 +127,7 @@ TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
   Window window = tracked_window(world, options);
   const BlockKey second{BlockKind::Pose, std::next(window.states().begin())->first};
   const BlockKey last{BlockKind::Pose, window.newest_id()};
-  window.drop_oldest(prior_of(window, second), window.newest_id(), {});
+  window.drop_oldest(prior_of(window, second));
   const double made_at = window.block(second)[0];
   window.move(second, std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0});
   EXPECT_EQ(window.block(second)[0], made_at + 0.5);
@@ -155,16 +155,17 @@ TEST(Window, ScalesTheNoiseOfOneCamera) {
   Window window = tracked_window(world, options);
   window.rescale_noise(1, 3.0);
   for (const auto& [id, feature] : window.features()) {
-    EXPECT_DOUBLE_EQ(feature.seen.begin()->second.sigma, (feature.camera == 1 ? 3.0 : 1.0) / 200.0);
+    const auto& [view, observation] = *feature.observations.begin();
+    EXPECT_DOUBLE_EQ(observation.sigma, (view.camera == 1 ? 3.0 : 1.0) / 200.0);
   }
   window.set_noise_scale(1, 2.0);  // of what comes
   window.add_state(state_at(3.0), {world.observe(3.0, 1)});
   int old = 0, anew = 0;
   for (const auto& [id, feature] : window.features()) {
-    for (const auto& [state, observation] : feature.seen) {
-      if (feature.camera != 1) continue;
-      EXPECT_DOUBLE_EQ(observation.sigma, (state == window.newest_id() ? 2.0 : 3.0) / 200.0);
-      ++(state == window.newest_id() ? anew : old);
+    for (const auto& [view, observation] : feature.observations) {
+      if (view.camera != 1) continue;
+      EXPECT_DOUBLE_EQ(observation.sigma, (view.state == window.newest_id() ? 2.0 : 3.0) / 200.0);
+      ++(view.state == window.newest_id() ? anew : old);
     }
   }
   EXPECT_GT(old, 100);
@@ -180,14 +181,21 @@ void expect_whole(const Window& window) {
     for (const auto& [camera, points] : state.kept) EXPECT_LT(camera, window.cameras().size());
   }
   for (const auto& [id, feature] : window.features()) {
-    ASSERT_LT(feature.camera, window.cameras().size());
-    for (const auto& [state, seen] : feature.seen) EXPECT_TRUE(window.states().contains(state)) << id;
+    for (const auto& [view, seen] : feature.observations) {
+      EXPECT_TRUE(window.states().contains(view.state)) << id;
+      EXPECT_LT(view.camera, window.cameras().size());
+      EXPECT_TRUE(feature.last_seen.contains(view.camera)) << id;
+    }
     if (!feature.anchor) continue;
-    ASSERT_TRUE(feature.seen.contains(*feature.anchor)) << id;
-    EXPECT_TRUE(window.states().at(*feature.anchor).keyframe) << id;
+    ASSERT_TRUE(feature.observations.contains(*feature.anchor)) << id;
+    EXPECT_TRUE(window.states().at(feature.anchor->state).keyframe) << id;
   }
-  std::vector<BlockKey> held = window.prior().blocks;
-  for (const LinearPrior& soft : window.soft_priors()) held.insert(held.end(), soft.blocks.begin(), soft.blocks.end());
+  std::vector<BlockKey> held = window.prior()->blocks();
+  const auto hold = [&](const auto& factors) {
+    for (const auto& factor : factors) held.insert(held.end(), factor->blocks().begin(), factor->blocks().end());
+  };
+  hold(window.soft_priors());
+  hold(window.factors());
   for (const BlockKey& key : held) EXPECT_NE(window.block(key), nullptr) << static_cast<int>(key.kind) << ' ' << key.id;
 }
 
@@ -202,34 +210,34 @@ TEST(Window, IsWholeThroughoutAFlightWithRestAndDepths) {
     estimator.add(input);
     expect_whole(estimator.window());
   }
-  EXPECT_FALSE(estimator.window().prior().empty());
+  EXPECT_FALSE(estimator.window().prior()->blocks().empty());
 }
 
-TEST(Window, HandsOnLandmarksOfItsOldestStateToTheHeir) {
+TEST(Window, HandsOnLandmarksOfItsOldestStateToANewAnchor) {
   const TestWorldOptions options;
   TestWorld world(options);
   Window window = tracked_window(world, options);
   triangulate_features(window, {});
-  const StateId oldest = window.oldest_id(), new_anchor = oldest + 3;
-  std::map<FeatureId, double> inherited;
+  const ObservationKey oldest{window.oldest_id(), 0}, anchor{oldest.state + 3, 0};
+  std::map<FeatureId, NewAnchor> inherited;
   std::set<FeatureId> others;
   for (const auto& [id, feature] : window.features()) {
     if (feature.anchor != oldest) continue;
-    if (feature.seen.contains(new_anchor) && inherited.size() < 10) {
-      inherited.emplace(id, 0.9 * feature.inverse_depth);
+    if (feature.observations.contains(anchor) && inherited.size() < 10) {
+      inherited.emplace(id, NewAnchor{anchor, 0.9 * feature.inverse_depth});
     } else {
       others.insert(id);
     }
   }
   ASSERT_EQ(inherited.size(), 10U);
   ASSERT_FALSE(others.empty());
-  window.drop_oldest(prior_of(window, {BlockKind::Pose, new_anchor}), new_anchor, inherited);
+  window.drop_oldest(prior_of(window, {BlockKind::Pose, anchor.state}), inherited);
   expect_whole(window);
-  for (const auto& [id, inverse_depth] : inherited) {
+  for (const auto& [id, anew] : inherited) {
     const Feature& feature = window.features().at(id);
-    EXPECT_EQ(feature.anchor, new_anchor);
-    EXPECT_EQ(feature.seen.begin()->first, new_anchor);  // nothing is used twice
-    EXPECT_EQ(feature.inverse_depth, inverse_depth);
+    EXPECT_EQ(feature.anchor, anchor);
+    EXPECT_EQ(feature.observations.begin()->first, anchor);  // nothing is used twice
+    EXPECT_EQ(feature.inverse_depth, anew.inverse_depth);
   }
   for (const FeatureId id : others) EXPECT_FALSE(window.features().contains(id));
 }
@@ -252,11 +260,46 @@ TEST_F(WindowRefuses, ObservationsOfACameraItDoesNotHave) {
   EXPECT_THROW(window_.set_depth({.camera = "left"}), CheckError);
 }
 
-TEST_F(WindowRefuses, AFeatureOfTwoCameras) {
+TEST(Window, KeepsWhatEachCameraSeesOfAFeature) {
   TestWorld world({.cameras = 2});
   Window window(world.rig(), 1.0);
-  const FeatureObservation seen{7, {0.0, 0.0}, 0.01};
-  EXPECT_THROW(window.add_state(state_at(1.0), {{"frames", {seen}}, {"events", {seen}}}), CheckError);
+  const FeatureObservation left{7, {0.1, 0.0}, 0.01}, right{7, {-0.1, 0.0}, 0.01};
+  const StateId first = window.add_state(state_at(1.0), {{"frames", {left}}, {"events", {right}}});
+  const Feature& feature = window.features().at(7);
+  EXPECT_EQ(feature.observations.at({first, 0}).point, left.point);
+  EXPECT_EQ(feature.observations.at({first, 1}).point, right.point);
+  window.make_landmark(7, {{first, 1}, 0.5});
+  EXPECT_EQ(track_steps(window, feature).front().seen, (ObservationKey{first, 0}));
+  EXPECT_THROW(window.forget_observation(7, {first, 1}), CheckError);
+  window.forget_observation(7, {first, 0});
+  EXPECT_TRUE(track_steps(window, feature).empty());
+  window.add_state(state_at(1.1), {{"frames", {}}});
+  EXPECT_FALSE(window.alive(feature, 0));
+  EXPECT_TRUE(window.alive(feature));
+}
+
+TEST(Window, CorrelatesErrorsAlongTheTrackOfEachCamera) {
+  const TestWorldOptions options{.cameras = 2, .shared_ids = true};
+  TestWorld world(options);
+  Window window = tracked_window(world, options);
+  triangulate_features(window, {});
+  window.set_track_noise({0.9, 0.6, 2.0});
+  const double decay = std::exp(-kTrackedPeriod_s / 2.0);
+  int seen_by_both = 0;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor || feature.last_seen.size() < 2) continue;
+    ++seen_by_both;
+    std::map<std::size_t, int> steps;
+    for (const TrackStep& step : track_steps(window, feature)) {
+      const bool first_of_camera = step.before.camera != step.seen.camera;
+      EXPECT_EQ(first_of_camera, steps[step.seen.camera]++ == 0 && step.seen.camera != feature.anchor->camera);
+      const double at_once = first_of_camera ? 0.0 : step.seen.camera == 0 ? 0.9 : 0.6;
+      if (step.seen.state == step.before.state + 1) {
+        EXPECT_NEAR(step.correlation, at_once * decay, 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(seen_by_both, 20);
 }
 
 TEST_F(WindowRefuses, ToDropAKeyframeOrAStateAtAnEnd) {
@@ -272,8 +315,8 @@ TEST_F(WindowRefuses, ToDropAKeyframeOrAStateAtAnEnd) {
 
 TEST_F(WindowRefuses, ToDropItsOnlyState) {
   Window window(world_.rig(), 1.0);
-  const StateId only = window.add_state(state_at(1.0));
-  EXPECT_THROW(window.drop_oldest({}, only, {}), CheckError);
+  window.add_state(state_at(1.0));
+  EXPECT_THROW(window.drop_oldest({}), CheckError);
 }
 
 TEST_F(WindowRefuses, AnAnchorThatDoesNotSeeTheLandmarkOrIsNoKeyframe) {
@@ -282,11 +325,12 @@ TEST_F(WindowRefuses, AnAnchorThatDoesNotSeeTheLandmarkOrIsNoKeyframe) {
   WindowState passing = state_at(9.0);
   passing.keyframe = false;
   const StateId other = window_.add_state(std::move(passing), {{"frames", {seen}}});
-  EXPECT_THROW(window_.make_landmark(7, oldest_, 0.5), CheckError);
-  EXPECT_THROW(window_.make_landmark(7, other, 0.5), CheckError);
-  EXPECT_THROW(window_.make_landmark(8, keyframe, 0.5), CheckError);
+  EXPECT_THROW(window_.make_landmark(7, {{oldest_, 0}, 0.5}), CheckError);
+  EXPECT_THROW(window_.make_landmark(7, {{other, 0}, 0.5}), CheckError);
+  EXPECT_THROW(window_.make_landmark(8, {{keyframe, 0}, 0.5}), CheckError);
+  EXPECT_THROW(window_.make_landmark(7, {{keyframe, 1}, 0.5}), CheckError);
   EXPECT_EQ(window_.block({BlockKind::InverseDepth, 7}), nullptr);
-  window_.make_landmark(7, keyframe, 0.5);
+  window_.make_landmark(7, {{keyframe, 0}, 0.5});
   EXPECT_EQ(*window_.block({BlockKind::InverseDepth, 7}), 0.5);
 }
 
@@ -303,7 +347,7 @@ TEST_F(WindowRefuses, PriorsOfWhatItDoesNotHold) {
   EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::Motion, newest_ + 1}, mean, {1, 1, 1})), CheckError);
   EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::InverseDepth, corner_}, mean, {1, 1, 1})), CheckError);
   EXPECT_THROW(window_.add_soft_prior(motion_prior({BlockKind::Pose, newest_}, mean, {1, 1, 1})), CheckError);
-  EXPECT_THROW(window_.drop_oldest(prior_of(window_, {BlockKind::Pose, oldest_}), newest_, {}), CheckError);
+  EXPECT_THROW(window_.drop_oldest(prior_of(window_, {BlockKind::Pose, oldest_})), CheckError);
 }
 
 TEST_F(WindowRefuses, StepsAndEstimatesOfAnotherSize) {
@@ -317,9 +361,9 @@ TEST_F(WindowRefuses, StepsAndEstimatesOfAnotherSize) {
 }
 
 TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
-  for (const int cameras : {1, 2}) {
-    SCOPED_TRACE(cameras);
-    const TestWorldOptions options{.cameras = cameras, .pixel_noise = 0.0, .imu_noise = 0.0};
+  for (const auto& [cameras, shared] : {std::pair(1, false), std::pair(2, false), std::pair(2, true)}) {
+    SCOPED_TRACE(testing::Message() << cameras << (shared ? " see the same landmarks" : ""));
+    const TestWorldOptions options{.cameras = cameras, .shared_ids = shared, .pixel_noise = 0.0, .imu_noise = 0.0};
     TestWorld world(options);
     Window window = tracked_window(world, options);
     triangulate_features(window, {});

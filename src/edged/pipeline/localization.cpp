@@ -70,9 +70,9 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
                                          std::vector<ExternalSample> external) {
   const Timestamp t = motion.end();
   LocalizationOutput output;
-  EstimatorResult result = estimate({t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet,
-                                     seen.depth, std::move(external)},
-                                    output.correction);
+  EstimatorResult result = estimate(
+      {t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet, seen.depth, std::move(external)},
+      output.correction);
   const TrackingStatus status = judge_.judge(result, estimator_.initialized(), t);
   const bool relocalized = follow_map(t, seen, result);
   update_covariance(t);
@@ -131,7 +131,9 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
 LandmarkDepths Localization::landmark_depths() const {
   LandmarkDepths depths;
   for (const auto& [id, feature] : estimator_.window().features()) {
-    if (const std::optional<double> z = estimator_.depth(id)) depths.emplace_hint(depths.end(), id, *z);
+    if (!feature.anchor) continue;
+    const std::string& camera = rig_.cameras[feature.anchor->camera].name;
+    if (const std::optional<double> z = estimator_.depth(id, camera)) depths.emplace_hint(depths.end(), id, *z);
   }
   return depths;
 }

@@ -37,6 +37,13 @@ constexpr std::string_view kForEveryone[] = {
     "depth.network.model",
     "estimator.depth_factor.enabled",
     "estimator.depth_factor.form",
+    "height.enabled",
+    "height.sigma_m",
+    "height.bias_walk",
+    "velocity.enabled",
+    "velocity.sigma_mps",
+    "velocity.position_m",
+    "velocity.rotation_deg",
     "estimator.keyframes",
     "estimator.iterations",
     "estimator.noise_inflation",
@@ -178,6 +185,8 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.pair("tracker", "events", event_tracker, "frames", frame_tracker, kPerCameraKind);
   fields.group("keyframes", keyframes);
   fields.group("depth", depth);
+  fields.group("height", estimator.height);
+  fields.group("velocity", estimator.velocity);
   fields.group("estimator", estimator);
   fields.group("map", map);
   fields.group("status", status);
@@ -196,6 +205,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
 void OdometryConfig::validate() const {
   OdometryConfig copy = *this;
   const ConfigFields fields = ConfigFields::of(copy);  // refuses what is out of its range
+  estimator.velocity.T_B_S();
   enhance.validate([&fields](std::string_view name) {
     const std::string key = "enhance." + std::string(name);
     return std::ranges::find_if(fields.all(), [&key](const ConfigField& field) { return field.key.ends_with(key); })

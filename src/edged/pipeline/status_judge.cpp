@@ -4,6 +4,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -29,11 +31,14 @@ void StatusConfig::visit(ConfigFields& fields) {
 TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, Timestamp t) {
   if (!started) {
     last_supported_.reset();
+    last_velocity_.reset();
     return ever_started_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
   }
   ever_started_ = true;
   if (result.standstill || result.landmarks_seen >= config_.min_landmarks || !last_supported_) last_supported_ = t;
+  if (result.velocity_observed) last_velocity_ = t;
   const double alone_s = to_seconds(t - *last_supported_);
+  const double drifting_s = last_velocity_ ? std::min(alone_s, to_seconds(t - *last_velocity_)) : alone_s;
   reason_.clear();
   if (!result.plausible) {
     reason_ = "the solution has broken down";
@@ -44,7 +49,7 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
         result.imu_strain, most);
     patience_ *= kMorePatience;
   }
-  vision_lost_ = reason_.empty() && alone_s > config_.lost_after_s;
+  vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
   if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
   if (!reason_.empty()) return TrackingStatus::Lost;
   const bool doubtful = result.provisional || alone_s > config_.degraded_after_s ||

@@ -34,6 +34,7 @@ class StatusJudge {
   bool ever_started_ = false;
   double patience_ = 1.0;                    ///< multiplies the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or rest, since the start
+  std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
   std::string reason_;
   bool vision_lost_ = false;
 };

@@ -36,6 +36,18 @@ TEST(StatusJudge, FallsToDegradedAndLostWithTheTimeWithoutLandmarks) {
   EXPECT_TRUE(judge.vision_lost());
 }
 
+TEST(StatusJudge, StaysDegradedWithoutLandmarksWhileAVelocitySensorHoldsIt) {
+  StatusJudge judge({});
+  EstimatorResult held = healthy(), blind = healthy();
+  held.landmarks_seen = blind.landmarks_seen = 0;
+  held.velocity_observed = true;
+  EXPECT_EQ(judge.judge(healthy(), true, at(0.0)), TrackingStatus::Good);
+  for (double t = 1.0; t < 20.0; t += 0.5) EXPECT_EQ(judge.judge(held, true, at(t)), TrackingStatus::Degraded);
+  EXPECT_EQ(judge.judge(blind, true, at(21.0)), TrackingStatus::Degraded) << "for as long as without the sensor";
+  EXPECT_EQ(judge.judge(blind, true, at(22.5)), TrackingStatus::Lost);
+  EXPECT_TRUE(judge.vision_lost());
+}
+
 TEST(StatusJudge, IsGoodAtRestWithoutAnyLandmark) {
   StatusJudge judge({});
   EstimatorResult rest;

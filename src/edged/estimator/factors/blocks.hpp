@@ -13,6 +13,9 @@
 
 namespace edged {
 
+/// Names one state of the window; grows with time.
+using StateId = std::uint64_t;
+
 /// A pose block: position, then quaternion x y z w. Tangent (6): p' = p + d_p, q' = q * Exp(d_phi).
 using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
@@ -25,16 +28,16 @@ using CalibrationBlock = std::array<double, 4>;
 /// What scale and axes of the IMU are off by: E_g row by row, then E_a. measured = (I + E) true + bias.
 using ImuIntrinsicsBlock = std::array<double, 18>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, Calibration, ImuIntrinsics };
+enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, HeightBias, Calibration, ImuIntrinsics };
 
 /// Of the anchor depth: nearer than this counts as behind the camera.
 inline constexpr double kMinDepthShare = 1e-3;
 
-/// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5), a
-/// camera's calibration, or the IMU's.
+/// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5),
+/// what a height sensor reads above the height of the body, a camera's calibration, or the IMU's.
 struct BlockKey {
   BlockKind kind;
-  std::uint64_t id;  ///< state number, FeatureId, number of the piece of ln s, index of the camera, or 0
+  std::uint64_t id;  ///< state number, FeatureId, number of the piece (WalkingScalar), index of the camera, or 0
   auto operator<=>(const BlockKey&) const = default;
 };
 

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/factors/depth_factor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include "edged/estimator/factors/blocks.hpp"
 
 namespace edged {
 namespace {
@@ -42,22 +41,37 @@ std::optional<LogInverseDepth> log_inverse_depth(const DepthLandmark& landmark, 
   return out;
 }
 
+std::vector<BlockKey> blocks_of(BlockKey scale, StateId state, const std::vector<DepthLandmark>& landmarks) {
+  std::vector<BlockKey> blocks = {scale, {BlockKind::Pose, state}}, depths;
+  for (const DepthLandmark& landmark : landmarks) {
+    const BlockKey anchor{BlockKind::Pose, landmark.anchor};
+    if (std::ranges::find(blocks, anchor) == blocks.end()) blocks.push_back(anchor);
+    depths.push_back({BlockKind::InverseDepth, landmark.id});
+  }
+  blocks.insert(blocks.end(), depths.begin(), depths.end());
+  return blocks;
+}
+
 }  // namespace
 
-DepthFactor::DepthFactor(DepthResidual residual, const SE3& T_B_E, std::vector<DepthLandmark> landmarks,
-                         std::size_t poses, double source_depth_m, double weight)
-    : residual_(residual),
-      t_B_E_(T_B_E.translation()),
-      z_E_in_B_(T_B_E.R().col(2)),
+DepthFactor::DepthFactor(const DepthMeasurement& measured, BlockKey scale, std::vector<DepthLandmark> landmarks)
+    : Factor(1, blocks_of(scale, measured.state, landmarks)),
+      residual_(measured.residual),
+      t_B_E_(measured.T_B_E.translation()),
+      z_E_in_B_(measured.T_B_E.R().col(2)),
       landmarks_(std::move(landmarks)),
-      poses_(poses),
-      rho_source_(1.0 / source_depth_m),
-      weight_(weight) {
-  set_num_residuals(1);
-  std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
-  sizes.push_back(block_size(BlockKind::LogScale));
-  sizes.insert(sizes.end(), poses, block_size(BlockKind::Pose));
-  sizes.insert(sizes.end(), landmarks_.size(), block_size(BlockKind::InverseDepth));
+      poses_(blocks().size() - 1 - landmarks_.size()),
+      rho_source_(1.0 / measured.source_depth_m),
+      weight_(measured.weight),
+      loss_(measured.cauchy_scale) {
+  for (const DepthLandmark& landmark : landmarks_) {
+    const auto block = std::ranges::find(blocks(), BlockKey{BlockKind::Pose, landmark.anchor});
+    anchor_blocks_.push_back(static_cast<std::size_t>(block - blocks().begin()));
+  }
+}
+
+bool DepthFactor::marginalized_with(const std::set<BlockKey>& leaving) const {
+  return poses_ == 1 && leaving.contains(blocks()[1]);
 }
 
 bool DepthFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
@@ -71,7 +85,7 @@ bool DepthFactor::Evaluate(double const* const* blocks, double* residuals, doubl
   double mean = 0.0;
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     const DepthLandmark& landmark = landmarks_[i];
-    const std::size_t anchor = 1 + landmark.anchor, depth = 1 + poses_ + i;
+    const std::size_t anchor = anchor_blocks_[i], depth = 1 + poses_ + i;
     const auto ln = log_inverse_depth(landmark, T_W_B1, pose_of(blocks[anchor]), blocks[depth][0], t_B_E_, z_E_in_B_);
     if (!ln) return false;
     const double value = log_form ? ln->value : std::exp(ln->value);

@@ -4,11 +4,10 @@
 // source says of it, up to that source's scale.
 #pragma once
 
-#include <ceres/cost_function.h>
-
 #include <cstddef>
 #include <vector>
 
+#include "edged/estimator/factors/factor.hpp"
 #include "edged/options/estimator.hpp"
 #include "edged/se3.hpp"
 
@@ -16,26 +15,43 @@ namespace edged {
 
 /// A landmark as the factor sees it.
 struct DepthLandmark {
-  SE3 T_B_C;                     ///< of the camera that tracks it
+  std::uint64_t id = 0;          ///< FeatureId
+  SE3 T_B_C;                     ///< of the anchor camera
   Eigen::Vector2d anchor_point;  ///< on that camera's unit plane, in the anchor view
-  std::size_t anchor = 0;        ///< which of the factor's pose blocks the anchor is; 0: the observing state itself
+  StateId anchor = 0;
+};
+
+/// What a source says of the depth that a camera sees at a state.
+struct DepthMeasurement {
+  DepthResidual residual;
+  StateId state;
+  SE3 T_B_E;  ///< of the observing camera
+  double source_depth_m;
+  double weight;
+  double cauchy_scale;
 };
 
 /// Blocks: ln s; the pose of the observing state, then those of the other anchors; the inverse depth of each landmark
 /// in its anchor camera. With z_i the landmark's depth in the observing camera E, rho_bar is the mean of 1/z_i and ln
 /// rho_bar that of ln 1/z_i. Residual (1): weight times the chosen difference. Fails when a landmark is not in front.
-class DepthFactor final : public ceres::CostFunction {
+///
+/// The window makes it anew for each cost, of the landmarks that there are. It goes into the prior with its own state,
+/// if all its landmarks are anchored there and leave as well.
+class DepthFactor final : public Factor {
  public:
-  DepthFactor(DepthResidual residual, const SE3& T_B_E, std::vector<DepthLandmark> landmarks, std::size_t poses,
-              double source_depth_m, double weight);
+  DepthFactor(const DepthMeasurement& measured, BlockKey scale, std::vector<DepthLandmark> landmarks);
+  const ceres::LossFunction* loss() const override { return &loss_; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  bool marginalized_with(const std::set<BlockKey>& leaving) const override;
 
  private:
   DepthResidual residual_;
   Eigen::Vector3d t_B_E_, z_E_in_B_;
   std::vector<DepthLandmark> landmarks_;
+  std::vector<std::size_t> anchor_blocks_;  ///< by landmark
   std::size_t poses_;
   double rho_source_, weight_;
+  ceres::CauchyLoss loss_;
 };
 
 }  // namespace edged

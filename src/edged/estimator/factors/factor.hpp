@@ -1,33 +1,51 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the cost is a sum of, landmarks apart.
+// A term of the cost, landmarks apart: its blocks, its loss, and what becomes of it when a state leaves the window.
 #pragma once
 
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
-#include <cstdint>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "edged/estimator/factors/blocks.hpp"
 
 namespace edged {
 
-/// What a term of the cost says. Prior: what has left the window; SoftPrior: set by hand.
-enum class FactorKind : std::uint8_t { Prior, SoftPrior, Imu, Standstill, SceneDepth };
+class Preintegration;
 
-/// One term of the cost. When a keyframe leaves, all factors with a block of it go into the prior, but for what
-/// `goes` (sliding.cpp) holds back: a kind that ties a keyframe to a state that is none must be held back there,
-/// as that state is dropped later. What only a dropped state has measured is lost; IMU intervals and rest are joined
-/// on.
-struct Factor {
-  FactorKind kind;
-  std::unique_ptr<ceres::CostFunction> cost = nullptr;
-  ceres::LossFunction* loss = nullptr;  ///< owned by the window
-  std::vector<BlockKey> blocks = {};
-  std::uint64_t state = 0;  ///< SceneDepth: the one whose image or events told it
-  bool lasting = true;      ///< SceneDepth: its landmarks are all anchored in its state, and leave with it
+/// A state that leaves from between two others, without being marginalised.
+struct DroppedState {
+  StateId before, id, after;
+  const Preintegration& imu;       ///< from the state before to that after; stays in the window
+  const Preintegration& imu_into;  ///< from the state before to the one that leaves; does not stay
+};
+
+/// The values of the blocks are in the window; a factor holds the measurement.
+class Factor : public ceres::CostFunction {
+ public:
+  const std::vector<BlockKey>& blocks() const { return blocks_; }
+  /// Null: least squares.
+  virtual const ceres::LossFunction* loss() const { return nullptr; }
+
+  /// Whether it goes into the prior with the blocks that are marginalised. A factor that ties a keyframe to a state
+  /// that is none must not: that state will be dropped.
+  virtual bool marginalized_with(const std::set<BlockKey>& leaving) const;
+  /// What it becomes when a state that it is of is dropped; null: it ends with that state.
+  virtual std::shared_ptr<Factor> without(const DroppedState& dropped) const;
+  /// Takes in the measurement of another factor, which then is not needed; false where the two cannot be one.
+  virtual bool absorb(const Factor& other);
+
+  /// One block takes the place of another of the same kind.
+  void replace(BlockKey before, BlockKey after);
+
+ protected:
+  Factor(int residuals, std::vector<BlockKey> blocks);
+
+ private:
+  std::vector<BlockKey> blocks_;
 };
 
 }  // namespace edged

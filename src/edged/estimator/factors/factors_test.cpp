@@ -9,56 +9,11 @@
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
 #include "edged/estimator/factors/standstill_factor.hpp"
+#include "edged/estimator/factors/test_jacobians.hpp"
 #include "edged/estimator/factors/test_landmark_cost.hpp"
 
 namespace edged {
 namespace {
-
-using Blocks = std::vector<std::vector<double>>;
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-std::vector<double> plus(BlockKind kind, std::vector<double> x, const Eigen::VectorXd& d) {
-  plus(kind, x.data(), d.data());
-  return x;
-}
-
-Eigen::VectorXd evaluate(const ceres::CostFunction& cost, const Blocks& blocks) {
-  std::vector<const double*> data;
-  for (const auto& b : blocks) data.push_back(b.data());
-  Eigen::VectorXd r(cost.num_residuals());
-  EXPECT_TRUE(cost.Evaluate(data.data(), r.data(), nullptr));
-  return r;
-}
-
-/// Largest difference between the analytic and the numeric Jacobian, relative to the largest entry of the block.
-void check_jacobians(const ceres::CostFunction& cost, const std::vector<BlockKind>& kinds, const Blocks& blocks) {
-  std::vector<const double*> data;
-  std::vector<RowMajorMatrix> J;
-  std::vector<double*> J_data;
-  for (const auto& b : blocks) data.push_back(b.data()), J.emplace_back(cost.num_residuals(), b.size());
-  for (auto& j : J) J_data.push_back(j.data());
-  Eigen::VectorXd r(cost.num_residuals());
-  ASSERT_TRUE(cost.Evaluate(data.data(), r.data(), J_data.data()));
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const int n = tangent_size(kinds[b]);
-    Eigen::MatrixXd numeric(cost.num_residuals(), n);
-    for (int k = 0; k < n; ++k) {
-      Eigen::VectorXd d = Eigen::VectorXd::Zero(n);
-      Blocks moved = blocks;
-      const double step = 1e-6;
-      d[k] = step;
-      moved[b] = plus(kinds[b], blocks[b], d);
-      const Eigen::VectorXd up = evaluate(cost, moved);
-      moved[b] = plus(kinds[b], blocks[b], -d);
-      numeric.col(k) = (up - evaluate(cost, moved)) / (2 * step);
-    }
-    const double scale = std::max(1.0, numeric.cwiseAbs().maxCoeff());
-    EXPECT_LT((J[b].leftCols(n) - numeric).cwiseAbs().maxCoeff() / scale, 1e-6) << "block " << b;
-    if (kinds[b] == BlockKind::Pose) {
-      EXPECT_EQ(J[b].col(6).cwiseAbs().maxCoeff(), 0.0);
-    }
-  }
-}
 
 std::vector<double> pose(const Eigen::Vector3d& phi, const Eigen::Vector3d& p) {
   const PoseBlock block = to_block(SE3(so3::exp(phi), p));
@@ -76,7 +31,7 @@ Preintegration some_motion() {
 
 TEST(ImuFactor, JacobiansMatchCentralDifferences) {
   const Preintegration imu = some_motion();
-  const ImuFactor factor(imu);
+  const ImuFactor factor(0, 1, imu);
   const std::vector<double> intrinsics = {3e-3, -2e-3, 1e-3,  2e-3, -4e-3, 1e-3,  0.5e-3, -1e-3, 2e-3,
                                           1e-3, 2e-3,  -3e-3, 1e-3, 5e-3,  -2e-3, 1e-3,   2e-3,  -1e-3};
   check_jacobians(factor,
@@ -104,13 +59,13 @@ TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
     const PoseBlock b = to_block(T);
     return std::vector<double>(b.begin(), b.end());
   };
-  const Eigen::VectorXd r = evaluate(
-      ImuFactor(imu), {block(start.T_W_B), motion(start), block(end.T_W_B), motion(end), std::vector<double>(18, 0.0)});
+  const Eigen::VectorXd r = evaluate(ImuFactor(0, 1, imu), {block(start.T_W_B), motion(start), block(end.T_W_B),
+                                                            motion(end), std::vector<double>(18, 0.0)});
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
 }
 
 TEST(StandstillFactor, JacobiansMatchCentralDifferences) {
-  check_jacobians(StandstillFactor(2e-3, 1e-3), {BlockKind::Pose, BlockKind::Pose},
+  check_jacobians(StandstillFactor(0, 1), {BlockKind::Pose, BlockKind::Pose},
                   {pose({0.3, -0.8, 0.2}, {1, 2, 3}), pose({0.35, -0.7, 0.25}, {1.1, 1.9, 3.05})});
 }
 
@@ -118,7 +73,7 @@ TEST(LandmarkFactor, JacobiansMatchCentralDifferences) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3);
+    const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {{0.25, -0.05}, rate_1, 1}}, 5e-3);
     for (const auto& calibration : {std::vector<double>(4, 0.0), std::vector<double>{0.03, -0.02, 0.04, 0.012}}) {
       check_jacobians(
           factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
@@ -132,8 +87,8 @@ TEST(LandmarkFactor, JacobiansBesideAnObservationBeforeMatchCentralDifferences) 
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
       rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {{0.25, -0.05}, rate_1}, 5e-3,
-                              LandmarkView{{0.22, -0.08}, rate_2}, 0.9);
+    const LandmarkCost factor(
+        {T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {{0.25, -0.05}, rate_1, 1}, {{0.22, -0.08}, rate_2, 2}}, 5e-3, 0.9);
     check_jacobians(
         factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
         {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
@@ -144,13 +99,40 @@ TEST(LandmarkFactor, JacobiansBesideAnObservationBeforeMatchCentralDifferences) 
   }
 }
 
+TEST(LandmarkFactor, JacobiansOfAnotherCameraMatchCentralDifferences) {
+  const std::vector<SE3> T_B_C = {SE3(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}),
+                                  SE3(so3::exp({-0.03, 0.04, 1.4}), {-0.06, 0.01, 0.02})};
+  const std::vector<double> one{0.03, -0.02, 0.04, 0.012}, other{-0.01, 0.03, 0.02, -0.008};
+  const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
+      rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
+  const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
+             pose_2 = pose({0.12, 0.18, -0.08}, {1.05, 0.48, 0.21});
+  constexpr BlockKind kPose = BlockKind::Pose, kCalibration = BlockKind::Calibration, kDepth = BlockKind::InverseDepth;
+  const LandmarkView anchor{{0.2, -0.1}, rate_0, 0, 0}, same_instant{{0.25, -0.05}, rate_0, 0, 1},
+      later{{0.25, -0.05}, rate_1, 1, 1}, before{{0.22, -0.08}, rate_2, 2, 1},
+      before_at_anchor{{0.2, 0.0}, rate_0, 0, 1};
+  for (const double rho : {0.02, 0.5, 2.0}) {
+    check_jacobians(LandmarkCost(T_B_C, {anchor, same_instant}, 5e-3), {kPose, kCalibration, kCalibration, kDepth},
+                    {pose_0, one, other, {rho}});
+    check_jacobians(LandmarkCost(T_B_C, {anchor, later}, 5e-3), {kPose, kPose, kCalibration, kCalibration, kDepth},
+                    {pose_0, pose_1, one, other, {rho}});
+    check_jacobians(LandmarkCost(T_B_C, {anchor, later, before}, 5e-3, 0.9),
+                    {kPose, kPose, kPose, kCalibration, kCalibration, kDepth},
+                    {pose_0, pose_1, pose_2, one, other, {rho}});
+    check_jacobians(LandmarkCost(T_B_C, {anchor, later, before_at_anchor}, 5e-3, 0.9),
+                    {kPose, kPose, kCalibration, kCalibration, kDepth}, {pose_0, pose_1, one, other, {rho}});
+  }
+}
+
 TEST(LandmarkFactor, ChargesATrackForADriftOnce) {
   const SE3 T_B_C;
   const auto anchor = pose({0, 0, 0}, {0, 0, 0}), before = pose({0, 0, 0}, {0.1, 0, 0}),
              seen = pose({0, 0, 0}, {0.2, 0, 0});
   const Eigen::Vector2d drift(3e-3, -1e-3);
-  const auto view = [&](double x) { return LandmarkView{Eigen::Vector2d(0.1 - x, 0.2) + drift, {}}; };
-  const LandmarkCost factor(T_B_C, {{0.1, 0.2}, {}}, view(0.2 * 0.5), 1e-3, view(0.1 * 0.5), 0.9);
+  const auto view = [&](double x, std::size_t pose) {
+    return LandmarkView{Eigen::Vector2d(0.1 - x, 0.2) + drift, {}, pose};
+  };
+  const LandmarkCost factor({T_B_C}, {{{0.1, 0.2}, {}, 0}, view(0.2 * 0.5, 1), view(0.1 * 0.5, 2)}, 1e-3, 0.9);
   const Eigen::VectorXd r = evaluate(factor, {anchor, seen, before, std::vector<double>(4, 0.0), {0.5}});
   EXPECT_LT((r + 0.1 * drift / 1e-3).norm(), 1e-9);
 }
@@ -160,7 +142,7 @@ TEST(LandmarkFactor, IsZeroForAPointWhereItWasSeen) {
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const Eigen::Vector3d p_W = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
   const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_W;
-  const LandmarkCost factor(T_B_C, {{0.2, -0.1}, {}}, {p_C1.hnormalized(), {}}, 5e-3);
+  const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, {}, 0}, {p_C1.hnormalized(), {}, 1}}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, std::vector<double>(4, 0.0), {0.5}}).norm(), 1e-9);
 }
 
@@ -172,12 +154,12 @@ TEST(LandmarkFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
   const SE3 T_W_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
   const SE3 T_W_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
   const Eigen::Vector3d p_C1 = T_W_C1.inverse() * (T_W_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));
-  const LandmarkCost factor(T_B_C, {{0.2, -0.1}, rate_0}, {p_C1.hnormalized(), rate_1}, 5e-3);
+  const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {p_C1.hnormalized(), rate_1, 1}}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, calibration, {0.5}}).norm(), 1e-9);
 }
 
 TEST(LandmarkFactor, RefusesAPointBehindTheCamera) {
-  const LandmarkCost factor(SE3(), {{0.0, 0.0}, {}}, {{0.0, 0.0}, {}}, 5e-3);
+  const LandmarkCost factor({SE3()}, {{{0.0, 0.0}, {}, 0}, {{0.0, 0.0}, {}, 1}}, 5e-3);
   const auto here = pose({0, 0, 0}, {0, 0, 0}), turned = pose({0, 3.1, 0}, {0, 0, 0});
   const double rho = 1.0;
   const CalibrationBlock exact{};
@@ -186,10 +168,13 @@ TEST(LandmarkFactor, RefusesAPointBehindTheCamera) {
   EXPECT_FALSE(factor.Evaluate(blocks, r, nullptr));
 }
 
+constexpr BlockKey kScale{BlockKind::LogScale, 0};
+
 /// Three landmarks of two cameras, anchored in the observing state and in two others.
 struct DepthScene {
   SE3 T_B_E{so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}}, T_B_F{so3::exp({-0.1, 0.05, 1.4}), {-0.04, 0.01, 0.0}};
-  std::vector<DepthLandmark> landmarks = {{T_B_E, {0.2, -0.1}, 0}, {T_B_F, {-0.1, 0.15}, 1}, {T_B_E, {0.05, 0.0}, 2}};
+  std::vector<DepthLandmark> landmarks = {
+      {7, T_B_E, {0.2, -0.1}, 0}, {8, T_B_F, {-0.1, 0.15}, 1}, {9, T_B_E, {0.05, 0.0}, 2}};
   Blocks blocks = {{0.3},
                    pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
                    pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
@@ -202,7 +187,7 @@ struct DepthScene {
 TEST(DepthFactor, JacobiansMatchCentralDifferencesInBothForms) {
   const DepthScene scene;
   for (const DepthResidual form : {DepthResidual::Log, DepthResidual::Paper}) {
-    const DepthFactor factor(form, scene.T_B_E, scene.landmarks, 3, 1.7, 2.5);
+    const DepthFactor factor({form, 0, scene.T_B_E, 1.7, 2.5, 1.0}, kScale, scene.landmarks);
     check_jacobians(factor,
                     {BlockKind::LogScale, BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::InverseDepth,
                      BlockKind::InverseDepth, BlockKind::InverseDepth},
@@ -215,13 +200,22 @@ TEST(DepthFactor, IsZeroWhereTheSourceTimesItsScaleIsTheMiddleOfTheLandmarks) {
   const std::vector<DepthLandmark> own = {scene.landmarks[0]};
   const double s = 1.4, depth = 2.0;  // of the only landmark, in its own anchor view
   for (const DepthResidual form : {DepthResidual::Log, DepthResidual::Paper}) {
-    const DepthFactor factor(form, scene.T_B_E, own, 1, s * depth, 3.0);
+    const DepthFactor factor({form, 0, scene.T_B_E, s * depth, 3.0, 1.0}, kScale, own);
     EXPECT_NEAR(evaluate(factor, {{std::log(s)}, scene.blocks[1], {1.0 / depth}})[0], 0.0, 1e-12);
   }
 }
 
+TEST(DepthFactor, GoesIntoThePriorWithItsStateOnlyIfItsLandmarksLeaveToo) {
+  const DepthScene scene;
+  const DepthMeasurement measured{DepthResidual::Log, 0, scene.T_B_E, 1.7, 2.5, 1.0};
+  const std::set<BlockKey> leaving = {{BlockKind::Pose, 0}, {BlockKind::Motion, 0}, kScale};
+  EXPECT_TRUE(DepthFactor(measured, kScale, {scene.landmarks[0]}).marginalized_with(leaving));
+  EXPECT_FALSE(DepthFactor(measured, kScale, scene.landmarks).marginalized_with(leaving));
+  EXPECT_FALSE(DepthFactor(measured, kScale, {scene.landmarks[0]}).marginalized_with({kScale}));
+}
+
 TEST(DepthFactor, RefusesALandmarkBehindTheCamera) {
-  const DepthFactor factor(DepthResidual::Log, SE3(), {{SE3(), {0.0, 0.0}, 1}}, 2, 1.0, 1.0);
+  const DepthFactor factor({DepthResidual::Log, 0, SE3(), 1.0, 1.0, 1.0}, kScale, {{7, SE3(), {0.0, 0.0}, 1}});
   const double ln_s = 0.0, rho = 1.0;
   const auto turned = pose({0, 3.1, 0}, {0, 0, 0}), here = pose({0, 0, 0}, {0, 0, 0});
   const double* blocks[] = {&ln_s, turned.data(), here.data(), &rho};

@@ -4,8 +4,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "edged/estimator/factors/blocks.hpp"
-
 namespace edged {
 namespace {
 
@@ -55,7 +53,13 @@ struct BiasDerivatives {
 
 }  // namespace
 
-ImuFactor::ImuFactor(const Preintegration& imu) : imu_(imu) {
+ImuFactor::ImuFactor(StateId a, StateId b, const Preintegration& imu)
+    : Factor(15, {{BlockKind::Pose, a},
+                  {BlockKind::Motion, a},
+                  {BlockKind::Pose, b},
+                  {BlockKind::Motion, b},
+                  kImuIntrinsicsKey}),
+      imu_(imu) {
   // A floor far below any real noise keeps the factorisation sound for very short intervals.
   constexpr double kFloor = 1e-14;
   const Matrix9d covariance = imu.covariance() + kFloor * Matrix9d::Identity();
@@ -64,6 +68,11 @@ ImuFactor::ImuFactor(const Preintegration& imu) : imu_(imu) {
   const double root_dt = std::sqrt(std::max(imu.dt(), 1e-6));
   whiten_biases_.head<3>().setConstant(1.0 / (imu.noise().gyro_walk * root_dt));
   whiten_biases_.tail<3>().setConstant(1.0 / (imu.noise().accel_walk * root_dt));
+}
+
+std::shared_ptr<Factor> ImuFactor::without(const DroppedState& dropped) const {
+  const bool into = blocks()[2].id == dropped.id;  // that out of the state takes both
+  return into ? nullptr : std::make_shared<ImuFactor>(dropped.before, dropped.after, dropped.imu);
 }
 
 bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {

@@ -3,8 +3,7 @@
 // The inertial factor between two consecutive states.
 #pragma once
 
-#include <ceres/sized_cost_function.h>
-
+#include "edged/estimator/factors/factor.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {
@@ -13,11 +12,14 @@ namespace edged {
 /// that goes with the mean rate and acceleration of the interval: right to first order in both. Residual (15),
 /// whitened: rotation, velocity, position (Forster et al. 2017, Eq. 45), then the change of gyro and accelerometer bias
 /// against their random walks.
-class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 18> {
+///
+/// Of a state that is dropped the interval is joined to the next one's, which is exact.
+class ImuFactor final : public Factor {
  public:
   /// The preintegration must outlive the factor.
-  explicit ImuFactor(const Preintegration& imu);
+  ImuFactor(StateId a, StateId b, const Preintegration& imu);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
 
  private:
   /// L^-1 M for the covariance L L^T, whose random walks stand by themselves.

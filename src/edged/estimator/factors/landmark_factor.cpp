@@ -37,10 +37,9 @@ CameraAt::CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate&
   p_W_C = T_W_moved.translation() + R_W_B * camera.t_B_C;
 }
 
-AnchoredLandmark::AnchoredLandmark(const CameraOnBody& camera_in, const CameraAt& anchor_in, const Vector2d& point,
-                                   double rho_in)
-    : camera(camera_in),
-      anchor(anchor_in),
+AnchoredLandmark::AnchoredLandmark(const CameraView& view, const Vector2d& point, double rho_in)
+    : camera(view.camera),
+      anchor(view.at),
       rho(rho_in),
       bearing_C(point.homogeneous()),
       bearing_W(anchor.R_C_W.transpose() * bearing_C) {}
@@ -60,9 +59,10 @@ LandmarkDerivatives::LandmarkDerivatives(const AnchoredLandmark& landmark) : lan
   by_time_ = anchor.R_W_B * anchor.rate.omega_B.cross(x_B) + landmark.rho * anchor.rate.v_W;
 }
 
-bool LandmarkDerivatives::error(const CameraAt& seen, const Vector2d& point, ObservationError& observation) const {
+bool LandmarkDerivatives::error(const CameraView& view, const Vector2d& point, ObservationError& observation) const {
   const double rho = landmark_.rho;
-  const CameraOnBody& camera = landmark_.camera;
+  const CameraOnBody& camera = view.camera;
+  const CameraAt& seen = view.at;
   const Vector3d x_C = landmark_.in_camera(seen);
   if (x_C.z() < kMinDepthShare) return false;
   const double z_inv = 1.0 / x_C.z();
@@ -77,8 +77,17 @@ bool LandmarkDerivatives::error(const CameraAt& seen, const Vector2d& point, Obs
   observation.by_anchor.rightCols<3>() = by_xW * by_turn_;
   observation.by_seen.leftCols<3>() = -rho * by_xW;
   observation.by_seen.rightCols<3>() = by_xB * skew(x_B) * seen.by_turn;
-  observation.by_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera.by_phi;
-  observation.by_calibration.col(3) = by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+  if (&camera == &landmark_.camera) {
+    observation.by_anchor_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera.by_phi;
+    observation.by_anchor_calibration.col(3) =
+        by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+    observation.by_seen_calibration.setZero();
+  } else {
+    observation.by_anchor_calibration.leftCols<3>() = by_xW * by_phi_ * landmark_.camera.by_phi;
+    observation.by_anchor_calibration.col(3) = by_xW * by_time_;
+    observation.by_seen_calibration.leftCols<3>() = by_xC * skew(x_C) * camera.by_phi;
+    observation.by_seen_calibration.col(3) = -by_xW * (rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+  }
   observation.by_rho = by_xW * (landmark_.anchor.p_W_C - seen.p_W_C);
   return true;
 }

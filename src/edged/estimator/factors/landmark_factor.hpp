@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The visual factor: a landmark, held as inverse depth in its anchor view, seen from other states by the same camera.
+// The visual factor: a landmark, held as inverse depth in its anchor view, seen from other views: of the same camera at
+// other states, or of other cameras.
 //
 // A landmark has many views, and a view many landmarks: what depends on one of the two alone is worked out once
 // (CameraAt, AnchoredLandmark, LandmarkDerivatives), and only what is left for each observation.
@@ -42,19 +43,26 @@ struct CameraAt {
   BodyRate rate;
 };
 
+/// A camera and where it stands. Both must outlive this.
+struct CameraView {
+  const CameraOnBody& camera;
+  const CameraAt& at;
+};
+
 /// e = predicted - seen on the unit plane, and its derivatives by the tangents of the blocks.
 struct ObservationError {
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
-  Eigen::Matrix<double, 2, 4> by_calibration;
+  /// Calibrations of the anchor's camera and of the observing one; where these are one, all stands in the first.
+  Eigen::Matrix<double, 2, 4> by_anchor_calibration, by_seen_calibration;
   Eigen::Vector2d by_rho;
 };
 
 /// A landmark as its anchor has it. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
-  /// point: in the anchor view, on the unit plane. The camera and its view there must outlive this.
-  AnchoredLandmark(const CameraOnBody& camera, const CameraAt& anchor, const Eigen::Vector2d& point, double rho);
+  /// point: in the anchor view, on the unit plane.
+  AnchoredLandmark(const CameraView& anchor, const Eigen::Vector2d& point, double rho);
 
   /// e = predicted - seen of an observation at `point` of the camera `seen`. False when the landmark is not in front
   /// of it.
@@ -77,7 +85,7 @@ class LandmarkDerivatives {
   /// The landmark must outlive this.
   explicit LandmarkDerivatives(const AnchoredLandmark& landmark);
   /// As AnchoredLandmark::error, with derivatives.
-  bool error(const CameraAt& seen, const Eigen::Vector2d& point, ObservationError& observation) const;
+  bool error(const CameraView& seen, const Eigen::Vector2d& point, ObservationError& observation) const;
 
  private:
   const AnchoredLandmark& landmark_;

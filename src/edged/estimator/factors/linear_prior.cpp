@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "edged/core/check.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
@@ -44,9 +45,12 @@ LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, cons
   return prior;
 }
 
-LinearPriorFactor::LinearPriorFactor(const LinearPrior& prior) : prior_(prior) {
-  set_num_residuals(static_cast<int>(prior.r.size()));
-  for (const BlockKey& key : prior.blocks) mutable_parameter_block_sizes()->push_back(block_size(key.kind));
+LinearPriorFactor::LinearPriorFactor(LinearPrior prior)
+    : Factor(static_cast<int>(prior.r.size()), prior.blocks), prior_(std::move(prior)) {
+  Eigen::Index columns = 0;
+  for (const BlockKey& key : prior_.blocks) columns += tangent_size(key.kind);
+  EDGED_CHECK(prior_.J.cols() == columns && prior_.x0.size() == prior_.blocks.size(),
+              "a prior of {} blocks with {} columns, {} of them in J", prior_.blocks.size(), columns, prior_.J.cols());
 }
 
 bool LinearPriorFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {

@@ -4,13 +4,11 @@
 // leaves behind, and every hand-set prior (gauge, biases, zero velocity).
 #pragma once
 
-#include <ceres/cost_function.h>
-
 #include <Eigen/Core>
 #include <limits>
 #include <vector>
 
-#include "edged/estimator/factors/blocks.hpp"
+#include "edged/estimator/factors/factor.hpp"
 
 namespace edged {
 
@@ -41,14 +39,15 @@ LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::
 LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, const MotionBlock& mean,
                        const Eigen::Vector3d& accel_B, double sigma);
 
-class LinearPriorFactor final : public ceres::CostFunction {
+/// It ends with a state of it that is dropped.
+class LinearPriorFactor final : public Factor {
  public:
-  /// The prior must outlive the factor.
-  explicit LinearPriorFactor(const LinearPrior& prior);
+  explicit LinearPriorFactor(LinearPrior prior);
+  const LinearPrior& prior() const { return prior_; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
-  const LinearPrior& prior_;
+  LinearPrior prior_;
 };
 
 }  // namespace edged

@@ -2,24 +2,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/factors/standstill_factor.hpp"
 
-#include "edged/estimator/factors/blocks.hpp"
-
 namespace edged {
+namespace {
+
+constexpr double kPositionWeight = 1.0 / 2e-3, kRotationWeight = 1.0 / 1e-3;  // [1/m], [1/rad]
+
+}  // namespace
+
+std::shared_ptr<Factor> StandstillFactor::without(const DroppedState& dropped) const {
+  const bool into = blocks()[1].id == dropped.id;  // that out of the state goes on
+  return into ? nullptr : std::make_shared<StandstillFactor>(dropped.before, dropped.after);
+}
 
 bool StandstillFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   const SE3 T_W_Ba = pose_of(blocks[0]), T_W_Bb = pose_of(blocks[1]);
   const Eigen::Vector3d phi = so3::log(T_W_Ba.rotation().conjugate() * T_W_Bb.rotation());
   Eigen::Map<Vector6d> r(residuals);
-  r << position_weight_ * (T_W_Bb.translation() - T_W_Ba.translation()), rotation_weight_ * phi;
+  r << kPositionWeight * (T_W_Bb.translation() - T_W_Ba.translation()), kRotationWeight * phi;
   if (jacobians == nullptr) return true;
   for (int i = 0; i < 2; ++i) {
     if (jacobians[i] == nullptr) continue;
     Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>> J(jacobians[i]);
     J.setZero();
     const double sign = i == 0 ? -1.0 : 1.0;
-    J.topLeftCorner<3, 3>().diagonal().setConstant(sign * position_weight_);
+    J.topLeftCorner<3, 3>().diagonal().setConstant(sign * kPositionWeight);
     // Log(Exp(-d) R) and Log(R Exp(d)): the inverse left and right Jacobians at phi.
-    J.block<3, 3>(3, 3) = sign * rotation_weight_ * so3::right_jacobian_inverse(sign * phi);
+    J.block<3, 3>(3, 3) = sign * kRotationWeight * so3::right_jacobian_inverse(sign * phi);
   }
   return true;
 }

@@ -3,21 +3,18 @@
 // The standstill factor: two states between which the body rested.
 #pragma once
 
-#include <ceres/sized_cost_function.h>
+#include "edged/estimator/factors/factor.hpp"
 
 namespace edged {
 
 /// Blocks: pose a, pose b. Residual (6): (p_b - p_a) / position_sigma, Log(R_a^T R_b) / rotation_sigma. Velocity
-/// updates alone let the position walk away: they say how slow, not that it comes to nothing.
-class StandstillFactor final : public ceres::SizedCostFunction<6, 7, 7> {
+/// updates alone let the position walk away: they say how slow, not that it comes to nothing. What is called rest may
+/// be so far from it, whatever the time between the two states. Two rests that a dropped state divides are one.
+class StandstillFactor final : public Factor {
  public:
-  /// Sigmas in [m] and [rad].
-  StandstillFactor(double position_sigma, double rotation_sigma)
-      : position_weight_(1.0 / position_sigma), rotation_weight_(1.0 / rotation_sigma) {}
+  StandstillFactor(StateId a, StateId b) : Factor(6, {{BlockKind::Pose, a}, {BlockKind::Pose, b}}) {}
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-
- private:
-  double position_weight_, rotation_weight_;
+  std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
 };
 
 }  // namespace edged

@@ -5,7 +5,8 @@
 
 #include <ceres/cost_function.h>
 
-#include <optional>
+#include <algorithm>
+#include <vector>
 
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/landmark_factor.hpp"
@@ -15,58 +16,69 @@ namespace edged {
 struct LandmarkView {
   Eigen::Vector2d point;  ///< on the unit plane
   BodyRate rate;
+  std::size_t pose = 0;    ///< place of its state among the poses
+  std::size_t camera = 0;  ///< place among the cameras
 };
 
-/// Blocks: poses of the anchor, of the observing state and, with one, of the observation before; calibration of the
-/// camera; inverse depth. Residual (2): (e - correlation * e_before) / sigma.
+/// Blocks: poses; calibrations of the cameras; inverse depth. Views: the anchor's, the observation, and with one the
+/// observation before. Residual (2): (e - correlation * e_before) / sigma.
 class LandmarkCost final : public ceres::CostFunction {
  public:
-  LandmarkCost(const SE3& T_B_C, const LandmarkView& anchor, const LandmarkView& seen, double sigma,
-               const std::optional<LandmarkView>& before = std::nullopt, double correlation = 0.0)
-      : T_B_C_(T_B_C), anchor_(anchor), seen_(seen), before_(before), correlation_(correlation), weight_(1.0 / sigma) {
+  /// T_B_C: of the cameras.
+  LandmarkCost(std::vector<SE3> T_B_C, std::vector<LandmarkView> views, double sigma, double correlation = 0.0)
+      : T_B_C_(std::move(T_B_C)), views_(std::move(views)), weights_{0.0, 1.0 / sigma, -correlation / sigma} {
+    for (const LandmarkView& view : views_) poses_ = std::max(poses_, view.pose + 1);
     set_num_residuals(2);
-    *mutable_parameter_block_sizes() = before ? std::vector<int>{7, 7, 7, 4, 1} : std::vector<int>{7, 7, 4, 1};
+    std::vector<int>& sizes = *mutable_parameter_block_sizes();
+    sizes.assign(poses_, 7);
+    sizes.insert(sizes.end(), T_B_C_.size(), 4);
+    sizes.push_back(1);
   }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const std::size_t calibration = before_ ? 3 : 2;
-    const CameraOnBody camera(T_B_C_, blocks[calibration]);
-    const auto at = [&](std::size_t pose, const LandmarkView& view) {
-      return CameraAt(camera, pose_of(blocks[pose]), view.rate);
-    };
-    const CameraAt anchor = at(0, anchor_);
-    const AnchoredLandmark anchored(camera, anchor, anchor_.point, *blocks[calibration + 1]);
-    const LandmarkDerivatives landmark(anchored);
-    ObservationError now, before;
-    if (!landmark.error(at(1, seen_), seen_.point, now)) return false;
-    if (before_ && !landmark.error(at(2, *before_), before_->point, before)) return false;
-    const double of_before = before_ ? -correlation_ * weight_ : 0.0;
-    if (!before_) before = now;
-    Eigen::Map<Eigen::Vector2d>{residuals} = weight_ * now.e + of_before * before.e;
-    if (jacobians == nullptr) return true;
-    write_pose(jacobians[0], weight_ * now.by_anchor + of_before * before.by_anchor);
-    write_pose(jacobians[1], weight_ * now.by_seen);
-    if (before_) write_pose(jacobians[2], of_before * before.by_seen);
-    if (double* J = jacobians[calibration]) {
-      Eigen::Map<Eigen::Matrix<double, 2, 4, Eigen::RowMajor>>{J} =
-          weight_ * now.by_calibration + of_before * before.by_calibration;
+    std::vector<CameraOnBody> cameras;
+    for (std::size_t i = 0; i < T_B_C_.size(); ++i) cameras.emplace_back(T_B_C_[i], blocks[poses_ + i]);
+    std::vector<CameraAt> at;
+    for (const LandmarkView& view : views_) {
+      at.emplace_back(cameras[view.camera], pose_of(blocks[view.pose]), view.rate);
     }
-    if (double* J = jacobians[calibration + 1]) {
-      Eigen::Map<Eigen::Vector2d>{J} = weight_ * now.by_rho + of_before * before.by_rho;
+    const std::size_t depth = poses_ + cameras.size();
+    const CameraView anchor{cameras[views_[0].camera], at[0]};
+    const AnchoredLandmark anchored(anchor, views_[0].point, *blocks[depth]);
+    const LandmarkDerivatives landmark(anchored);
+    const auto jacobian = [&](std::size_t block) { return jacobians == nullptr ? nullptr : jacobians[block]; };
+    for (std::size_t i = 0; i <= depth; ++i) {
+      if (double* J = jacobian(i)) std::fill_n(J, 2 * parameter_block_sizes()[i], 0.0);
+    }
+    Eigen::Map<Eigen::Vector2d> r(residuals);
+    r.setZero();
+    for (std::size_t i = 1; i < views_.size(); ++i) {
+      const LandmarkView& view = views_[i];
+      ObservationError error;
+      if (!landmark.error({cameras[view.camera], at[i]}, view.point, error)) return false;
+      r += weights_[i] * error.e;
+      using OfCalibration = Eigen::Map<Eigen::Matrix<double, 2, 4, Eigen::RowMajor>>;
+      add_pose(jacobian(views_[0].pose), weights_[i] * error.by_anchor);
+      add_pose(jacobian(view.pose), weights_[i] * error.by_seen);
+      if (double* J = jacobian(poses_ + views_[0].camera)) {
+        OfCalibration(J) += weights_[i] * error.by_anchor_calibration;
+      }
+      if (double* J = jacobian(poses_ + view.camera)) OfCalibration(J) += weights_[i] * error.by_seen_calibration;
+      if (double* J = jacobian(depth)) Eigen::Map<Eigen::Vector2d>(J) += weights_[i] * error.by_rho;
     }
     return true;
   }
 
  private:
-  static void write_pose(double* jacobian, const Eigen::Matrix<double, 2, 6>& by_pose) {
+  static void add_pose(double* jacobian, const Eigen::Matrix<double, 2, 6>& by_pose) {
     if (jacobian == nullptr) return;
-    Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>>{jacobian} << by_pose, Eigen::Vector2d::Zero();
+    Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>>{jacobian}.leftCols<6>() += by_pose;
   }
 
-  SE3 T_B_C_;
-  LandmarkView anchor_, seen_;
-  std::optional<LandmarkView> before_;
-  double correlation_, weight_;
+  std::vector<SE3> T_B_C_;
+  std::vector<LandmarkView> views_;
+  double weights_[3];
+  std::size_t poses_ = 0;
 };
 
 }  // namespace edged

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// From samples of external sensors to factors of the window: which are believed, and where they are put.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "edged/estimator/window.hpp"
+#include "edged/measurement.hpp"
+#include "edged/options/estimator.hpp"
+
+namespace edged {
+
+class ExternalFactors {
+ public:
+  ExternalFactors(const HeightConfig& height, const VelocityConfig& velocity) : height_(height), velocity_(velocity) {}
+
+  /// Puts samples of the IMU interval from a state on into the window, in time order. imu: that interval; samples
+  /// outside it, and those too far from what the window expects, are left out.
+  void add(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
+
+  /// Whether a velocity sample of the last moment before t is in the window.
+  bool velocity_observed(Timestamp t) const;
+
+ private:
+  void add_sample(Window& window, StateId from, const Preintegration& imu, const HeightSample& sample);
+  void add_sample(Window& window, StateId from, const Preintegration& imu, const VelocitySample& sample);
+
+  HeightConfig height_;
+  VelocityConfig velocity_;
+  std::optional<Timestamp> height_refused_since_, velocity_at_;
+};
+
+}  // namespace edged

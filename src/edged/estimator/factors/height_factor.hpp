@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The height factor: heights of the body above a level that drifts, measured in the IMU interval after a state.
+#pragma once
+
+#include "edged/estimator/factors/factor.hpp"
+#include "edged/measurement.hpp"
+
+namespace edged {
+
+/// Blocks: pose and motion of the state before the samples, bias of the sensor. Residual (1): height there + bias -
+/// what was measured, over its sigma. The IMU takes the state to the time of a sample (docs/math.md, X1). The residual
+/// is linear in what depends on the sample, so that many of them are one by their weighted mean (X2). Of a state that
+/// is dropped they move to the state before.
+class HeightFactor final : public Factor {
+ public:
+  /// imu: from the state to the sample's time. sigma [m].
+  HeightFactor(StateId state, BlockKey bias, const Preintegration& imu, double height_m, double sigma);
+  const ceres::LossFunction* loss() const override { return &loss_; }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  bool marginalized_with(const std::set<BlockKey>& leaving) const override;
+  std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
+  bool absorb(const Factor& other) override;
+
+  /// What was measured less the height of the body: the bias by these samples alone.
+  double bias_at(const double* pose, const double* motion) const;
+
+ private:
+  /// Height = z + dt v_z - g half_dt2 + e_z R (moved + by_gyro b_g + by_accel b_a).
+  struct Way {
+    double dt = 0.0, half_dt2 = 0.0;
+    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d by_gyro = Eigen::Matrix3d::Zero(), by_accel = Eigen::Matrix3d::Zero();
+
+    /// The same from the state that the IMU leads here from.
+    Way after(const Preintegration& imu) const;
+    void add(double share, const Way& other);
+    Eigen::Vector3d in_body(const double* motion) const;
+  };
+
+  HeightFactor(StateId state, BlockKey bias, Way way, double height_m, double weight);
+
+  Way way_;
+  double height_m_, weight_;  ///< weighted mean, sum of 1 / sigma^2
+  ceres::CauchyLoss loss_;
+};
+
+}  // namespace edged
