@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
-no components include one another in a cycle, and that no two headers define a type of the same name.
+no components include one another in a cycle, that the families of io are independent, and that no two headers define a
+type of the same name.
 
 The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
@@ -17,6 +18,7 @@ import sys
 
 ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+FAMILIES = re.compile(r"edged/io/(\w+)/")  # folders of formats
 ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
@@ -80,6 +82,19 @@ def check_includes(root, folders, public, allowed):
                     yield f"{where}: {module} may not include {target}"
 
 
+def check_families(root, folders):
+    """A family of formats includes no other, and no header beside the families includes any; sources there join them."""
+    for file in sorted(folders["io"].rglob("*.[ch]pp")) if "io" in folders else ():
+        own = FAMILIES.search(file.relative_to(root).as_posix())
+        if not own and file.suffix == ".cpp":
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            other = (include := INCLUDE.match(line)) and FAMILIES.match(include.group(1))
+            if other and (not own or own.group(1) != other.group(1)):
+                where = f"io/{own.group(1)}" if own else "a header of io"
+                yield f"{file.relative_to(root)}:{number}: {where} may not include io/{other.group(1)}"
+
+
 def check_cycles(root, folders, public):
     """Cycles of components, no two of which share a step."""
     uses = {}
@@ -141,6 +156,7 @@ def main():
     errors += [f"ARCHITECTURE.md: no row has include/edged/{name}.hpp" for name in sorted(headers - public.keys())]
     errors += [f"ARCHITECTURE.md: there is no include/edged/{name}.hpp" for name in sorted(public.keys() - headers)]
     errors += check_includes(root, folders, public, allowed)
+    errors += check_families(root, folders)
     errors += check_cycles(root, folders, public)
     errors += check_names(root, folders, public)
     errors += check_links(root, folders, allowed)

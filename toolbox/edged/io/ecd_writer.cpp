@@ -11,8 +11,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
-#include "edged/io/formats.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/dataset_folders.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

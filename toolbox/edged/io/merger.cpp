@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

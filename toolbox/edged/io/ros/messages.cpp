@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "edged/core/check.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "edged/io/repairs.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
