@@ -8,7 +8,8 @@ a type of the same name.
 The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
 toolbox/edged, which may be missing as a whole. `public` names the headers in include/edged that are the module's. A
-component is a path without its extension, module/x: x.hpp, in include/edged too, and x.cpp are one, x_test.cpp is of none. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
+component is a path without its extension, module/x: x.hpp, in include/edged too, and x.cpp are one, x_test.cpp is of none. A
+family is a folder within io: families do not include one another. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
 import graphlib
 import itertools
@@ -23,6 +24,7 @@ ANY_INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
 PUBLIC_INCLUDE = re.compile(r"\w+|Eigen/\w+|opencv2/core(/[\w/]+)?\.hpp")
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
+FAMILIES = re.compile(r"edged/io/(\w+)/")  # folders of formats
 
 
 def read_table(architecture):
@@ -116,6 +118,19 @@ def check_cycles(root, folders, public):
                 del uses[component][used]
 
 
+def check_families(root, folders):
+    """A family of formats includes no other, and no header beside the families includes any; sources there join them."""
+    for file in sorted(folders["io"].rglob("*.[ch]pp")) if "io" in folders else ():
+        own = FAMILIES.search(file.relative_to(root).as_posix())
+        if not own and file.suffix == ".cpp":
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            other = (include := INCLUDE.match(line)) and FAMILIES.match(include.group(1))
+            if other and (not own or own.group(1) != other.group(1)):
+                where = f"io/{own.group(1)}" if own else "a header of io"
+                yield f"{file.relative_to(root)}:{number}: {where} may not include io/{other.group(1)}"
+
+
 def check_names(root, folders, public):
     """One namespace has one type of a name: a program that links two runs the code of either."""
     defined = {}
@@ -158,6 +173,7 @@ def main():
     errors += check_includes(root, folders, public, allowed)
     errors += check_public(root, public)
     errors += check_cycles(root, folders, public)
+    errors += check_families(root, folders)
     errors += check_names(root, folders, public)
     errors += check_links(root, folders, allowed)
     print("\n".join(errors) or f"{len(allowed)} modules keep their layers, no components include one another in a cycle")

@@ -15,7 +15,7 @@
 #include <mutex>
 
 #include "backlog.hpp"
-#include "edged/io/calib/sensor_head.hpp"
+#include "edged/io/sensor_head.hpp"
 #include "edged/odometry.hpp"
 #include "outputs.hpp"
 #include "sensor_input.hpp"

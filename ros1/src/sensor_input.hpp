@@ -10,7 +10,7 @@
 #include <string>
 
 #include "edged/io/ros/sensor_messages.hpp"
-#include "edged/io/ros/topic_choice.hpp"
+#include "edged/io/topic_choice.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged::ros1 {

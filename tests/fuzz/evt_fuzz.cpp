@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/evt.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edged;

@@ -9,7 +9,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/resources.hpp"
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calib/mask.hpp"
 #include "edged/io/calib/plausibility.hpp"
 

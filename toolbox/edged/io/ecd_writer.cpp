@@ -15,8 +15,8 @@
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/io/formats.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/dataset_folders.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

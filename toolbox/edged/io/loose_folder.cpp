@@ -9,10 +9,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/bytes.hpp"
-#include "edged/io/prophesee/raw.hpp"
-#include "edged/io/ros/open_messages.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
@@ -38,12 +35,6 @@ bool is_text_file(const std::string& name) {
   return extension == ".csv" || extension == ".txt";
 }
 
-bool is_binary_recording(const SourcePath& file) {
-  constexpr std::size_t kHeadBytes = 4096;
-  const Bytes head = file.head(kHeadBytes);
-  return is_bag(head) || is_prophesee_file(head) || is_aedat4(head);
-}
-
 std::optional<std::string> only_one(const SourcePath& folder, const std::vector<std::string>& names) {
   if (names.size() > 1)
     throw InputError::format("{}: holds several recordings: give one of {}", folder.string(), fmt::join(names, ", "));
@@ -59,12 +50,13 @@ bool holds_imu(const SourcePath& file) try {
 
 }  // namespace
 
-std::optional<std::string> find_main_file(const SourcePath& folder) {
+std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recognizes)(ByteSpan head)) {
+  constexpr std::size_t kHeadBytes = 4096;
   std::vector<std::string> binary, text;
   for (const std::string& name : files_in(folder)) {
     if (is_text_file(name))
       text.push_back(name);
-    else if (is_binary_recording(folder / name))
+    else if (recognizes((folder / name).head(kHeadBytes)))
       binary.push_back(name);
   }
   if (!binary.empty()) return only_one(folder, binary);

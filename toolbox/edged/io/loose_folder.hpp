@@ -7,13 +7,14 @@
 #include <set>
 #include <string>
 
+#include "edged/io/bytes.hpp"
 #include "edged/io/source_path.hpp"
 
 namespace edged {
 
-/// The name of the one file of the folder that is a recording by its content: Prophesee, AEDAT4, a ROS 1 bag, else a
-/// plain event file. Throws InputError where there are several.
-std::optional<std::string> find_main_file(const SourcePath& folder);
+/// The name of the one file of the folder that is a recording by its content: one that `recognizes` takes by its first
+/// bytes, else a plain event file. Throws InputError where there are several.
+std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recognizes)(ByteSpan head));
 
 /// The one text file of the folder, but for those named, that holds IMU samples by its heading or its name. Where there
 /// are several, says so and takes none.

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -1,26 +1,32 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which format a folder or a file is.
+// Which format a folder or a file is: a table of formats for each.
 #include "edged/io/open_recording.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/dataset_folders.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/loose_folder.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
+#include "edged/io/text/ecd.hpp"
+#include "edged/io/text/euroc.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
@@ -30,6 +36,28 @@ namespace edged {
 namespace {
 
 Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
+Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
+
+/// Files in a format that their first bytes tell.
+struct FileFormat {
+  std::string_view name;  ///< for the refusal
+  bool (*recognizes)(ByteSpan head) = nullptr;
+  Recording (*open)(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) = nullptr;
+  bool alone = false;  ///< a folder with one file of it is a recording, whatever lies beside it
+};
+
+/// In the order in which they are tried. Text has no such bytes and comes after all of them.
+constexpr std::array kFileFormats = {
+    FileFormat{.name = "ROS bag", .recognizes = is_bag, .open = open_bag, .alone = true},
+    FileFormat{.name = "Prophesee RAW or DAT", .recognizes = is_prophesee_file, .open = open_prophesee, .alone = true},
+    FileFormat{.name = "zip", .recognizes = is_zip, .open = open_archive},
+    FileFormat{.name = "HDF5", .recognizes = is_hdf5, .open = open_hdf5},
+    FileFormat{.name = "AEDAT4", .recognizes = is_aedat4, .open = open_aedat4, .alone = true},
+};
+
+bool is_alone_format(ByteSpan head) {
+  return std::ranges::any_of(kFileFormats, [head](const FileFormat& f) { return f.alone && f.recognizes(head); });
+}
 
 /// On disk any, within an archive plain events only: other formats are read from more than one place at once.
 Recording open_main_file(const SourcePath& file, const Rig* rig, const RecordingOptions& options) {
@@ -84,41 +112,75 @@ std::set<std::string> images_of(const SourcePath& folder) {
   return beside;
 }
 
-/// Of the sets whose files have names of their own, or nothing.
-std::optional<Recording> try_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
-  // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
-  const bool imu_alone =
-      is_ecd_folder(folder) && !(folder / "events.txt").is_file() && !(folder / "images.txt").is_file();
-  if (const auto file = imu_alone ? find_main_file(folder) : std::nullopt)
-    return open_loose_folder(folder, *file, rig, options);
-  if (is_ecd_folder(folder)) {
-    Recording recording = open_ecd(folder, rig);
-    std::set<std::string> read = images_of(folder);
-    read.insert({"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
-                 "depthmaps.txt", "depthmaps"});
-    read.merge(external_file_names());
-    tell_unread(folder, read);
-    recording.dataset = with_external_files(std::move(recording.dataset), folder);
-    return recording;
-  }
-  if (const auto mav0 = find_mav0(folder)) {
-    Recording recording = open_euroc(*mav0, options.cameras);
-    recording.dataset = with_external_files(std::move(recording.dataset), *mav0);
-    return recording;
-  }
-  return std::nullopt;
+std::optional<Recording> try_bag_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  const auto path = folder.disk_path();
+  return path && is_bag_folder(*path) ? std::optional(open_bag(*path, rig, options)) : std::nullopt;
 }
 
-/// Any folder of text files.
-std::optional<Recording> try_any_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
-  if (const auto file = find_main_file(folder)) return open_loose_folder(folder, *file, rig, options);
+std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  if (!is_ecd_folder(folder)) return std::nullopt;
+  // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
+  const bool imu_alone = !(folder / "events.txt").is_file() && !(folder / "images.txt").is_file();
+  if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
+    return open_loose_folder(folder, *file, rig, options);
+  Recording recording = open_ecd(folder, rig);
+  std::set<std::string> read = images_of(folder);
+  read.insert({"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
+               "depthmaps.txt", "depthmaps"});
+  read.merge(external_file_names());
+  tell_unread(folder, read);
+  recording.dataset = with_external_files(std::move(recording.dataset), folder);
+  return recording;
+}
+
+std::optional<Recording> try_euroc(const SourcePath& folder, const Rig*, const RecordingOptions& options) {
+  const auto mav0 = find_mav0(folder);
+  if (!mav0) return std::nullopt;
+  Recording recording = open_euroc(*mav0, options.cameras);
+  recording.dataset = with_external_files(std::move(recording.dataset), *mav0);
+  return recording;
+}
+
+std::optional<Recording> try_hdf5_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  const auto path = folder.disk_path();
+  const auto file = path ? find_hdf5_events(*path) : std::nullopt;
+  if (!file) return std::nullopt;
+  Recording recording = open_hdf5(*file, rig, options);
+  const DatasetInfo& info = recording.dataset->info();
+  const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == *path;  // of no set with side files
+  return bare ? open_loose_folder(folder, file->filename().string(), rig, options) : std::move(recording);
+}
+
+std::optional<Recording> try_loose_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  const auto file = find_main_file(folder, is_alone_format);
+  return file ? std::optional(open_loose_folder(folder, *file, rig, options)) : std::nullopt;
+}
+
+/// Folders whose files have names of their own.
+struct FolderFormat {
+  std::string_view files;  ///< with the set they are of, for the refusal
+  /// Nothing where the folder is none of the format, or lies in an archive and the format is read on disk only.
+  std::optional<Recording> (*open)(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) = nullptr;
+};
+
+/// In the order in which they are tried. A folder of any other names comes after all of them.
+constexpr std::array kFolderFormats = {
+    FolderFormat{.files = ".db3 or .mcap files (ROS 2)", .open = try_bag_folder},
+    FolderFormat{.files = "events.txt, images.txt or imu.txt (Event-Camera Dataset)", .open = try_ecd},
+    FolderFormat{.files = "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC)", .open = try_euroc},
+    FolderFormat{.files = ".h5 or .hdf5 files", .open = try_hdf5_folder},
+};
+
+std::optional<Recording> try_named_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+  for (const FolderFormat& format : kFolderFormats)
+    if (auto recording = format.open(folder, rig, options)) return recording;
   return std::nullopt;
 }
 
 /// The archive is the folder of the recording, or holds it.
 Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const SourcePath top = SourcePath::in_archive(file);
-  for (const auto attempt : {try_folder, try_any_folder}) {
+  for (const auto attempt : {try_named_folder, try_loose_folder}) {
     if (auto recording = attempt(top, rig, options)) return std::move(*recording);
     std::optional<Recording> found;
     for (const std::string& name : top.names()) {
@@ -140,35 +202,27 @@ Recording open_archive(const std::filesystem::path& file, const Rig* rig, const 
 Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   constexpr std::size_t kHeadBytes = 4096;
   const Bytes head = BinaryFile(file).read(0, kHeadBytes);
-  if (is_bag(head)) return open_bag(file, rig, options);
-  if (is_prophesee_file(head)) return open_prophesee(file, rig, options.geometry);
-  if (is_zip(head)) return open_archive(file, rig, options);
-  if (is_hdf5(head)) return open_hdf5(file, rig, options.geometry);
-  if (is_aedat4(head)) return open_aedat4(file, rig, options);
+  for (const FileFormat& format : kFileFormats)
+    if (format.recognizes(head)) return format.open(file, rig, options);
   if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
+  std::vector<std::string_view> names;
+  for (const FileFormat& format : kFileFormats) names.push_back(format.name);
   throw InputError::format(
-      "{}: unknown file format; looked for ROS bags, Prophesee RAW, DAT, AEDAT4, HDF5, zip "
-      "and text with an event in each line (`t x y p`, or columns named in the first line; also as .gz). Of a "
-      "recording in several "
-      "files give the folder (unpack an archive other than zip first, and what is no text out of .gz)",
-      file.string());
+      "{}: unknown file format; looked for {} and text with an event in each line (`t x y p`, or columns named in the "
+      "first line; also as .gz). Of a recording in several files give the folder (unpack an archive other than zip "
+      "first, and what is no text out of .gz)",
+      file.string(), fmt::join(names, ", "));
 }
 
 Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
-  if (is_bag_folder(folder)) return open_bag(folder, rig, options);
-  if (auto recording = try_folder(folder, rig, options)) return std::move(*recording);
-  if (const auto file = find_hdf5_events(folder)) {
-    Recording recording = open_hdf5(*file, rig, options.geometry);
-    const DatasetInfo& info = recording.dataset->info();
-    const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == folder;  // of no set with side files
-    return bare ? open_loose_folder(folder, file->filename().string(), rig, options) : std::move(recording);
-  }
-  if (auto recording = try_any_folder(folder, rig, options)) return std::move(*recording);
-  throw InputError::format(
-      "{}: no recording found; looked for events.txt, images.txt or imu.txt (Event-Camera Dataset), for "
-      "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC), for .h5 or .hdf5 files, for .db3 or .mcap files (ROS 2), "
-      "and for one ROS 1 bag, Prophesee RAW or DAT, AEDAT4 or csv of events",
-      folder.string());
+  for (const auto attempt : {try_named_folder, try_loose_folder})
+    if (auto recording = attempt(folder, rig, options)) return std::move(*recording);
+  std::vector<std::string_view> files, names;
+  for (const FolderFormat& format : kFolderFormats) files.push_back(format.files);
+  for (const FileFormat& format : kFileFormats)
+    if (format.alone) names.push_back(format.name);
+  throw InputError::format("{}: no recording found; looked for {}, and for one file of {} or text of events",
+                           folder.string(), fmt::join(files, "; "), fmt::join(names, ", "));
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "edged/core/dataset.hpp"
-#include "edged/io/calib/sensor_head.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/sensor_head.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "edged/core/dataset.hpp"
-#include "edged/io/calib/sensor_head.hpp"
+#include "edged/io/sensor_head.hpp"
 
 namespace edged {
 

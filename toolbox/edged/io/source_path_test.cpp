@@ -11,7 +11,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "edged/core/check.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -17,8 +17,8 @@
 #include "edged/io/hdf5/hdf5_writer.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/ros/ros_writer.hpp"
-#include "edged/io/text.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

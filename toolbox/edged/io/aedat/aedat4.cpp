@@ -12,7 +12,7 @@
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/compression.hpp"
 #include "edged/io/geometry.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -10,7 +10,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/compression.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/io/bytes.hpp"
-#include "edged/io/ros/topic_choice.hpp"
+#include "edged/io/topic_choice.hpp"
 
 namespace edged {
 

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "edged/io/aedat/aedat4_writer.hpp"
+#include "edged/io/evt_test_support.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/prophesee/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

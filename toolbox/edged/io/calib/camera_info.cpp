@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The intrinsics of one camera in the keys of OpenCV's samples, which many have: ROS's camera_calibration, VECtor, the
 // Metavision SDK before version 5, the first DV.
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 

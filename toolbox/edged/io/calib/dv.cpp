@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Calibrations of iniVation's DV: the json of dv-processing's CalibrationSet, and the xml of earlier versions.
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

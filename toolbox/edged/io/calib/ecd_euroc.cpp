@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The calibrations that come with Event-Camera Dataset and EuRoC folders.
 #include "edged/core/check.hpp"
-#include "edged/io/calib/formats.hpp"
-#include "edged/io/formats.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
+#include "edged/io/dataset_folders.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kalibr: camchains and the noise of its IMUs. EuRoC and OpenVINS name things alike.
 #include "edged/core/check.hpp"
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

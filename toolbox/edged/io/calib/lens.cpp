@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/io/calib/sensor_head.hpp"
 #include "edged/io/calib/yaml_reader.hpp"
+#include "edged/io/sensor_head.hpp"
 
 namespace edged {
 

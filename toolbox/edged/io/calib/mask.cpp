@@ -8,7 +8,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
-#include "edged/io/text/text_dataset.hpp"
+#include "edged/io/image_file.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "edged/io/bytes.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

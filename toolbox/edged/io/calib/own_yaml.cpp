@@ -6,9 +6,9 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calib/mask.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/calib/sensor_head.hpp"
+#include "edged/io/sensor_head.hpp"
 #include "edged/io/source_path.hpp"
 
 namespace edged {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The rig files of Ultimate SLAM (ze_oss): cameras with T_B_C, the same direction as ours; no clock, no noise.
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

@@ -3,7 +3,7 @@
 // The configuration files of VINS and of what descends from it: VINS-Mono and SuperEIO (the camera in the same file),
 // VINS-Fusion (cam0_calib) and ESVIO (cam_left_calib, event_left_calib).
 #include "edged/core/check.hpp"
-#include "edged/io/calib/formats.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

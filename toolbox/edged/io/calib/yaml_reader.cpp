@@ -10,7 +10,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/calib/opencv_xml.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

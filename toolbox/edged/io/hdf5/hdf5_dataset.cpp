@@ -355,13 +355,13 @@ std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
   return with_events.empty() ? all.front() : with_events.front();
 }
 
-Recording open_hdf5(const fs::path& path, const Rig* rig, std::optional<cv::Size> geometry) {
+Recording open_hdf5(const fs::path& path, const Rig* rig, const RecordingOptions& options) {
   const H5File file(path);
   for (const Hdf5Layout& layout : hdf5_layouts()) {
     auto events = H5Events::find(file, layout);
     if (!events) continue;
     SideFiles side = find_side_files(path, layout.name);
-    std::optional<cv::Size> said = geometry ? geometry : stated_sensor(file, layout);
+    std::optional<cv::Size> said = options.geometry ? options.geometry : stated_sensor(file, layout);
     if (!said) said = side.sensor;
     if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);
     const cv::Size sensor = event_sensor_size(path, said, rig);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <opencv2/core/types.hpp>
 #include <optional>
 
 #include "edged/io/recording.hpp"
@@ -16,8 +15,8 @@ namespace edged {
 std::optional<std::filesystem::path> find_hdf5_events(const std::filesystem::path& folder);
 
 /// The layout is found by what the file holds; frames, IMU and ground truth by the names that the sets give the files
-/// beside it. geometry: of the event sensor, where the user says it. Throws InputError for an unknown layout, listing
+/// beside it. Of options: geometry of the event sensor. Throws InputError for an unknown layout, listing
 /// what there is.
-Recording open_hdf5(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry);
+Recording open_hdf5(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "edged/io/hdf5/h5_truth.hpp"
-#include "edged/io/text/stamped_lines.hpp"
-#include "edged/io/text/text_dataset.hpp"
+#include "edged/io/image_file.hpp"
+#include "edged/io/stamped_lines.hpp"
 
 namespace edged {
 

@@ -14,7 +14,7 @@
 #include "edged/io/geometry.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/streamed_dataset.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {
@@ -192,10 +192,10 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
   return header;
 }
 
-Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry) {
+Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const PropheseeHeader header = read_prophesee_header(BinaryFile(file).read(0, kHeaderBytes), file.string());
-  return {std::make_unique<PropheseeDataset>(file, header,
-                                             event_sensor_size(file, geometry ? geometry : header.geometry, rig)),
+  return {std::make_unique<PropheseeDataset>(
+              file, header, event_sensor_size(file, options.geometry ? options.geometry : header.geometry, rig)),
           std::nullopt};
 }
 

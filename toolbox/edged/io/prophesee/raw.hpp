@@ -6,7 +6,7 @@
 #include <string>
 
 #include "edged/io/bytes.hpp"
-#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/evt.hpp"
 #include "edged/io/recording.hpp"
 
 namespace edged {
@@ -24,7 +24,7 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file);
 
 /// From the first bytes of a file.
 bool is_prophesee_file(ByteSpan head);
-/// geometry: of the sensor, as the user gives it.
-Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, std::optional<cv::Size> geometry);
+/// Of options: geometry of the sensor.
+Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

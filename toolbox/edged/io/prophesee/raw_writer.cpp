@@ -7,8 +7,8 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/bytes.hpp"
-#include "edged/io/prophesee/evt_encoder.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/evt_encoder.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

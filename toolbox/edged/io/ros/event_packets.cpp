@@ -3,7 +3,7 @@
 // The encodings of event packets.
 #include "edged/io/ros/event_packets.hpp"
 
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

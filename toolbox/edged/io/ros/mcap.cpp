@@ -9,7 +9,7 @@
 
 #include "edged/io/compression.hpp"
 #include "edged/io/mcap_format.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

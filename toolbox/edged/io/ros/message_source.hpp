@@ -8,19 +8,13 @@
 #include <vector>
 
 #include "edged/io/bytes.hpp"
+#include "edged/io/topic_choice.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
 
 /// How numbers and texts of a message are laid out.
 enum class Wire { Ros1, Cdr };
-
-struct Topic {
-  std::string name;        ///< "/dvs/events"
-  std::string type;        ///< "dvs_msgs/EventArray", in ROS 2 too
-  std::string definition;  ///< of the type, as far as the container tells it
-  std::size_t count = 0;   ///< of messages
-};
 
 struct Message {
   std::size_t topic = 0;  ///< index of topics()

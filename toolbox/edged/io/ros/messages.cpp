@@ -12,7 +12,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

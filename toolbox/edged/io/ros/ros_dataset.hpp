@@ -8,8 +8,8 @@
 #include "edged/io/recording.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/sensor_messages.hpp"
-#include "edged/io/ros/topic_choice.hpp"
 #include "edged/io/streamed_dataset.hpp"
+#include "edged/io/topic_choice.hpp"
 
 namespace edged {
 

@@ -10,7 +10,7 @@
 #include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/mcap_sink.hpp"
 #include "edged/io/ros/wire_writer.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -14,7 +14,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/dataset.hpp"
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/io/text/stamped_lines.hpp"
+#include "edged/io/stamped_lines.hpp"
 
 namespace edged {
 

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
+#include "edged/io/text/ecd.hpp"
+
 #include <array>
 
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/formats.hpp"
+#include "edged/io/dataset_folders.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
@@ -20,16 +22,6 @@ std::optional<ImuSample> parse_ecd_imu(std::string_view line) {
   std::array<double, 6> v;
   if (!t || !read_numbers(fields, v) || !fields.rest().empty()) return std::nullopt;
   return ImuSample{*t, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
-}
-
-StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder) {
-  return {folder / "images.txt", "frames", "t path", LastLine::MayLackEnd,
-          [folder](std::string_view line) -> std::optional<FrameEntry> {
-            FieldReader fields(line);
-            const auto t = parse_seconds(fields.next());
-            if (!t || fields.rest().empty()) return std::nullopt;
-            return FrameEntry{*t, folder / fields.rest()};
-          }};
 }
 
 std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const std::string& camera, Repairs& repairs) {
@@ -48,26 +40,6 @@ cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::option
 }
 
 }  // namespace
-
-bool is_ecd_folder(const SourcePath& folder) {
-  return (folder / "events.txt").is_file() || (folder / "images.txt").is_file() || (folder / "imu.txt").is_file();
-}
-
-std::optional<cv::Size> ecd_image_size(const SourcePath& folder) {
-  constexpr int kTries = 20;
-  if (!(folder / "images.txt").is_file()) return std::nullopt;
-  const auto spec = ecd_images(folder);
-  LineReader lines(spec.file);
-  for (int i = 0; i < kTries; ++i) {
-    const auto line = lines.next();
-    if (!line) break;
-    const auto entry = spec.parse(line->text);
-    if (!entry || !entry->image.is_file()) continue;
-    const cv::Mat image = read_gray_image(entry->image);
-    if (!image.empty()) return image.size();
-  }
-  return std::nullopt;
-}
 
 Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   Recording recording;

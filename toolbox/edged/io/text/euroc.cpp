@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The ASL folders of the EuRoC data set (Burri et al., IJRR 2016), which TUM-VI (Schubert et al., IROS 2018) uses too.
+#include "edged/io/text/euroc.hpp"
+
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -12,7 +14,6 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/formats.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 
@@ -96,19 +97,7 @@ Calibration calibration_of(const SourcePath& mav0, const std::set<std::string>& 
   return calibration;
 }
 
-bool holds_sensors(const SourcePath& folder) {
-  return (folder / "cam0" / "data.csv").is_file() || (folder / "imu0" / "data.csv").is_file();
-}
-
 }  // namespace
-
-std::optional<SourcePath> find_mav0(const SourcePath& folder) {
-  if (holds_sensors(folder)) return folder;
-  if (holds_sensors(folder / "mav0")) return folder / "mav0";
-  // TUM-VI's dso folder lists the images of the mav0 beside it.
-  if (folder.name() == "dso" && holds_sensors(folder.parent_path() / "mav0")) return folder.parent_path() / "mav0";
-  return std::nullopt;
-}
 
 Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras) {
   TextLayout layout;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "edged/io/repairs.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/io/stamped_lines.hpp"
 #include "edged/io/text/dataset_with_lines.hpp"
 
 namespace edged {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "edged/core/dataset.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 

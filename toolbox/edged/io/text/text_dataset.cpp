@@ -4,7 +4,6 @@
 #include "edged/io/text/text_dataset.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
 #include "edged/io/merger.hpp"
@@ -20,16 +19,6 @@ Timestamp next_stamp(std::optional<Stream>& stream) {
 }
 
 }  // namespace
-
-cv::Mat read_gray_image(const SourcePath& file) try {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 28U;
-  const Bytes bytes = file.read(kMostBytes);
-  return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
-} catch (const Damage&) {
-  return {};
-} catch (const cv::Exception&) {
-  return {};
-}
 
 TextDataset::TextDataset(TextLayout layout) : layout_(std::move(layout)) {
   open_streams();

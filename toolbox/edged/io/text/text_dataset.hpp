@@ -10,20 +10,11 @@
 #include <vector>
 
 #include "edged/core/dataset.hpp"
+#include "edged/io/image_file.hpp"
+#include "edged/io/stamped_lines.hpp"
 #include "edged/io/text/event_text.hpp"
-#include "edged/io/text/stamped_lines.hpp"
 
 namespace edged {
-
-/// 8 bits of grey: colours by their luminance, of 16 bits the upper 8 (TUM-VI). Empty where the file is no image or
-/// damaged. Throws InputError where it cannot be read at all.
-cv::Mat read_gray_image(const SourcePath& file);
-
-/// One line of a list of images.
-struct FrameEntry {
-  Timestamp t;
-  SourcePath image;
-};
 
 struct EventFile {
   SourcePath file;

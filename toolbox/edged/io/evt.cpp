@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The words of each format, bit by bit.
-#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/evt.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,18 +1,25 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which topic of a bag is which sensor: by type, or as the user says.
+// Which topic of a bag, or stream of another container, is which sensor: by type, or as the user says.
 #pragma once
 
 #include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/core/external_sensor.hpp"
-#include "edged/io/ros/message_source.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
+
+struct Topic {
+  std::string name;        ///< "/dvs/events"
+  std::string type;        ///< "dvs_msgs/EventArray", in ROS 2 too
+  std::string definition;  ///< of the type, as far as the container tells it
+  std::size_t count = 0;   ///< of messages
+};
 
 enum class Role { Events, Frames, Imu, Truth, Height, Velocity };
 inline constexpr std::array<const char*, 6> kRoleNames = {"events", "frames", "imu", "truth", "height", "velocity"};

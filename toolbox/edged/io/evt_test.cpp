@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Decoders of the Prophesee formats against encoders, wraps, cuts and noise.
-#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/evt.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "edged/io/prophesee/evt_test_support.hpp"
+#include "edged/io/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Blocks, lines, fields, numbers and stamps of text files.
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 
 #include <algorithm>
 #include <cctype>

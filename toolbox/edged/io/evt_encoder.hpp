@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "edged/io/prophesee/evt.hpp"
+#include "edged/io/evt.hpp"
 
 namespace edged {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The words of each format, as EvtDecoder takes them apart.
-#include "edged/io/prophesee/evt_encoder.hpp"
+#include "edged/io/evt_encoder.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/io/bytes.hpp"
-#include "edged/io/prophesee/evt_encoder.hpp"
+#include "edged/io/evt_encoder.hpp"
 
 namespace edged {
 

@@ -11,7 +11,7 @@
 
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/repairs.hpp"
-#include "edged/io/text.hpp"
+#include "edged/io/text_parsing.hpp"
 #include "edged/time.hpp"
 
 namespace edged {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Types, ties and the messages about them.
-#include "edged/io/ros/topic_choice.hpp"
+#include "edged/io/topic_choice.hpp"
 
 #include <algorithm>
 

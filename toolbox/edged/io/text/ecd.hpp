@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The text folders of the Event-Camera Dataset.
+#pragma once
+
+#include "edged/io/recording.hpp"
+#include "edged/io/source_path.hpp"
+
+namespace edged {
+
+/// A folder that is_ecd_folder() recognises.
+Recording open_ecd(const SourcePath& folder, const Rig* rig);
+
+}  // namespace edged

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The ASL folders of EuRoC and TUM-VI.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edged/io/recording.hpp"
+#include "edged/io/source_path.hpp"
+
+namespace edged {
+
+/// A folder that find_mav0() found.
+Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras);
+
+}  // namespace edged
