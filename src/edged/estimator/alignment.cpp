@@ -161,7 +161,7 @@ class MotionSearch {
   }
 
   /// Of what was found, the share that an estimate at the last frame explains.
-  double explained(const Found& found, const NavState& running) const {
+  double explained(const Found& found, const OdomState& running) const {
     const double support = judge_->judged(found.solver, found.solver.start_of(running)).support;
     return std::min(1.0, support / found.best.support);
   }
@@ -203,7 +203,7 @@ class MotionSearch {
 }  // namespace
 
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
-                               double accel_bias_sigma, const NavState* running) {
+                               double accel_bias_sigma, const OdomState* running) {
   MotionSearch search(frames, rig, noise, accel_bias_sigma);
   const std::optional<Found> found = search.best();
   if (!found) return std::nullopt;
@@ -213,7 +213,7 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
   const std::optional<RefinedStart> start = solver.refine(found->best.fit, found->best.x, kIterations);
   if (!start) return std::nullopt;
   const Start& x = start->x;
-  const SE3 T_W_B0(Eigen::Quaterniond::FromTwoVectors(-x.segment<3>(3), Vector3d::UnitZ()), Vector3d::Zero());
+  const SE3 T_O_B0(Eigen::Quaterniond::FromTwoVectors(-x.segment<3>(3), Vector3d::UnitZ()), Vector3d::Zero());
   Alignment result;
   result.gravity_error = free_length / kGravity - 1.0;
   result.scale_sigma = solver.relative_sigma(*start);
@@ -221,10 +221,10 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
   if (running != nullptr) result.explained = search.explained(*found, *running);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const RelativeMotion& m = solver.motion()[i];
-    NavState state;
+    OdomState state;
     state.t = frames[i].t;
-    state.T_W_B = T_W_B0 * SE3(m.R, m.position(x));
-    state.v_W = T_W_B0.rotation() * m.velocity(x);
+    state.T_O_B = T_O_B0 * SE3(m.R, m.position(x));
+    state.v_O = T_O_B0.rotation() * m.velocity(x);
     state.bias_gyro = found->gyro_bias;
     state.bias_accel = x.tail<3>();
     result.states.push_back(state);

@@ -21,16 +21,16 @@
 #include <set>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
-#include "edged/state.hpp"
 
 namespace edged {
 
 struct Alignment {
-  std::vector<NavState> states;  ///< one a frame; W z-up, origin and yaw at the first body pose
-  double gravity_error = 0.0;    ///< |g| found without imposing it, relative to 9.81: a measure of trust
+  std::vector<OdomState> states;  ///< one a frame; O z-up, origin and yaw at the first body pose
+  double gravity_error = 0.0;     ///< |g| found without imposing it, relative to 9.81: a measure of trust
   double scale_sigma = 0.0;  ///< standard deviation of the longest baseline over its length, as the features tell it
   std::set<FeatureId> outliers;  ///< features that move by themselves
   /// Of what it explains of the views, the share that a running estimate explains, 0 to 1: does that one follow the
@@ -46,6 +46,6 @@ std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& fra
 /// estimate at the time of the last frame, to be judged, or null. Nothing when the linear system is not determined (too
 /// few tracks, no translation).
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
-                               double accel_bias_sigma, const NavState* running = nullptr);
+                               double accel_bias_sigma, const OdomState* running = nullptr);
 
 }  // namespace edged

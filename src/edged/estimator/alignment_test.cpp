@@ -32,19 +32,19 @@ struct AlignmentErrors {
 
 AlignmentErrors errors_of(const Alignment& alignment, const TestWorld& world, const Eigen::Vector3d& bias_gyro) {
   AlignmentErrors e;
-  for (const NavState& state : alignment.states) {
+  for (const OdomState& state : alignment.states) {
     const double t = to_seconds(state.t);
     const SE3 truth = world.T_W_B(t);
-    const double cosine = state.T_W_B.R().row(2).dot(truth.R().row(2));
+    const double cosine = state.T_O_B.R().row(2).dot(truth.R().row(2));
     e.gravity_deg = std::max(e.gravity_deg, std::acos(std::min(1.0, cosine)) / kDeg);
     e.speed = std::max(
-        e.speed, (state.T_W_B.rotation().conjugate() * state.v_W - truth.rotation().conjugate() * world.v_W(t)).norm());
+        e.speed, (state.T_O_B.rotation().conjugate() * state.v_O - truth.rotation().conjugate() * world.v_W(t)).norm());
     e.bias_gyro = std::max(e.bias_gyro, (state.bias_gyro - bias_gyro).norm());
   }
   const auto distance = [](const SE3& a, const SE3& b) { return (a.translation() - b.translation()).norm(); };
-  const NavState &first = alignment.states.front(), &last = alignment.states.back();
+  const OdomState &first = alignment.states.front(), &last = alignment.states.back();
   e.scale =
-      distance(first.T_W_B, last.T_W_B) / distance(world.T_W_B(to_seconds(first.t)), world.T_W_B(to_seconds(last.t))) -
+      distance(first.T_O_B, last.T_O_B) / distance(world.T_W_B(to_seconds(first.t)), world.T_W_B(to_seconds(last.t))) -
       1.0;
   return e;
 }
@@ -157,16 +157,16 @@ TEST(Align, TellsAnEstimateOfTheRoomFromOneOfWhatWalksInIt) {
     TestWorld world(with_walker(seed, begin));
     const std::vector<InitFrame> frames = views_of(world, begin);
     const double t = to_seconds(frames.back().t);
-    NavState state;
+    OdomState state;
     state.t = frames.back().t;
-    state.T_W_B = world.T_W_B(t);
-    state.v_W = world.v_W(t);
-    const auto explained = [&](const NavState& s) {
+    state.T_O_B = world.T_W_B(t);
+    state.v_O = world.v_W(t);
+    const auto explained = [&](const OdomState& s) {
       return align(frames, world.rig(), world.noise(), kAccelBiasSigma, &s)->explained;
     };
     const double of_the_room = explained(state);
     EXPECT_GT(of_the_room, 0.6);
-    state.v_W -= Eigen::Vector3d(0.6, 0.1, 0.0);
+    state.v_O -= Eigen::Vector3d(0.6, 0.1, 0.0);
     EXPECT_LT(explained(state), 0.5 * of_the_room);
   }
 }

@@ -7,7 +7,7 @@ namespace {
 
 std::vector<SE3> present_poses(const Window& window) {
   std::vector<SE3> poses;
-  for (const auto& [id, state] : window.states()) poses.push_back(state.T_W_B());
+  for (const auto& [id, state] : window.states()) poses.push_back(state.T_O_B());
   return poses;
 }
 

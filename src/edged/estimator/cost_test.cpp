@@ -110,7 +110,7 @@ TEST(Cost, CountsWhatMarginalisationHasLeft) {
   Cost without = cost_of(window);
   without.prior = nullptr;
   EXPECT_DOUBLE_EQ(value_of(window, without), before);
-  displace(window, last.id, {0.0, 0.0, 0.0}, window.newest().T_W_B().R().transpose() * Eigen::Vector3d(0.2, 0.0, 0.0));
+  displace(window, last.id, {0.0, 0.0, 0.0}, window.newest().T_O_B().R().transpose() * Eigen::Vector3d(0.2, 0.0, 0.0));
   EXPECT_NEAR(value_of(window, cost_of(window)) - value_of(window, without), 0.5 * 2.0 * 2.0, 1e-9);
 }
 

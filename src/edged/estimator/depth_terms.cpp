@@ -26,11 +26,11 @@ SE3 T_B_E(const Window& window, const RegionDepth& depth) {
 
 /// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.
 std::optional<Middle> middle_landmarks(const Window& window, StateId state, const RegionDepth& region) {
-  const SE3 T_E_W = (window.states().at(state).T_W_B() * T_B_E(window, region)).inverse();
+  const SE3 T_E_O = (window.states().at(state).T_O_B() * T_B_E(window, region)).inverse();
   std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor || !feature.seen_at(state) || feature.inverse_depth <= 0.0) continue;
-    const Eigen::Vector3d p_E = T_E_W * window.position(feature);
+    const Eigen::Vector3d p_E = T_E_O * window.position(feature);
     if (p_E.z() * feature.inverse_depth < kNearestShare) continue;
     const Eigen::Array2d point = p_E.hnormalized();
     if ((point >= region.low.array()).all() && (point <= region.high.array()).all()) {

@@ -22,10 +22,10 @@ constexpr double kStep_s = 0.05;
 /// if nobody had looked.
 RegionDepth depth_of_view(TestWorld world, double t, double bias, double sigma_ln) {
   const RigCamera& camera = world.rig().cameras.front();
-  const SE3 T_C_W = (world.T_W_B(t) * camera.T_B_C).inverse();
+  const SE3 T_C_O = (world.T_W_B(t) * camera.T_B_C).inverse();
   std::vector<double> depths;
   for (const FeatureObservation& seen : world.observe(t).features) {
-    depths.push_back((T_C_W * world.point_W(seen.id)).z());
+    depths.push_back((T_C_O * world.point_W(seen.id)).z());
   }
   std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
   return {camera.name, {-1, -1}, {1, 1}, bias * depths[depths.size() / 2], sigma_ln, 0.2};
@@ -54,7 +54,7 @@ Outcome fly(const TestWorldOptions& options, double duration_s, double bias, con
     if (!estimator.initialized() || estimator.provisional()) continue;
     if (!outcome.good_s) outcome.good_s = t;
     if (result.new_frame) first.reset(), before.reset();
-    const std::pair<SE3, SE3> now(world.T_W_B(t), estimator.newest().T_W_B);
+    const std::pair<SE3, SE3> now(world.T_W_B(t), estimator.newest().T_O_B);
     if (!first) first = now;
     if (before) {
       travelled += (now.first.translation() - before->first.translation()).norm();

@@ -34,14 +34,14 @@ constexpr double kUnseenTurnNoise = 6.0;
 constexpr double kEventsAloneInflation = 1.4;
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
-bool plausible(const NavState& state) {
-  return state.T_W_B.translation().allFinite() && state.v_W.norm() < kMaxSpeed &&
+bool plausible(const OdomState& state) {
+  return state.T_O_B.translation().allFinite() && state.v_O.norm() < kMaxSpeed &&
          state.bias_gyro.norm() < kMaxGyroBias && state.bias_accel.norm() < kMaxAccelBias;
 }
 
 /// Whether two estimates of one instant, in frames of their own, are of one motion: they have the same velocity in B.
-bool agrees(const NavState& a, const NavState& b) {
-  const Eigen::Vector3d v_a = a.T_W_B.rotation().conjugate() * a.v_W, v_b = b.T_W_B.rotation().conjugate() * b.v_W;
+bool agrees(const OdomState& a, const OdomState& b) {
+  const Eigen::Vector3d v_a = a.T_O_B.rotation().conjugate() * a.v_O, v_b = b.T_O_B.rotation().conjugate() * b.v_O;
   return (v_a - v_b).norm() < kSameVelocity * std::max(v_a.norm(), v_b.norm()) + kSameVelocity_mps;
 }
 
@@ -98,7 +98,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
   const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
-  const std::optional<NavState> now =
+  const std::optional<OdomState> now =
       initialized_ ? std::optional(propagate(newest(), since_newest(input))) : std::nullopt;
   StartResult found = initializer_.add(input, now ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma),
                                        now ? &*now : nullptr);
@@ -113,7 +113,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
   result.started = at_rest ? "at rest"
                            : fmt::format("in motion: scale known to {:.1f} %, speed {:.2f} m/s", 100.0 * scale_sigma_,
-                                         newest().v_W.norm());
+                                         newest().v_O.norm());
   initialized_ = result.new_frame = true;
   if (!provisional()) window_.free_calibration(config_.calibration);
   result.provisional = provisional();
@@ -130,7 +130,7 @@ void Estimator::update_scale(const EstimatorInput& input) {
 }
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {
-  const NavState from = newest();
+  const OdomState from = newest();
   const bool same = input.motion.bias_gyro() == from.bias_gyro && input.motion.bias_accel() == from.bias_accel;
   return same ? input.motion : input.motion.reintegrated(from.bias_gyro, from.bias_accel);
 }
@@ -154,7 +154,7 @@ std::optional<double> Estimator::depth(FeatureId id, const std::string& camera) 
   const auto found = window_.features().find(id);
   if (found == window_.features().end() || !found->second.anchor) return std::nullopt;
   const ObservationKey view{window_.newest_id(), window_.camera_index(camera)};
-  const double z = (window_.T_W_C(view).inverse() * window_.position(found->second)).z();
+  const double z = (window_.T_O_C(view).inverse() * window_.position(found->second)).z();
   return z > config_.landmarks.min_depth_m ? std::optional(z) : std::nullopt;
 }
 
@@ -163,19 +163,19 @@ std::optional<LogScale> Estimator::depth_scale() const {
 }
 
 void Estimator::append(const EstimatorInput& input) {
-  const NavState before = newest();
+  const OdomState before = newest();
   Preintegration imu = since_newest(input);
-  NavState nav = propagate(before, imu);
+  OdomState nav = propagate(before, imu);
   nav.t = input.t;
   WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
-  const bool rested = standstill_.still_by_imu() || (standstill_.still() && before.v_W.norm() < kMaxStandstillSpeed);
+  const bool rested = standstill_.still_by_imu() || (standstill_.still() && before.v_O.norm() < kMaxStandstillSpeed);
   state.rested = rested;
   const StateId id = input.motion.gyro_clipped()
                          ? window_.add_state(std::move(state), of_unseen_turn(input.observations))
                          : window_.add_state(std::move(state), input.observations);
   external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   if (!rested) return;
-  NavState rest;
+  OdomState rest;
   rest.bias_gyro = standstill_.mean_gyro_B();
   const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;
   window_.add_soft_prior(

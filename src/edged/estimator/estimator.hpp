@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/estimator/depth_terms.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/external_factors.hpp"
@@ -46,7 +47,7 @@ class Estimator {
   /// that believed in what moves by itself seldom finds the same velocity twice.
   bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
   /// The newest state; meaningful once initialised.
-  NavState newest() const { return window_.newest().nav(); }
+  OdomState newest() const { return window_.newest().nav(); }
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 

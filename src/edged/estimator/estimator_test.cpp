@@ -33,22 +33,22 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     const EstimatorResult output = estimator.add(world.packet(t, kStep, i % 4 == 0));
     result.waiting_for = output.waiting_for;
     if (!estimator.initialized()) continue;
-    const NavState state = estimator.newest();
+    const OdomState state = estimator.newest();
     const SE3 truth = world.T_W_B(t);
     if (!result.initialized) {
       result.initialized = true;
       result.started_at = t;
       // Yaw and position are free: take them from the start.
-      const Eigen::Matrix3d R = truth.R() * state.T_W_B.R().transpose();
+      const Eigen::Matrix3d R = truth.R() * state.T_O_B.R().transpose();
       const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());
-      T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * state.T_W_B.translation());
+      T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * state.T_O_B.translation());
     } else {
       travelled += (truth.translation() - last_true).norm();
-      estimated += (state.T_W_B.translation() - last_estimated).norm();
+      estimated += (state.T_O_B.translation() - last_estimated).norm();
     }
     last_true = truth.translation();
-    last_estimated = state.T_W_B.translation();
-    const SE3 aligned = T_true_est * state.T_W_B;
+    last_estimated = state.T_O_B.translation();
+    const SE3 aligned = T_true_est * state.T_O_B;
     result.max_position_error =
         std::max(result.max_position_error, (aligned.translation() - truth.translation()).norm());
     result.max_tilt_error = std::max(result.max_tilt_error, (aligned.R().row(2) - truth.R().row(2)).norm());
@@ -144,9 +144,9 @@ TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
         EXPECT_EQ(view.camera, world.rig().cameras[camera].name);
         seen += world.observe(t, camera).features.size();
         left += view.points.size();
-        const SE3 T_C_W = (world.T_W_B(t) * view.T_B_C).inverse();
+        const SE3 T_C_O = (world.T_W_B(t) * view.T_B_C).inverse();
         for (const KeyframePoint& point : view.points) {
-          const Eigen::Vector3d p_C = T_C_W * world.point_W(point.id);
+          const Eigen::Vector3d p_C = T_C_O * world.point_W(point.id);
           EXPECT_LT((point.point - p_C.hnormalized()).norm(), 0.03);
           depth_error += std::abs(point.inverse_depth * p_C.z() - 1.0);
           depth_sigma += point.sigma / point.inverse_depth;
@@ -229,15 +229,15 @@ VelocityErrors velocity_errors(const TestWorldOptions& world_options, const Esti
       const double t = 0.05 * i;
       estimator.add(world.packet(t, 0.05, i % 3 == 0));
       if (!estimator.initialized() || t < 3.0 || i % 10 != 0) continue;
-      const NavState state = estimator.newest();
-      const Eigen::Matrix3d R_W_B = state.T_W_B.R();
-      const Eigen::Vector3d error = R_W_B.transpose() * state.v_W - world.T_W_B(t).R().transpose() * world.v_W(t);
+      const OdomState state = estimator.newest();
+      const Eigen::Matrix3d R_O_B = state.T_O_B.R();
+      const Eigen::Vector3d error = R_O_B.transpose() * state.v_O - world.T_W_B(t).R().transpose() * world.v_W(t);
       const auto P = estimator.covariance();
       if (!P) continue;
-      // v_B = R' v_W turns with the attitude.
+      // v_B = R' v_O turns with the attitude.
       Eigen::Matrix<double, 3, 15> J = Eigen::Matrix<double, 3, 15>::Zero();
-      J.middleCols<3>(3) = skew(R_W_B.transpose() * state.v_W);
-      J.middleCols<3>(6) = R_W_B.transpose();
+      J.middleCols<3>(3) = skew(R_O_B.transpose() * state.v_O);
+      J.middleCols<3>(6) = R_O_B.transpose();
       sum.nees += error.dot((J * *P * J.transpose()).ldlt().solve(error)) / 3.0;
       sum.rms += error.squaredNorm() / 3.0;
       ++count;

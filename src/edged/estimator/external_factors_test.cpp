@@ -73,7 +73,7 @@ Errors fly(const Flight& flight) {
     input.external = samples_of(flight, sensors, t - kStep_s, t, random);
     const EstimatorResult result = estimator.add(input);
     if (!estimator.initialized()) continue;
-    const SE3 truth = world.T_W_B(t), estimate = estimator.newest().T_W_B;
+    const SE3 truth = world.T_W_B(t), estimate = estimator.newest().T_O_B;
     if (!T_true_est) {
       const Eigen::Matrix3d R = truth.R() * estimate.R().transpose();
       const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());

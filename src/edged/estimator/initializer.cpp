@@ -44,10 +44,10 @@ double visual_rms(const Window& window) {
   int n = 0;
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
-    const Eigen::Vector3d p_W = window.position(feature);
+    const Eigen::Vector3d p_O = window.position(feature);
     for (const auto& [view, seen] : feature.observations) {
       if (view == *feature.anchor) continue;
-      const Eigen::Vector3d p_C = window.T_W_C(view).inverse() * p_W;
+      const Eigen::Vector3d p_C = window.T_O_C(view).inverse() * p_O;
       sum += std::min((p_C.hnormalized() - seen.point).squaredNorm() / (seen.sigma * seen.sigma), 25.0);
       ++n;
     }
@@ -71,7 +71,7 @@ std::string scale_text(double sigma, double most) {
 double tilt_sigma(const Window& window) {
   const std::optional<Matrix15d> P = covariance(window, window.newest_id());
   if (!P) return kFree;
-  const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_W_B().R().topRows<2>();
+  const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_O_B().R().topRows<2>();
   const Eigen::Matrix2d tilt = horizontal * P->block<3, 3>(3, 3) * horizontal.transpose();
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tilt).eigenvalues()[1]);
 }
@@ -79,7 +79,7 @@ double tilt_sigma(const Window& window) {
 }  // namespace
 
 double scale_sigma(const Window& window) {
-  const auto way_of = [](const auto& entry) { return entry.second.T_W_B().translation(); };
+  const auto way_of = [](const auto& entry) { return entry.second.T_O_B().translation(); };
   const auto farthest =
       std::max_element(window.states().begin(), window.states().end(),
                        [&](const auto& a, const auto& b) { return way_of(a).norm() < way_of(b).norm(); });
@@ -90,7 +90,7 @@ double scale_sigma(const Window& window) {
 }
 
 StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
-                             const NavState* running) {
+                             const OdomState* running) {
   const bool new_view = buffer_view(input);
   if (rest != nullptr && rest->still()) {
     const double gravity = rest->mean_accel_B().norm();
@@ -157,9 +157,9 @@ Window Initializer::empty_window() const {
 }
 
 Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const {
-  NavState state;
+  OdomState state;
   state.t = input.t;
-  state.T_W_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
+  state.T_O_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
                     Eigen::Vector3d::Zero());
   state.bias_gyro = standstill.mean_gyro_B();
   Window window = empty_window();
@@ -167,7 +167,7 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
       window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true), input.observations);
   const WindowState& first = window.newest();
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
-  window.add_soft_prior(gauge_prior(pose, to_block(state.T_W_B), kGaugeSigma_m, kGaugeSigma_rad));
+  window.add_soft_prior(gauge_prior(pose, to_block(state.T_O_B), kGaugeSigma_m, kGaugeSigma_rad));
   window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(), kRestAccelSigma));
   window.add_soft_prior(
       motion_prior(motion, motion_block(state),
@@ -175,7 +175,7 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   return window;
 }
 
-StartResult Initializer::start_in_motion(double most_scale_sigma, const NavState* running) {
+StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
   if (buffer_.size() < static_cast<std::size_t>(config_.init_min_views)) {
     return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
   }
@@ -237,7 +237,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   if (!(tilt_deg <= most_tilt_deg)) {
     return fmt::format("motion that tells gravity: known to {:.1f} deg, {:.1f} wanted", tilt_deg, most_tilt_deg);
   }
-  const NavState state = window.newest().nav();
+  const OdomState state = window.newest().nav();
   const double most_bias = kMaxBiasSigmas * config_.accel_bias_sigma;
   if (state.bias_accel.norm() > most_bias) {
     const double bias = state.bias_accel.norm();
@@ -253,7 +253,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
 Window Initializer::aligned_window(const Alignment& alignment) const {
   Window window = empty_window();
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
-    const NavState& nav = alignment.states[i];
+    const OdomState& nav = alignment.states[i];
     Preintegration imu =
         i == 0 ? Preintegration{} : Preintegration(buffer_[i].imu, nav.bias_gyro, nav.bias_accel, noise_);
     window.add_state(window_state(nav, buffer_[i].imu.back().gyro_B, std::move(imu), true), buffer_[i].observations);
@@ -262,7 +262,7 @@ Window Initializer::aligned_window(const Alignment& alignment) const {
   for (const FeatureId id : alignment.outliers) window.forget_feature(id);
   const auto& [first, state] = *window.states().begin();
   window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
-  NavState unbiased = state.nav();
+  OdomState unbiased = state.nav();
   unbiased.bias_accel.setZero();
   window.add_soft_prior(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
                                      {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/estimator/alignment.hpp"
 #include "edged/estimator/estimator_input.hpp"
 #include "edged/estimator/standstill.hpp"
@@ -45,7 +46,7 @@ class Initializer {
   /// start in motion must know the scale to most_scale_sigma. running: the estimate at the input, where there is one
   /// already.
   StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
-                  const NavState* running = nullptr);
+                  const OdomState* running = nullptr);
 
  private:
   bool buffer_view(const EstimatorInput& input);
@@ -53,7 +54,7 @@ class Initializer {
   Window empty_window() const;
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
   void make_room();
-  StartResult start_in_motion(double most_scale_sigma, const NavState* running);
+  StartResult start_in_motion(double most_scale_sigma, const OdomState* running);
   StartResult start_from(const Alignment& alignment, double most_scale_sigma);
   Window aligned_window(const Alignment& alignment) const;
   void solve_start(Window& window) const;

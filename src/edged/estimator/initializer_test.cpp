@@ -44,16 +44,16 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
     started.after_s = i * kEvery_s;
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const auto& [id, state] : estimator.window().states()) {
-      estimated.push_back(state.T_W_B().translation());
+      estimated.push_back(state.T_O_B().translation());
       truth.push_back(world.T_W_B(to_seconds(state.t)).translation());
     }
     started.scale_error = spread(truth) > 1e-6 ? spread(estimated) / spread(truth) - 1.0 : 0.0;
-    const NavState state = estimator.newest();
-    const SE3 T_W_B = world.T_W_B(t);
-    started.tilt_deg = kRadToDeg * std::acos(std::min(1.0, state.T_W_B.R().row(2).dot(T_W_B.R().row(2))));
+    const OdomState state = estimator.newest();
+    const SE3 T_O_B = world.T_W_B(t);
+    started.tilt_deg = kRadToDeg * std::acos(std::min(1.0, state.T_O_B.R().row(2).dot(T_O_B.R().row(2))));
     started.speed = world.v_W(t).norm();
     started.speed_error =
-        (state.T_W_B.rotation().conjugate() * state.v_W - T_W_B.rotation().conjugate() * world.v_W(t)).norm();
+        (state.T_O_B.rotation().conjugate() * state.v_O - T_O_B.rotation().conjugate() * world.v_W(t)).norm();
     return started;
   }
   return std::nullopt;

@@ -39,7 +39,7 @@ void triangulate_feature(Window& window, FeatureId id, const Feature& feature, c
   std::vector<View> views;
   double sigma = 0.0;
   for (const auto& [view, observation] : feature.observations) {
-    views.push_back({window.T_W_C(view), observation.point});
+    views.push_back({window.T_O_C(view), observation.point});
     sigma = observation.sigma;
   }
   const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
@@ -232,9 +232,9 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 
-std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_W,
+std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config) {
-  const double inverse_depth = 1.0 / (window.T_W_C(view).inverse() * p_W).z();
+  const double inverse_depth = 1.0 / (window.T_O_C(view).inverse() * p_O).z();
   return depth_in_bounds(inverse_depth, config) ? std::optional(inverse_depth) : std::nullopt;
 }
 

@@ -37,7 +37,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
 
 /// The inverse depth at which a point of the world would be anchored in a view [1/m]; nothing
 /// out of the depth bounds.
-std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_W,
+std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config);
 
 }  // namespace edged

@@ -274,7 +274,7 @@ TEST(InverseDepthIn, KeepsALandmarkWhereItIsInTheWorld) {
     ASSERT_TRUE(inverse_depth);
     window.make_landmark(id, {to, *inverse_depth});
     // The ray is the new anchor's own observation, half a pixel beside the old one's: the depth is kept.
-    const double depth = (window.T_W_C(to).inverse() * before).z();
+    const double depth = (window.T_O_C(to).inverse() * before).z();
     EXPECT_NEAR(1.0 / *inverse_depth, depth, 1e-9);
     EXPECT_LT((window.position(feature) - before).norm(), 8.0 * 0.5 / 200.0 * depth);
     ++moved;
@@ -285,9 +285,9 @@ TEST(InverseDepthIn, KeepsALandmarkWhereItIsInTheWorld) {
 TEST(InverseDepthIn, IsNothingOutOfTheBounds) {
   TestWorld world({.pixel_noise = 0.0});
   const Window window = window_at_truth(world);
-  const Eigen::Vector3d p_W = world.point_W(lasting_corner(world));
-  EXPECT_TRUE(inverse_depth_in(window, {window.newest_id(), 0}, p_W, kGenerous));
-  EXPECT_FALSE(inverse_depth_in(window, {window.newest_id(), 0}, p_W, {.max_depth_m = 1.0}));
+  const Eigen::Vector3d p_O = world.point_W(lasting_corner(world));
+  EXPECT_TRUE(inverse_depth_in(window, {window.newest_id(), 0}, p_O, kGenerous));
+  EXPECT_FALSE(inverse_depth_in(window, {window.newest_id(), 0}, p_O, {.max_depth_m = 1.0}));
 }
 
 }  // namespace

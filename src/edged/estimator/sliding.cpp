@@ -61,17 +61,17 @@ Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const
 /// A landmark as one of its views sees it. The errors of a track are a walk, so that of its depth the view that is
 /// farthest from the anchor's tells nearly all.
 KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
-  const SE3 T_W_A = window.T_W_C(*feature.anchor);
-  const Eigen::Vector3d p_W = window.position(feature);
+  const SE3 T_O_A = window.T_O_C(*feature.anchor);
+  const Eigen::Vector3d p_O = window.position(feature);
   double share = std::numeric_limits<double>::infinity();  // of the inverse depth: its sigma
   for (const auto& [other, observation] : feature.observations) {
     if (other == *feature.anchor) continue;
-    const SE3 T_C_W = window.T_W_C(other).inverse();
-    const Eigen::Vector3d p_C = T_C_W * p_W, along_C = T_C_W.R() * (p_W - T_W_A.translation());
+    const SE3 T_C_O = window.T_O_C(other).inverse();
+    const Eigen::Vector3d p_C = T_C_O * p_O, along_C = T_C_O.R() * (p_O - T_O_A.translation());
     const Eigen::Vector2d by_share = (along_C.head<2>() - p_C.hnormalized() * along_C.z()) / p_C.z();
     share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
   }
-  const double inverse_depth = 1.0 / (window.T_W_C(view).inverse() * p_W).z();
+  const double inverse_depth = 1.0 / (window.T_O_C(view).inverse() * p_O).z();
   return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
 }
 
@@ -85,9 +85,9 @@ void keep_points(Window& window, FeatureId id, const Feature& feature, const std
 
 KeyframeRecord record_of(const Window& window, StateId id) {
   const WindowState& state = window.states().at(id);
-  KeyframeRecord record{state.t, state.T_W_B(), {}};
+  KeyframeRecord record{state.t, state.T_O_B(), {}};
   for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
-    const SE3 T_B_C = record.T_W_B.inverse() * window.T_W_C({id, camera});
+    const SE3 T_B_C = record.T_W_B.inverse() * window.T_O_C({id, camera});
     const auto kept = state.kept.find(camera);
     record.views.push_back({window.cameras()[camera].given.name, T_B_C, {}});
     if (kept != state.kept.end()) record.views.back().points = kept->second;

@@ -169,15 +169,15 @@ TEST_F(Sliding, RecordsOfAKeyframeWhatEachCameraSaw) {
       seen[camera] += feature.anchor && feature.observations.contains({oldest, camera});
     }
   }
-  const SE3 T_W_B = window_.states().at(oldest).T_W_B();
+  const SE3 T_O_B = window_.states().at(oldest).T_O_B();
   const KeyframeRecord record = drop_oldest_keyframe(window_, {});
   ASSERT_EQ(record.views.size(), 2U);
   for (const std::size_t camera : {0U, 1U}) {
     EXPECT_EQ(record.views[camera].points.size(), seen[camera]);
     EXPECT_GT(seen[camera], 20U);
-    const SE3 T_C_W = (T_W_B * record.views[camera].T_B_C).inverse();
+    const SE3 T_C_O = (T_O_B * record.views[camera].T_B_C).inverse();
     for (const KeyframePoint& point : record.views[camera].points) {
-      EXPECT_NEAR(point.inverse_depth * (T_C_W * world_.point_W(point.id)).z(), 1.0, 0.1);
+      EXPECT_NEAR(point.inverse_depth * (T_C_O * world_.point_W(point.id)).z(), 1.0, 0.1);
     }
   }
 }

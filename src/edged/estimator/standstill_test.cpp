@@ -204,9 +204,9 @@ TEST(Standstill, KeepsTheEstimateWhereItIs) {
     TestWorld world({.rest_s = 1000.0});
     const Estimator estimator = at_rest(world, 60.0, with_corners);
     ASSERT_TRUE(estimator.initialized());
-    const NavState state = estimator.newest();
-    EXPECT_LT(state.T_W_B.translation().norm(), 0.03);  // 0.010 after a minute
-    EXPECT_LT(state.v_W.norm(), 0.008);                 // 0.003
+    const OdomState state = estimator.newest();
+    EXPECT_LT(state.T_O_B.translation().norm(), 0.03);  // 0.010 after a minute
+    EXPECT_LT(state.v_O.norm(), 0.008);                 // 0.003
     const Vector3d bias_error = state.bias_gyro - TestWorldOptions{}.bias_gyro;
     EXPECT_LT(bias_error.head<2>().norm(), 1e-3);  // 1e-4
     EXPECT_LT(std::abs(bias_error.z()),

@@ -71,10 +71,10 @@ Eigen::Matrix<double, 9, 8> free_directions(const Start& x) {
 }
 
 /// How a point's place on the unit plane changes with the point, seen from a camera of rotation R at p_C.
-Eigen::Matrix<double, 2, 3> d_seen_d_point(const Matrix3d& R_W_C, const Vector3d& p_C) {
+Eigen::Matrix<double, 2, 3> d_seen_d_point(const Matrix3d& R_O_C, const Vector3d& p_C) {
   Eigen::Matrix<double, 2, 3> d;
   d << 1, 0, -p_C.x() / p_C.z(), 0, 1, -p_C.y() / p_C.z();
-  return d * R_W_C.transpose() / p_C.z();
+  return d * R_O_C.transpose() / p_C.z();
 }
 
 }  // namespace
@@ -199,12 +199,12 @@ std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, i
   return RefinedStart{x, free * H.inverse() * free.transpose()};
 }
 
-Start StartSolver::start_of(const NavState& last) const {
+Start StartSolver::start_of(const OdomState& last) const {
   const RelativeMotion& m = motion_.back();
-  const Matrix3d R_0_W = m.R * last.T_W_B.R().transpose();
+  const Matrix3d R_0_O = m.R * last.T_O_B.R().transpose();
   Start x;
-  x << Vector3d::Zero(), R_0_W * Vector3d(0.0, 0.0, -kGravity), last.bias_accel;
-  x.head<3>() = R_0_W * last.v_W - m.velocity(x);
+  x << Vector3d::Zero(), R_0_O * Vector3d(0.0, 0.0, -kGravity), last.bias_accel;
+  x.head<3>() = R_0_O * last.v_O - m.velocity(x);
   return x;
 }
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/odom_state.hpp"
 #include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
-#include "edged/state.hpp"
 
 namespace edged {
 
@@ -81,7 +81,7 @@ class StartSolver {
   std::optional<RefinedStart> refine(const Chosen& chosen, Start x, int iterations) const;
 
   /// The start from which the IMU leads to a state at the time of the last view.
-  Start start_of(const NavState& last) const;
+  Start start_of(const OdomState& last) const;
 
   /// Root mean square of a track's reprojection errors under a start, its point at its best place [sigma]; infinite
   /// where it has none.

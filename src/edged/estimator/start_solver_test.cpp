@@ -29,11 +29,11 @@ class StartOfAMotion : public testing::Test {
     }
     rig_ = world.rig();
     noise_ = world.noise();
-    T_W_B0_ = world.T_W_B(kBegin_s);
-    truth_ << T_W_B0_.R().transpose() * world.v_W(kBegin_s), T_W_B0_.R().transpose() * Eigen::Vector3d(0, 0, -kGravity),
+    T_O_B0_ = world.T_W_B(kBegin_s);
+    truth_ << T_O_B0_.R().transpose() * world.v_W(kBegin_s), T_O_B0_.R().transpose() * Eigen::Vector3d(0, 0, -kGravity),
         options_.bias_accel;
-    last_.T_W_B = world.T_W_B(kBegin_s + kFrame_s * (kFrames - 1));
-    last_.v_W = world.v_W(kBegin_s + kFrame_s * (kFrames - 1));
+    last_.T_O_B = world.T_W_B(kBegin_s + kFrame_s * (kFrames - 1));
+    last_.v_O = world.v_W(kBegin_s + kFrame_s * (kFrames - 1));
     last_.bias_accel = options_.bias_accel;
   }
 
@@ -48,9 +48,9 @@ class StartOfAMotion : public testing::Test {
   std::vector<InitFrame> frames_;
   Rig rig_;
   ImuNoise noise_;
-  SE3 T_W_B0_;
+  SE3 T_O_B0_;
   Start truth_;
-  NavState last_;
+  OdomState last_;
 };
 
 TEST_F(StartOfAMotion, GathersTracksOfThreeViewsOrMore) {
@@ -108,8 +108,8 @@ TEST_F(StartOfAMotion, DirectionOfATrackPointsAtIt) {
   const StartTrack& track = start.tracks().front();
   const std::size_t middle = track.observations[track.observations.size() / 2].frame;
   const double t = kBegin_s + kFrame_s * static_cast<double>(middle);
-  const SE3 T_W_C = world.T_W_B(t) * rig_.cameras.front().T_B_C;
-  const Eigen::Vector3d truth = T_W_B0_.R().transpose() * (world.point_W(track.id) - T_W_C.translation()).normalized();
+  const SE3 T_O_C = world.T_W_B(t) * rig_.cameras.front().T_B_C;
+  const Eigen::Vector3d truth = T_O_B0_.R().transpose() * (world.point_W(track.id) - T_O_C.translation()).normalized();
   EXPECT_LT((start.direction(0) - truth).norm(), 0.02);
 }
 

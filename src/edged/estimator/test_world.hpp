@@ -195,7 +195,7 @@ class TestWorld {
 /// T_W_B of a state becomes T_W_B * (Exp(turn), shift).
 inline void displace(Window& window, StateId id, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
   Vector6d step;
-  step << window.states().at(id).T_W_B().R() * shift, turn;
+  step << window.states().at(id).T_O_B().R() * shift, turn;
   window.move({BlockKind::Pose, id}, {step.data(), 6});
 }
 

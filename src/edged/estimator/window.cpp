@@ -45,31 +45,31 @@ bool Feature::seen_at(StateId state) const {
   return first != observations.end() && first->first.state == state;
 }
 
-NavState WindowState::nav() const {
-  NavState nav;
+OdomState WindowState::nav() const {
+  OdomState nav;
   nav.t = t;
-  nav.T_W_B = T_W_B();
-  nav.v_W = Eigen::Map<const Eigen::Vector3d>(motion.data());
+  nav.T_O_B = T_O_B();
+  nav.v_O = Eigen::Map<const Eigen::Vector3d>(motion.data());
   nav.bias_gyro = Eigen::Map<const Eigen::Vector3d>(motion.data() + 3);
   nav.bias_accel = Eigen::Map<const Eigen::Vector3d>(motion.data() + 6);
   return nav;
 }
 
 BodyRate WindowState::rate() const {
-  const NavState state = nav();
-  return {gyro_B - state.bias_gyro, state.v_W};
+  const OdomState state = nav();
+  return {gyro_B - state.bias_gyro, state.v_O};
 }
 
-MotionBlock motion_block(const NavState& state) {
+MotionBlock motion_block(const OdomState& state) {
   MotionBlock block;
-  Eigen::Map<Eigen::Matrix<double, 9, 1>>(block.data()) << state.v_W, state.bias_gyro, state.bias_accel;
+  Eigen::Map<Eigen::Matrix<double, 9, 1>>(block.data()) << state.v_O, state.bias_gyro, state.bias_accel;
   return block;
 }
 
-WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe) {
+WindowState window_state(const OdomState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe) {
   WindowState state;
   state.t = nav.t;
-  state.pose = to_block(nav.T_W_B);
+  state.pose = to_block(nav.T_O_B);
   state.motion = motion_block(nav);
   state.gyro_B = gyro_B;
   state.imu = std::move(imu);
@@ -103,10 +103,10 @@ RigCamera Window::calibrated(std::size_t camera) const {
   return found;
 }
 
-SE3 Window::T_W_C(const ObservationKey& image) const {
+SE3 Window::T_O_C(const ObservationKey& image) const {
   const WindowState& at = states_.at(image.state);
   const WindowCamera& by = cameras_[image.camera];
-  return camera_pose(at.T_W_B(), at.rate(), by.given.T_B_C, by.calibration.data());
+  return camera_pose(at.T_O_B(), at.rate(), by.given.T_B_C, by.calibration.data());
 }
 
 bool Window::alive(const Feature& feature, std::size_t camera) const {
@@ -121,7 +121,7 @@ bool Window::alive(const Feature& feature) const {
 
 Eigen::Vector3d Window::position(const Feature& feature) const {
   const Eigen::Vector2d& point = feature.observations.at(*feature.anchor).point;
-  return T_W_C(*feature.anchor) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
+  return T_O_C(*feature.anchor) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
 }
 
 WindowState& Window::state(StateId id) {

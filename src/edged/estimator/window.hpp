@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
+#include "edged/core/odom_state.hpp"
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/landmark_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
@@ -22,7 +23,6 @@
 #include "edged/keyframe_record.hpp"
 #include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
-#include "edged/state.hpp"
 
 namespace edged {
 
@@ -38,13 +38,13 @@ struct WindowState {
   std::optional<RegionDepth> depth;                        ///< of a keyframe: what a depth source says
   std::map<std::size_t, std::vector<KeyframePoint>> kept;  ///< by camera: what it saw of landmarks that have left
 
-  SE3 T_W_B() const { return pose_of(pose.data()); }
-  NavState nav() const;
+  SE3 T_O_B() const { return pose_of(pose.data()); }
+  OdomState nav() const;
   BodyRate rate() const;
 };
 
-MotionBlock motion_block(const NavState& state);
-WindowState window_state(const NavState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe);
+MotionBlock motion_block(const OdomState& state);
+WindowState window_state(const OdomState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe);
 
 /// Names an image: that of a camera at a state.
 struct ObservationKey {
@@ -81,7 +81,7 @@ struct WindowCamera {
 
 /// All may look, and only its own functions change it: each leaves it whole. Times and ids of its states grow; features
 /// are seen by states and anchored in keyframes that it holds, and factors are of blocks that it holds. What would
-/// break that is a bug (EDGED_CHECK). W is here the frame of this start (S of pipeline/world_frame): what is measured
+/// break that is a bug (EDGED_CHECK). O is here the frame of this start (S of pipeline/world_frame): what is measured
 /// in the world must be moved there first.
 class Window {
  public:
@@ -109,7 +109,7 @@ class Window {
   std::size_t camera_index(const std::string& name) const;
   /// The camera by what has been seen: its rotation against the body, and the time offset that is left over.
   RigCamera calibrated(std::size_t camera) const;
-  SE3 T_W_C(const ObservationKey& image) const;
+  SE3 T_O_C(const ObservationKey& image) const;
   /// True while the newest image of a camera that sees it still showed the feature. Not every state has an image of
   /// every camera.
   bool alive(const Feature& feature) const;

@@ -24,7 +24,7 @@ std::size_t terms_of(const Window& window) {
 double worst_position_error(const Window& window, const TestWorld& world) {
   double worst = 0.0;
   for (const auto& [id, state] : window.states()) {
-    worst = std::max(worst, (state.T_W_B().translation() - world.T_W_B(to_seconds(state.t)).translation()).norm());
+    worst = std::max(worst, (state.T_O_B().translation() - world.T_W_B(to_seconds(state.t)).translation()).norm());
   }
   return worst;
 }

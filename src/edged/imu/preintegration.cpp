@@ -174,37 +174,37 @@ Vector3d Preintegration::dp(const Vector3d& bias_gyro, const Vector3d& bias_acce
   return dp_ + d_dp_d_bg_ * (bias_gyro - bias_gyro_) + d_dp_d_ba_ * (bias_accel - bias_accel_);
 }
 
-NavState propagate(const NavState& start, const Preintegration& motion) {
+OdomState propagate(const OdomState& start, const Preintegration& motion) {
   const double dt = motion.dt();
-  const Quaterniond& R_0 = start.T_W_B.rotation();
-  const Vector3d& p_0 = start.T_W_B.translation();
-  NavState next = start;
+  const Quaterniond& R_0 = start.T_O_B.rotation();
+  const Vector3d& p_0 = start.T_O_B.translation();
+  OdomState next = start;
   next.t = motion.end();
-  next.T_W_B = {R_0 * motion.dR(start.bias_gyro),
-                p_0 + start.v_W * dt + 0.5 * dt * dt * kGravity_W + R_0 * motion.dp(start.bias_gyro, start.bias_accel)};
-  next.v_W = start.v_W + dt * kGravity_W + R_0 * motion.dv(start.bias_gyro, start.bias_accel);
+  next.T_O_B = {R_0 * motion.dR(start.bias_gyro),
+                p_0 + start.v_O * dt + 0.5 * dt * dt * kGravity_W + R_0 * motion.dp(start.bias_gyro, start.bias_accel)};
+  next.v_O = start.v_O + dt * kGravity_W + R_0 * motion.dv(start.bias_gyro, start.bias_accel);
   return next;
 }
 
-std::vector<NavState> propagate_all(const NavState& start, std::span<const ImuSample> samples) {
+std::vector<OdomState> propagate_all(const OdomState& start, std::span<const ImuSample> samples) {
   EDGED_CHECK(!samples.empty(), "no samples to propagate over");
-  std::vector<NavState> states;
+  std::vector<OdomState> states;
   states.reserve(samples.size());
   states.push_back(start);
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const ImuSample &a = samples[i - 1], &b = samples[i];
     EDGED_CHECK(a.t <= b.t, "samples out of order: {} before {} ns", to_ns(a.t), to_ns(b.t));
     const double dt = to_seconds(b.t - a.t);
-    const NavState& from = states.back();
-    const Quaterniond& R_a = from.T_W_B.rotation();
+    const OdomState& from = states.back();
+    const Quaterniond& R_a = from.T_O_B.rotation();
     // (I2) - (I4) with the state as the starting point: the same rule as the preintegration, to the last digits.
     const Quaterniond R_b = R_a * so3::exp((0.5 * (a.gyro_B + b.gyro_B) - start.bias_gyro) * dt);
-    const Vector3d accel_W =
+    const Vector3d accel_O =
         0.5 * (R_a * (a.accel_B - start.bias_accel) + R_b * (b.accel_B - start.bias_accel)) + kGravity_W;
-    NavState next = from;
+    OdomState next = from;
     next.t = b.t;
-    next.v_W += dt * accel_W;
-    next.T_W_B = {R_b, from.T_W_B.translation() + 0.5 * dt * (from.v_W + next.v_W)};
+    next.v_O += dt * accel_O;
+    next.T_O_B = {R_b, from.T_O_B.translation() + 0.5 * dt * (from.v_O + next.v_O)};
     states.push_back(next);
   }
   return states;

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
-#include "edged/state.hpp"
 
 namespace edged {
 
@@ -93,9 +93,9 @@ class Preintegration {
 };
 
 /// The state at the last sample, from the state at the first. Biases are carried over.
-NavState propagate(const NavState& start, const Preintegration& motion);
+OdomState propagate(const OdomState& start, const Preintegration& motion);
 
 /// The states at every sample, the first being `start`: the poses that the warp interpolates between.
-std::vector<NavState> propagate_all(const NavState& start, std::span<const ImuSample> samples);
+std::vector<OdomState> propagate_all(const OdomState& start, std::span<const ImuSample> samples);
 
 }  // namespace edged

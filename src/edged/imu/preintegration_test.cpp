@@ -24,8 +24,8 @@ constexpr Duration kMillisecond = std::chrono::milliseconds(1);
 
 /// A motion known in closed form, time in seconds.
 struct Motion {
-  std::function<Quaterniond(double)> attitude;                       // R_W_B
-  std::function<Vector3d(double)> position, velocity, acceleration;  // in W
+  std::function<Quaterniond(double)> attitude;                       // R_O_B
+  std::function<Vector3d(double)> position, velocity, acceleration;  // in O
   std::function<Vector3d(double)> rate;                              // in B
 
   ImuSample sample(double t) const {
@@ -38,7 +38,7 @@ struct Motion {
     }
     return all;
   }
-  NavState state(double t) const {
+  OdomState state(double t) const {
     return {timestamp_from_seconds(t), {attitude(t), position(t)}, velocity(t), kNoBias, kNoBias};
   }
 };
@@ -97,11 +97,11 @@ struct MotionError {
 /// Of the state predicted for the end of the second that begins at t = 0.3 s.
 MotionError propagation_error(const Motion& motion, Duration interval) {
   const Preintegration integrated(motion.samples(0.3, 1.3, interval), kNoBias, kNoBias, {});
-  const NavState end = propagate(motion.state(0.3), integrated);
-  const NavState truth = motion.state(1.3);
+  const OdomState end = propagate(motion.state(0.3), integrated);
+  const OdomState truth = motion.state(1.3);
   EXPECT_EQ(end.t, truth.t);
-  return {so3::log(truth.T_W_B.rotation().conjugate() * end.T_W_B.rotation()).norm(), (end.v_W - truth.v_W).norm(),
-          (end.T_W_B.translation() - truth.T_W_B.translation()).norm()};
+  return {so3::log(truth.T_O_B.rotation().conjugate() * end.T_O_B.rotation()).norm(), (end.v_O - truth.v_O).norm(),
+          (end.T_O_B.translation() - truth.T_O_B.translation()).norm()};
 }
 
 double gaussian(std::mt19937_64& generator) {
@@ -372,28 +372,28 @@ TEST(SliceImu, RefusesWhatTheSamplesDoNotCover) {
 
 TEST(PropagateAll, EndsWhereThePreintegrationEnds) {
   const Motion motion = tumbling();
-  NavState start = motion.state(0.3);
+  OdomState start = motion.state(0.3);
   start.bias_gyro = Vector3d(0.01, 0.02, -0.03);
   start.bias_accel = Vector3d(0.1, -0.2, 0.05);
   std::vector<ImuSample> samples = motion.samples(0.3, 0.8, 2 * kMillisecond);
   for (ImuSample& s : samples) s.gyro_B += start.bias_gyro, s.accel_B += start.bias_accel;
   const auto states = propagate_all(start, samples);
-  const NavState end = propagate(start, Preintegration(samples, start.bias_gyro, start.bias_accel, {}));
+  const OdomState end = propagate(start, Preintegration(samples, start.bias_gyro, start.bias_accel, {}));
   ASSERT_EQ(states.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_EQ(states[i].t, samples[i].t);
-  EXPECT_LT((states.back().T_W_B.inverse() * end.T_W_B).log().norm(), 1e-12);
-  EXPECT_LT((states.back().v_W - end.v_W).norm(), 1e-12);
+  EXPECT_LT((states.back().T_O_B.inverse() * end.T_O_B).log().norm(), 1e-12);
+  EXPECT_LT((states.back().v_O - end.v_O).norm(), 1e-12);
   EXPECT_EQ(states.back().bias_accel, start.bias_accel);
-  EXPECT_LT((states[125].T_W_B.translation() - motion.position(0.55)).norm(), 1e-5);
+  EXPECT_LT((states[125].T_O_B.translation() - motion.position(0.55)).norm(), 1e-5);
 }
 
 TEST(Propagate, AtRestStaysAtRest) {
   std::vector<ImuSample> samples;
   for (int i = 0; i <= 100; ++i) samples.push_back({Timestamp(i * 10 * kMillisecond), kNoBias, -kGravity_W});
-  const NavState end =
+  const OdomState end =
       propagate({samples[0].t, SE3(), kNoBias, kNoBias, kNoBias}, Preintegration(samples, kNoBias, kNoBias, {}));
-  EXPECT_LT(end.T_W_B.translation().norm(), 1e-12);
-  EXPECT_LT(end.v_W.norm(), 1e-12);
+  EXPECT_LT(end.T_O_B.translation().norm(), 1e-12);
+  EXPECT_LT(end.v_O.norm(), 1e-12);
 }
 
 }  // namespace

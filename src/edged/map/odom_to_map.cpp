@@ -8,14 +8,14 @@
 
 namespace edged {
 
-void OdomToMap::restart(const SE3& T_new_old, const NavState& now) {
+void OdomToMap::restart(const SE3& T_new_old, const OdomState& now) {
   if (started_) {
     const SE3 T_Oold_Onew = T_new_old.inverse();
     const Eigen::Matrix3d R = (T_M_O_ * T_Oold_Onew).R();
     const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
     const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
-    const Eigen::Vector3d p_M_B = T_M_O_ * (T_Oold_Onew * now.T_W_B.translation());
-    T_M_O_ = SE3(q, p_M_B - q * now.T_W_B.translation());
+    const Eigen::Vector3d p_M_B = T_M_O_ * (T_Oold_Onew * now.T_O_B.translation());
+    T_M_O_ = SE3(q, p_M_B - q * now.T_O_B.translation());
   }
   started_ = true;
   restart(now.t);
@@ -45,10 +45,8 @@ const SE3& OdomToMap::T_M_O(std::size_t start, Timestamp t) const {
   return after == placed.begin() ? after->T : std::prev(after)->T;
 }
 
-NavState OdomToMap::in_map(NavState in_O) const {
-  in_O.T_W_B = T_M_O_ * in_O.T_W_B;
-  in_O.v_W = T_M_O_.rotation() * in_O.v_W;
-  return in_O;
+NavState OdomToMap::in_map(const OdomState& in_O) const {
+  return {in_O.t, T_M_O_ * in_O.T_O_B, T_M_O_.rotation() * in_O.v_O, in_O.bias_gyro, in_O.bias_accel};
 }
 
 std::vector<Landmark> OdomToMap::in_map(std::vector<Landmark> in_O) const {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"
@@ -19,7 +20,7 @@ class OdomToMap {
  public:
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
   /// Position and yaw go on; tilt is the estimator's, which knows gravity.
-  void restart(const SE3& T_new_old, const NavState& now);
+  void restart(const SE3& T_new_old, const OdomState& now);
   /// O goes on where it is, but its place in M is a guess again.
   void restart(Timestamp t);
   /// The map has placed O at T_M_O, from t on.
@@ -35,7 +36,7 @@ class OdomToMap {
   /// As it was at t, in the time of that start of the history.
   const SE3& T_M_O(std::size_t start, Timestamp t) const;
 
-  NavState in_map(NavState in_O) const;
+  NavState in_map(const OdomState& in_O) const;
   std::vector<Landmark> in_map(std::vector<Landmark> in_O) const;
 
  private:

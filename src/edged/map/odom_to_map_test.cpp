@@ -9,10 +9,10 @@
 namespace edged {
 namespace {
 
-NavState at(const SE3& T_W_B, const Eigen::Vector3d& v_W) {
-  NavState state;
-  state.T_W_B = T_W_B;
-  state.v_W = v_W;
+OdomState at(const SE3& T_O_B, const Eigen::Vector3d& v_O) {
+  OdomState state;
+  state.T_O_B = T_O_B;
+  state.v_O = v_O;
   return state;
 }
 
@@ -28,14 +28,14 @@ TEST(OdomToMap, LaterStartsGoOnWithPositionAndYawButTheirOwnTilt) {
   odom_to_map.restart(SE3(), at(SE3(), {0, 0, 0}));
   // Dead reckoning has come to `old`; the new start puts the body at its origin, with a tilt it knows better.
   const SE3 old(so3::exp({0, 0, 1.2}) * so3::exp({0.05, 0, 0}), {3, -1, 2});
-  const NavState now = at(SE3(so3::exp({0.02, 0, 0}), {0.5, 0, 0}), {1, 0, 0});
-  odom_to_map.restart(now.T_W_B * old.inverse(), now);
+  const OdomState now = at(SE3(so3::exp({0.02, 0, 0}), {0.5, 0, 0}), {1, 0, 0});
+  odom_to_map.restart(now.T_O_B * old.inverse(), now);
   const NavState in_map = odom_to_map.in_map(now);
   EXPECT_LT((in_map.T_W_B.translation() - old.translation()).norm(), 1e-9);
   const Eigen::Vector3d off = so3::log(so3::exp({0, 0, 1.2}).conjugate() * in_map.T_W_B.rotation());
   EXPECT_LT((off - Eigen::Vector3d(0.02, 0, 0)).norm(), 1e-3) << "the tilt of the new estimate, the yaw of the old";
-  EXPECT_LT((in_map.v_W - so3::exp({0, 0, 1.2}) * now.v_W).norm(), 1e-3);
-  const std::vector<Landmark> landmarks = odom_to_map.in_map(std::vector<Landmark>{{7, now.T_W_B.translation()}});
+  EXPECT_LT((in_map.v_W - so3::exp({0, 0, 1.2}) * now.v_O).norm(), 1e-3);
+  const std::vector<Landmark> landmarks = odom_to_map.in_map(std::vector<Landmark>{{7, now.T_O_B.translation()}});
   EXPECT_LT((landmarks.front().p_W - old.translation()).norm(), 1e-9) << "landmarks move along";
 }
 

@@ -10,11 +10,11 @@ Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool start
   started_ = started;
   std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
-    for (const NavState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_W_B});
+    for (const OdomState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_O_B});
     now_ = propagate(now_, motion);
   } else {
     // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
-    SE3& pose = now_.T_W_B;
+    SE3& pose = now_.T_O_B;
     T_O_B_.push_back({imu.front().t, pose});
     for (std::size_t i = 1; i < imu.size(); ++i) {
       const double dt = to_seconds(imu[i].t - imu[i - 1].t);
@@ -30,11 +30,11 @@ Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool start
 
 SE3 BodyMotion::moved_on(Duration time) const {
   const double s = to_seconds(time);
-  return {now_.T_W_B.rotation() * so3::exp(omega_B_ * s), now_.T_W_B.translation() + now_.v_W * s};
+  return {now_.T_O_B.rotation() * so3::exp(omega_B_ * s), now_.T_O_B.translation() + now_.v_O * s};
 }
 
-SE3 BodyMotion::correct(const NavState& estimate) {
-  SE3 correction = estimate.T_W_B * now_.T_W_B.inverse();
+SE3 BodyMotion::correct(const OdomState& estimate) {
+  SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
   now_ = estimate;
   for (StampedPose& pose : T_O_B_) pose.T = correction * pose.T;
   return correction;

@@ -5,10 +5,10 @@
 
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
-#include "edged/state.hpp"
 
 namespace edged {
 
@@ -22,9 +22,9 @@ class BodyMotion {
   Preintegration predict(const std::vector<ImuSample>& imu, bool started);
 
   /// `now` as estimated: the history moves along. Returns from the old odometry frame to the new one, T_new_old.
-  SE3 correct(const NavState& estimate);
+  SE3 correct(const OdomState& estimate);
 
-  const NavState& now() const { return now_; }
+  const OdomState& now() const { return now_; }
   /// Whether speed and tilt of `now` mean anything.
   bool started() const { return started_; }
   /// T_O_B a few milliseconds after now, turning and moving on as it does now.
@@ -35,7 +35,7 @@ class BodyMotion {
  private:
   ImuNoise noise_;
   Duration history_;
-  NavState now_;
+  OdomState now_;
   bool started_ = false;
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;

@@ -20,10 +20,10 @@ std::vector<ImuSample> samples(double from_s, double to_s) {
   return imu;
 }
 
-NavState moving(double t_s, double speed) {
-  NavState state;
+OdomState moving(double t_s, double speed) {
+  OdomState state;
   state.t = seconds_in(t_s);
-  state.v_W = {speed, 0, 0};
+  state.v_O = {speed, 0, 0};
   return state;
 }
 
@@ -31,8 +31,8 @@ TEST(BodyMotion, BeforeTheStartTurnsInPlace) {
   BodyMotion body({}, duration_from_seconds(0.1));
   body.predict(samples(0.0, 0.05), false);
   EXPECT_FALSE(body.started());
-  EXPECT_EQ(body.now().T_W_B.translation(), Eigen::Vector3d::Zero());
-  EXPECT_NEAR(so3::log(body.now().T_W_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
+  EXPECT_EQ(body.now().T_O_B.translation(), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
 }
 
 TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
@@ -43,7 +43,7 @@ TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
   EXPECT_TRUE(body.started());
   EXPECT_EQ(motion.begin(), seconds_in(0.05));
   EXPECT_EQ(motion.end(), body.now().t);
-  EXPECT_NEAR(body.now().T_W_B.translation().x(), 0.1, 1e-9);
+  EXPECT_NEAR(body.now().T_O_B.translation().x(), 0.1, 1e-9);
   EXPECT_NEAR(body.moved_on(duration_from_seconds(0.01)).translation().x(), 0.12, 1e-9);
   EXPECT_NEAR(so3::log(body.moved_on(duration_from_seconds(0.01)).rotation()).z(), 0.06 * kTurnRate, 1e-9);
 }
@@ -52,8 +52,8 @@ TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
   BodyMotion body({}, duration_from_seconds(0.1));
   for (int i = 0; i < 6; ++i) {
     body.predict(samples(0.05 * i, 0.05 * (i + 1)), i > 0);
-    NavState estimate = body.now();
-    estimate.T_W_B = SE3(estimate.T_W_B.rotation(), estimate.T_W_B.translation() + Eigen::Vector3d(0, 1, 0));
+    OdomState estimate = body.now();
+    estimate.T_O_B = SE3(estimate.T_O_B.rotation(), estimate.T_O_B.translation() + Eigen::Vector3d(0, 1, 0));
     const double before = body.poses().front().T.translation().y();
     body.correct(estimate);
     EXPECT_NEAR(body.poses().front().T.translation().y(), before + 1.0, 1e-9);

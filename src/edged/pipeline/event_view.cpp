@@ -42,7 +42,7 @@ EventsToRender EventView::rendered_events(const PacketEvents& events, const Body
   if (window.size() < least_events_ || body.poses().size() < 2) return {};
   const int every = thin ? thinned_every_ : 1;
   if (!body.started()) return {window, every};
-  const double travel_px_per_s = ideal().mean_focal() * body.now().v_W.norm() / scene_depth;
+  const double travel_px_per_s = ideal().mean_focal() * body.now().v_O.norm() / scene_depth;
   const double age_s = std::min(max_travel_px_ / std::max(travel_px_per_s, 1e-3), max_age_s_);
   const auto oldest = std::lower_bound(window.begin(), window.end(), body.now().t - duration_from_seconds(age_s),
                                        [](const Event& event, Timestamp t) { return event.t < t; });

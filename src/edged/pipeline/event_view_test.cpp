@@ -39,8 +39,8 @@ class EventViewTest : public testing::Test {
   /// A body that has moved straight on at that speed until the packet's time.
   static BodyMotion moving(double speed) {
     BodyMotion body({}, duration_from_seconds(1.0));
-    NavState state;
-    state.v_W = {speed, 0, 0};
+    OdomState state;
+    state.v_O = {speed, 0, 0};
     body.correct(state);
     std::vector<ImuSample> imu;
     for (int i = 0; i <= 20; ++i) imu.push_back({timestamp_from_seconds(i * 0.005), {0, 0, 0}, {0, 0, 9.81}});

@@ -77,7 +77,7 @@ TEST_F(LocalizationInTheTestWorld, TellsVisionTheDepthsOfLandmarks) {
 
 TEST_F(LocalizationInTheTestWorld, GivesStatesInTheMapFrame) {
   const LocalizationOutput output = run(4.0);
-  const SE3 T_M_B = output.step.T_M_O * localization_.body().now().T_W_B;
+  const SE3 T_M_B = output.step.T_M_O * localization_.body().now().T_O_B;
   EXPECT_LT((T_M_B.translation() - output.step.state.T_W_B.translation()).norm(), 1e-12);
 }
 

@@ -38,22 +38,22 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       filter_(config.filter),
       record_(config.filter) {}
 
-void Mapper::restart(const SE3& T_new_old, const NavState& now) {
+void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
   odom_to_map_.restart(T_new_old, now);
   begin_start(now);
 }
 
-void Mapper::doubt(const NavState& now) {
+void Mapper::doubt(const OdomState& now) {
   odom_to_map_.restart(now.t);
   begin_start(now);
 }
 
-void Mapper::begin_start(const NavState& now) {
+void Mapper::begin_start(const OdomState& now) {
   const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
   const double position_sigma = first ? 0.0 : kRestartPosition_m, yaw_sigma = first ? 0.0 : kRestartYaw_rad;
   T_M_O_guess_ = odom_to_map_.T_M_O();
-  filter_.restart(T_M_O_guess_, now.T_W_B, now.t, position_sigma, yaw_sigma);
-  record_.restart({now.t, now.T_W_B}, kRestartPosition_m, kRestartYaw_rad);
+  filter_.restart(T_M_O_guess_, now.T_O_B, now.t, position_sigma, yaw_sigma);
+  record_.restart({now.t, now.T_O_B}, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
   blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
@@ -86,9 +86,9 @@ std::optional<SavedMap> Mapper::save() const {
   return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
 }
 
-void Mapper::predict(const NavState& now) {
+void Mapper::predict(const OdomState& now) {
   const bool young = blind_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
-  filter_.predict(odom_to_map_.T_M_O(), now.T_W_B, now.t, young ? kYoungDrift : 1.0);
+  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
@@ -25,13 +26,13 @@ class Mapper {
   Mapper(const MapConfig& config, double lost_after_s);
 
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
-  void restart(const SE3& T_new_old, const NavState& now);
+  void restart(const SE3& T_new_old, const OdomState& now);
   /// O goes on, but how the body turned until now nobody knows: where it is in M is a guess, as after a start.
-  void doubt(const NavState& now);
+  void doubt(const OdomState& now);
   /// What follows is of a new time: the map of the time before is let go, the body goes on from where it is.
   void begin_time();
   /// The odometry has come to `now`.
-  void predict(const NavState& now);
+  void predict(const OdomState& now);
   /// Looks for the map in the image, and after a new start, until it has been found again, everywhere: true when it has
   /// been just now. T_O_C: of the image's camera and instant.
   bool localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
@@ -41,7 +42,7 @@ class Mapper {
   void take(const KeyframeRecord& record);
 
   /// That pose of the odometry has been given out.
-  void note(const NavState& now) { record_.add({now.t, now.T_W_B}); }
+  void note(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
 
   /// How long the pose has gone on dead reckoning alone, at the newest start [s]. It bounds where relocalization may
   /// find the body.
@@ -71,7 +72,7 @@ class Mapper {
   };
   /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
-  void begin_start(const NavState& now);
+  void begin_start(const OdomState& now);
   Search search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C, Period made);
   bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t);
   std::optional<SE3> recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const;

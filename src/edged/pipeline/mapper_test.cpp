@@ -23,10 +23,10 @@ class MapperBeforeAWall : public testing::Test {
   const SE3 T_B_C_{Eigen::Quaterniond(Eigen::Matrix3d{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}}), Eigen::Vector3d::Zero()};
 
   static SE3 shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
-  static NavState now(double t_s, const SE3& T_O_B) {
-    NavState state;
+  static OdomState now(double t_s, const SE3& T_O_B) {
+    OdomState state;
     state.t = second(t_s);
-    state.T_W_B = T_O_B;
+    state.T_O_B = T_O_B;
     return state;
   }
 
@@ -147,7 +147,7 @@ double dead_reckoning_of_a_restart(double lost_after_s) {
   map.covariance = 1e-4 * Eigen::MatrixXd::Identity(6, 6);
   Mapper mapper(config.map, config.status.lost_after_s);
   mapper.load(map);
-  NavState now;
+  OdomState now;
   now.t = timestamp_from_seconds(10.5);
   mapper.restart(SE3(), now);
   now.t = timestamp_from_seconds(11);

@@ -16,9 +16,13 @@ constexpr Duration kBack = std::chrono::seconds(1);
 constexpr Duration kLongest = std::chrono::seconds(1);  // of a prediction: the IMU alone drifts by metres soon
 
 /// The last of what propagates from `start`, which is at the first sample.
-NavState propagated(const NavState& start, std::span<const ImuSample> samples) {
+OdomState propagated(const OdomState& start, std::span<const ImuSample> samples) {
   return propagate_all(start, samples).back();
 }
+
+/// The IMU asks no more of a frame than that z is up, and M does for O as long as the map does not move O.
+OdomState as_odometry(const NavState& s) { return {s.t, s.T_W_B, s.v_W, s.bias_gyro, s.bias_accel}; }
+NavState in_map(const OdomState& s) { return {s.t, s.T_O_B, s.v_O, s.bias_gyro, s.bias_accel}; }
 
 }  // namespace
 
@@ -45,20 +49,20 @@ void StatePrediction::correct(const std::optional<NavState>& estimate) {
   if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
   if (imu_.back().t - estimate->t > kLongest) return;
   imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
-  states_ = propagate_all(*estimate, imu_);
+  states_ = propagate_all(as_odometry(*estimate), imu_);
 }
 
 std::optional<NavState> StatePrediction::newest() const {
   const std::lock_guard lock(mutex_);
-  return states_.empty() ? std::nullopt : std::optional(states_.back());
+  return states_.empty() ? std::nullopt : std::optional(in_map(states_.back()));
 }
 
 std::optional<NavState> StatePrediction::at(Timestamp t) const {
   const std::lock_guard lock(mutex_);
   if (states_.empty() || t < states_.front().t || t > states_.back().t) return std::nullopt;
-  const auto before = std::prev(std::ranges::upper_bound(states_, t, {}, &NavState::t));
+  const auto before = std::prev(std::ranges::upper_bound(states_, t, {}, &OdomState::t));
   const auto first = static_cast<std::size_t>(before - states_.begin());
-  return propagated(*before, slice_imu(std::span(imu_).subspan(first), before->t, t));
+  return in_map(propagated(*before, slice_imu(std::span(imu_).subspan(first), before->t, t)));
 }
 
 }  // namespace edged

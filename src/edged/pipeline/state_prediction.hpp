@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "edged/core/odom_state.hpp"
 #include "edged/measurement.hpp"
 #include "edged/state.hpp"
 
@@ -29,8 +30,8 @@ class StatePrediction {
 
  private:
   mutable std::mutex mutex_;
-  std::vector<ImuSample> imu_;    // with an estimate: the first at its time
-  std::vector<NavState> states_;  // at the samples; empty without an estimate
+  std::vector<ImuSample> imu_;     // with an estimate: the first at its time
+  std::vector<OdomState> states_;  // at the samples; empty without an estimate
 };
 
 }  // namespace edged

@@ -41,9 +41,9 @@ class PlaneVision : public testing::Test {
 
   VisionOutput process(Vision& vision, const Packet& packet, int image) {
     body_.predict(packet.imu, true);
-    NavState state;
+    OdomState state;
     state.t = packet.t;
-    state.T_W_B = pose(image);
+    state.T_O_B = pose(image);
     body_.correct(state);
     return vision.process({packet, body_});
   }

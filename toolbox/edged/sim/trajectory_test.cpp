@@ -81,11 +81,11 @@ TEST(ImuModel, IntegratesToTheTrueTrajectory) {
   for (int i = 0; i <= 2000; ++i)
     samples.push_back(imu.measure(timestamp_from_seconds(kStart + i * 1e-3), trajectory.at(kStart + i * 1e-3)));
   const Kinematics begin = trajectory.at(kStart), end = trajectory.at(kStart + 2.0);
-  NavState state{.t = samples.front().t, .T_W_B = begin.T_W_B, .v_W = begin.v_W};
+  OdomState state{.t = samples.front().t, .T_O_B = begin.T_W_B, .v_O = begin.v_W};
   state = propagate(state, Preintegration(samples, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), config.noise()));
-  EXPECT_LT((state.T_W_B.translation() - end.T_W_B.translation()).norm(), 1e-3);
-  EXPECT_LT((state.v_W - end.v_W).norm(), 1e-3);
-  EXPECT_LT(so3::log(state.T_W_B.rotation().conjugate() * end.T_W_B.rotation()).norm(), 1e-4);
+  EXPECT_LT((state.T_O_B.translation() - end.T_W_B.translation()).norm(), 1e-3);
+  EXPECT_LT((state.v_O - end.v_W).norm(), 1e-3);
+  EXPECT_LT(so3::log(state.T_O_B.rotation().conjugate() * end.T_W_B.rotation()).norm(), 1e-4);
 }
 
 TEST(ImuModel, MeasuresGravityUpwardsAtRestWithItsBiases) {

@@ -19,25 +19,25 @@ struct LogInverseDepth {
   double d_rho = 0.0;
 };
 
-std::optional<LogInverseDepth> log_inverse_depth(const DepthLandmark& landmark, const SE3& T_W_B1, const SE3& T_W_B0,
+std::optional<LogInverseDepth> log_inverse_depth(const DepthLandmark& landmark, const SE3& T_O_B1, const SE3& T_O_B0,
                                                  double rho, const Vector3d& t_B_E, const Vector3d& z_E_in_B) {
   if (rho <= 0.0) return std::nullopt;
   // As in the reprojection factor everything is scaled by rho: z = w / rho.
   const Vector3d x_B0 =
       landmark.T_B_C.rotation() * landmark.anchor_point.homogeneous() + rho * landmark.T_B_C.translation();
-  const Vector3d step_W = T_W_B0.translation() - T_W_B1.translation();
-  const Eigen::Matrix3d R_W_B0 = T_W_B0.R(), R_B1_W = T_W_B1.R().transpose();
-  const Vector3d x_B1 = R_B1_W * (R_W_B0 * x_B0 + rho * step_W);
+  const Vector3d step_O = T_O_B0.translation() - T_O_B1.translation();
+  const Eigen::Matrix3d R_O_B0 = T_O_B0.R(), R_B1_O = T_O_B1.R().transpose();
+  const Vector3d x_B1 = R_B1_O * (R_O_B0 * x_B0 + rho * step_O);
   const double w = z_E_in_B.dot(x_B1 - rho * t_B_E);
   if (w < kMinDepthShare) return std::nullopt;
 
   LogInverseDepth out;
   out.value = std::log(rho) - std::log(w);
   const RowVector3d d_x_B1 = -z_E_in_B.transpose() / w;
-  const RowVector3d d_x_W = d_x_B1 * R_B1_W;
-  out.d_anchor << rho * d_x_W, -d_x_W * R_W_B0 * skew(x_B0);
-  out.d_observer << -rho * d_x_W, d_x_B1 * skew(x_B1);
-  out.d_rho = 1.0 / rho + d_x_W.dot(R_W_B0 * landmark.T_B_C.translation() + step_W) - d_x_B1.dot(t_B_E);
+  const RowVector3d d_x_O = d_x_B1 * R_B1_O;
+  out.d_anchor << rho * d_x_O, -d_x_O * R_O_B0 * skew(x_B0);
+  out.d_observer << -rho * d_x_O, d_x_B1 * skew(x_B1);
+  out.d_rho = 1.0 / rho + d_x_O.dot(R_O_B0 * landmark.T_B_C.translation() + step_O) - d_x_B1.dot(t_B_E);
   return out;
 }
 
@@ -81,12 +81,12 @@ bool DepthFactor::Evaluate(double const* const* blocks, double* residuals, doubl
   }
   const bool log_form = residual_ == DepthResidual::Log;
   const double share = 1.0 / static_cast<double>(landmarks_.size());
-  const SE3 T_W_B1 = pose_of(blocks[1]);
+  const SE3 T_O_B1 = pose_of(blocks[1]);
   double mean = 0.0;
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     const DepthLandmark& landmark = landmarks_[i];
     const std::size_t anchor = anchor_blocks_[i], depth = 1 + poses_ + i;
-    const auto ln = log_inverse_depth(landmark, T_W_B1, pose_of(blocks[anchor]), blocks[depth][0], t_B_E_, z_E_in_B_);
+    const auto ln = log_inverse_depth(landmark, T_O_B1, pose_of(blocks[anchor]), blocks[depth][0], t_B_E_, z_E_in_B_);
     if (!ln) return false;
     const double value = log_form ? ln->value : std::exp(ln->value);
     mean += share * value;

@@ -24,10 +24,10 @@ class Motion {
       const double t = kEvery_s * i;
       samples_.push_back({timestamp_from_seconds(t), {0.8 + t, -0.5, 0.3 * t}, {0.4, 9.6 - t, 1.5 + 2 * t}});
     }
-    NavState start;
+    OdomState start;
     start.t = samples_.front().t;
-    start.T_W_B = SE3(so3::exp({0.3, -0.8, 0.2}), {1, 2, 3});
-    start.v_W = {0.4, -0.3, 0.2};
+    start.T_O_B = SE3(so3::exp({0.3, -0.8, 0.2}), {1, 2, 3});
+    start.v_O = {0.4, -0.3, 0.2};
     start.bias_gyro = {0.01, -0.02, 0.03};
     start.bias_accel = {0.1, 0.05, -0.1};
     for (const auto& sample : samples_) {
@@ -40,13 +40,13 @@ class Motion {
     const auto piece = slice_imu(samples_, timestamp_from_seconds(from_s), timestamp_from_seconds(to_s));
     return {piece, {0.01, -0.02, 0.03}, {0.1, 0.05, -0.1}, ImuNoise{}};
   }
-  const NavState& at(double t) const { return states_[static_cast<std::size_t>(std::lround(t / kEvery_s))]; }
+  const OdomState& at(double t) const { return states_[static_cast<std::size_t>(std::lround(t / kEvery_s))]; }
 
   Blocks blocks(double t) const {
-    const NavState& state = at(t);
-    const PoseBlock pose = to_block(state.T_W_B);
+    const OdomState& state = at(t);
+    const PoseBlock pose = to_block(state.T_O_B);
     std::vector<double> motion;
-    for (const Vector3d& part : {state.v_W, state.bias_gyro, state.bias_accel}) {
+    for (const Vector3d& part : {state.v_O, state.bias_gyro, state.bias_accel}) {
       motion.insert(motion.end(), part.begin(), part.end());
     }
     return {{pose.begin(), pose.end()}, motion};
@@ -58,15 +58,15 @@ class Motion {
   }
   /// What a sensor at T_B_S measures.
   VelocitySample velocity(double t, const SE3& T_B_S, double sigma) const {
-    const NavState& state = at(t);
+    const OdomState& state = at(t);
     const Vector3d omega = samples_[static_cast<std::size_t>(std::lround(t / kEvery_s))].gyro_B - state.bias_gyro;
-    const Vector3d v_B = state.T_W_B.R().transpose() * state.v_W + omega.cross(T_B_S.translation());
+    const Vector3d v_B = state.T_O_B.R().transpose() * state.v_O + omega.cross(T_B_S.translation());
     return {state.t, T_B_S.R().transpose() * v_B, Vector3d::Constant(sigma)};
   }
 
  private:
   std::vector<ImuSample> samples_;
-  std::vector<NavState> states_;
+  std::vector<OdomState> states_;
 };
 
 const SE3 kSensor(so3::exp({0.2, -0.1, 1.2}), {0.3, -0.1, 0.2});
@@ -87,7 +87,7 @@ TEST(HeightFactor, JacobiansMatchCentralDifferences) {
 
 TEST(HeightFactor, IsZeroForTheHeightThatWasThere) {
   const Motion motion;
-  const double height = motion.at(0.35).T_W_B.translation().z() + 7.0;
+  const double height = motion.at(0.35).T_O_B.translation().z() + 7.0;
   const HeightFactor factor(0, kBias, motion.between(0.1, 0.35), height, 0.2);
   const Blocks blocks = motion.blocks(0.1);
   EXPECT_NEAR(factor.bias_at(blocks[0].data(), blocks[1].data()), 7.0, 1e-6);
@@ -97,7 +97,7 @@ TEST(HeightFactor, IsZeroForTheHeightThatWasThere) {
 
 TEST(HeightFactor, MovesWithItsStateToTheStateBefore) {
   const Motion motion;
-  const double height = motion.at(0.4).T_W_B.translation().z();
+  const double height = motion.at(0.4).T_O_B.translation().z();
   const HeightFactor factor(1, kBias, motion.between(0.25, 0.4), height, 0.2);
   const Preintegration into = motion.between(0.1, 0.25), joined = motion.between(0.1, 0.5);
   const auto moved = factor.without({0, 1, 2, joined, into});

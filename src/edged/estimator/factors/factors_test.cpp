@@ -45,21 +45,21 @@ TEST(ImuFactor, JacobiansMatchCentralDifferences) {
 
 TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
   const Preintegration imu = some_motion();
-  NavState start;
-  start.T_W_B = SE3(so3::exp({0.3, -0.8, 0.2}), {1, 2, 3});
-  start.v_W = {0.4, -0.3, 0.2};
+  OdomState start;
+  start.T_O_B = SE3(so3::exp({0.3, -0.8, 0.2}), {1, 2, 3});
+  start.v_O = {0.4, -0.3, 0.2};
   start.bias_gyro = imu.bias_gyro();
   start.bias_accel = imu.bias_accel();
-  const NavState end = propagate(start, imu);
-  const auto motion = [](const NavState& s) {
-    return std::vector<double>{s.v_W.x(),       s.v_W.y(),        s.v_W.z(),        s.bias_gyro.x(), s.bias_gyro.y(),
+  const OdomState end = propagate(start, imu);
+  const auto motion = [](const OdomState& s) {
+    return std::vector<double>{s.v_O.x(),       s.v_O.y(),        s.v_O.z(),        s.bias_gyro.x(), s.bias_gyro.y(),
                                s.bias_gyro.z(), s.bias_accel.x(), s.bias_accel.y(), s.bias_accel.z()};
   };
   const auto block = [](const SE3& T) {
     const PoseBlock b = to_block(T);
     return std::vector<double>(b.begin(), b.end());
   };
-  const Eigen::VectorXd r = evaluate(ImuFactor(0, 1, imu), {block(start.T_W_B), motion(start), block(end.T_W_B),
+  const Eigen::VectorXd r = evaluate(ImuFactor(0, 1, imu), {block(start.T_O_B), motion(start), block(end.T_O_B),
                                                             motion(end), std::vector<double>(18, 0.0)});
   EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-5);  // in standard deviations
 }
@@ -140,8 +140,8 @@ TEST(LandmarkFactor, ChargesATrackForADriftOnce) {
 TEST(LandmarkFactor, IsZeroForAPointWhereItWasSeen) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
-  const Eigen::Vector3d p_W = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
-  const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_W;
+  const Eigen::Vector3d p_O = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
+  const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_O;
   const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, {}, 0}, {p_C1.hnormalized(), {}, 1}}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, std::vector<double>(4, 0.0), {0.5}}).norm(), 1e-9);
 }
@@ -151,9 +151,9 @@ TEST(LandmarkFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
   const std::vector<double> calibration{0.03, -0.02, 0.04, 0.012};
-  const SE3 T_W_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
-  const SE3 T_W_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
-  const Eigen::Vector3d p_C1 = T_W_C1.inverse() * (T_W_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));
+  const SE3 T_O_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
+  const SE3 T_O_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
+  const Eigen::Vector3d p_C1 = T_O_C1.inverse() * (T_O_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));
   const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {p_C1.hnormalized(), rate_1, 1}}, 5e-3);
   EXPECT_LT(evaluate(factor, {pose_0, pose_1, calibration, {0.5}}).norm(), 1e-9);
 }
@@ -263,8 +263,8 @@ TEST(GaugePrior, SeesYawAndPositionButNotTilt) {
   std::copy(at.begin(), at.end(), block.begin());
   const LinearPrior prior = gauge_prior({BlockKind::Pose, 0}, block, 1e-2, 1e-2);
   const LinearPriorFactor factor(prior);
-  const auto turned_about = [&](const Eigen::Vector3d& axis_W) {
-    const PoseBlock b = to_block(SE3(so3::exp(1e-3 * axis_W) * pose_of(at.data()).rotation(), {1, 2, 3}));
+  const auto turned_about = [&](const Eigen::Vector3d& axis_O) {
+    const PoseBlock b = to_block(SE3(so3::exp(1e-3 * axis_O) * pose_of(at.data()).rotation(), {1, 2, 3}));
     return evaluate(factor, {{b.begin(), b.end()}}).norm();
   };
   EXPECT_NEAR(turned_about(Eigen::Vector3d::UnitZ()), 0.1, 1e-6);

@@ -12,15 +12,15 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// A body moved on along its rate.
-SE3 moved_body(const SE3& T_W_B, const BodyRate& rate, double time) {
-  return {T_W_B.rotation() * so3::exp(rate.omega_B * time), T_W_B.translation() + rate.v_W * time};
+SE3 moved_body(const SE3& T_O_B, const BodyRate& rate, double time) {
+  return {T_O_B.rotation() * so3::exp(rate.omega_B * time), T_O_B.translation() + rate.v_O * time};
 }
 
 }  // namespace
 
-SE3 camera_pose(const SE3& T_W_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration) {
+SE3 camera_pose(const SE3& T_O_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration) {
   const Eigen::Map<const Vector3d> phi(calibration);
-  return moved_body(T_W_B, rate, calibration[3]) * SE3(T_B_C.rotation() * so3::exp(phi), T_B_C.translation());
+  return moved_body(T_O_B, rate, calibration[3]) * SE3(T_B_C.rotation() * so3::exp(phi), T_B_C.translation());
 }
 
 CameraOnBody::CameraOnBody(const SE3& T_B_C, const double* calibration)
@@ -29,12 +29,12 @@ CameraOnBody::CameraOnBody(const SE3& T_B_C, const double* calibration)
       by_phi(so3::right_jacobian(Vector3d(calibration))),
       time(calibration[3]) {}
 
-CameraAt::CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate& rate_in)
+CameraAt::CameraAt(const CameraOnBody& camera, const SE3& T_O_B, const BodyRate& rate_in)
     : by_turn(so3::exp(rate_in.omega_B * -camera.time).toRotationMatrix()), rate(rate_in) {
-  const SE3 T_W_moved = moved_body(T_W_B, rate, camera.time);
-  R_W_B = T_W_moved.R();
-  R_C_W = (R_W_B * camera.R_B_C).transpose();
-  p_W_C = T_W_moved.translation() + R_W_B * camera.t_B_C;
+  const SE3 T_O_moved = moved_body(T_O_B, rate, camera.time);
+  R_O_B = T_O_moved.R();
+  R_C_O = (R_O_B * camera.R_B_C).transpose();
+  p_O_C = T_O_moved.translation() + R_O_B * camera.t_B_C;
 }
 
 AnchoredLandmark::AnchoredLandmark(const CameraView& view, const Vector2d& point, double rho_in)
@@ -42,7 +42,7 @@ AnchoredLandmark::AnchoredLandmark(const CameraView& view, const Vector2d& point
       anchor(view.at),
       rho(rho_in),
       bearing_C(point.homogeneous()),
-      bearing_W(anchor.R_C_W.transpose() * bearing_C) {}
+      bearing_O(anchor.R_C_O.transpose() * bearing_C) {}
 
 bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Vector2d& e) const {
   const Vector3d x_C = in_camera(seen);
@@ -54,9 +54,9 @@ bool AnchoredLandmark::error(const CameraAt& seen, const Vector2d& point, Vector
 LandmarkDerivatives::LandmarkDerivatives(const AnchoredLandmark& landmark) : landmark_(landmark) {
   const CameraAt& anchor = landmark.anchor;
   const Vector3d x_B = landmark.camera.R_B_C * landmark.bearing_C + landmark.rho * landmark.camera.t_B_C;
-  by_turn_ = -anchor.R_W_B * skew(x_B) * anchor.by_turn;
-  by_phi_ = -anchor.R_C_W.transpose() * skew(landmark.bearing_C);
-  by_time_ = anchor.R_W_B * anchor.rate.omega_B.cross(x_B) + landmark.rho * anchor.rate.v_W;
+  by_turn_ = -anchor.R_O_B * skew(x_B) * anchor.by_turn;
+  by_phi_ = -anchor.R_C_O.transpose() * skew(landmark.bearing_C);
+  by_time_ = anchor.R_O_B * anchor.rate.omega_B.cross(x_B) + landmark.rho * anchor.rate.v_O;
 }
 
 bool LandmarkDerivatives::error(const CameraView& view, const Vector2d& point, ObservationError& observation) const {
@@ -71,7 +71,7 @@ bool LandmarkDerivatives::error(const CameraView& view, const Vector2d& point, O
 
   Eigen::Matrix<double, 2, 3> by_xC;
   by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;
-  const Eigen::Matrix<double, 2, 3> by_xW = by_xC * seen.R_C_W, by_xB = by_xW * seen.R_W_B;
+  const Eigen::Matrix<double, 2, 3> by_xW = by_xC * seen.R_C_O, by_xB = by_xW * seen.R_O_B;
   const Vector3d x_B = camera.R_B_C * x_C + rho * camera.t_B_C;
   observation.by_anchor.leftCols<3>() = rho * by_xW;
   observation.by_anchor.rightCols<3>() = by_xW * by_turn_;
@@ -80,15 +80,15 @@ bool LandmarkDerivatives::error(const CameraView& view, const Vector2d& point, O
   if (&camera == &landmark_.camera) {
     observation.by_anchor_calibration.leftCols<3>() = (by_xC * skew(x_C) + by_xW * by_phi_) * camera.by_phi;
     observation.by_anchor_calibration.col(3) =
-        by_xW * (by_time_ - rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+        by_xW * (by_time_ - rho * seen.rate.v_O) - by_xB * seen.rate.omega_B.cross(x_B);
     observation.by_seen_calibration.setZero();
   } else {
     observation.by_anchor_calibration.leftCols<3>() = by_xW * by_phi_ * landmark_.camera.by_phi;
     observation.by_anchor_calibration.col(3) = by_xW * by_time_;
     observation.by_seen_calibration.leftCols<3>() = by_xC * skew(x_C) * camera.by_phi;
-    observation.by_seen_calibration.col(3) = -by_xW * (rho * seen.rate.v_W) - by_xB * seen.rate.omega_B.cross(x_B);
+    observation.by_seen_calibration.col(3) = -by_xW * (rho * seen.rate.v_O) - by_xB * seen.rate.omega_B.cross(x_B);
   }
-  observation.by_rho = by_xW * (landmark_.anchor.p_W_C - seen.p_W_C);
+  observation.by_rho = by_xW * (landmark_.anchor.p_O_C - seen.p_O_C);
   return true;
 }
 

@@ -16,12 +16,12 @@ namespace edged {
 /// How the body moves at the instant of a state: what turns a shift of the camera's clock into one of its pose.
 struct BodyRate {
   Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< [rad/s]
-  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();      ///< [m/s]
+  Eigen::Vector3d v_O = Eigen::Vector3d::Zero();      ///< [m/s]
 };
 
-/// T_W_C of a camera whose image was taken `time` after the state: T_W_B moved on by the rate, then T_B_C turned by
+/// T_O_C of a camera whose image was taken `time` after the state: T_O_B moved on by the rate, then T_B_C turned by
 /// phi. calibration: a CalibrationBlock's numbers.
-SE3 camera_pose(const SE3& T_W_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
+SE3 camera_pose(const SE3& T_O_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
 
 /// A camera on the body, its calibration applied.
 struct CameraOnBody {
@@ -35,10 +35,10 @@ struct CameraOnBody {
 
 /// A camera at one state's image. The rate is a constant: what it is off by counts only times the time shift.
 struct CameraAt {
-  CameraAt(const CameraOnBody& camera, const SE3& T_W_B, const BodyRate& rate);
-  Eigen::Matrix3d R_W_B;  ///< of the body at the image's time
-  Eigen::Matrix3d R_C_W;
-  Eigen::Vector3d p_W_C;
+  CameraAt(const CameraOnBody& camera, const SE3& T_O_B, const BodyRate& rate);
+  Eigen::Matrix3d R_O_B;  ///< of the body at the image's time
+  Eigen::Matrix3d R_C_O;
+  Eigen::Vector3d p_O_C;
   Eigen::Matrix3d by_turn;  ///< a turn of the state's body as one of the body at the image's time
   BodyRate rate;
 };
@@ -69,13 +69,13 @@ struct AnchoredLandmark {
   bool error(const CameraAt& seen, const Eigen::Vector2d& point, Eigen::Vector2d& e) const;
 
   Eigen::Vector3d in_camera(const CameraAt& seen) const {
-    return seen.R_C_W * (bearing_W + rho * (anchor.p_W_C - seen.p_W_C));
+    return seen.R_C_O * (bearing_O + rho * (anchor.p_O_C - seen.p_O_C));
   }
 
   const CameraOnBody& camera;
   const CameraAt& anchor;
   double rho;
-  Eigen::Vector3d bearing_C, bearing_W;
+  Eigen::Vector3d bearing_C, bearing_O;
 };
 
 /// What the derivatives of all observations of a landmark share: that of its place in the world, times rho, by the

@@ -15,7 +15,7 @@ LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigm
   prior.x0 = {{at.begin(), at.end()}};
   prior.J = Eigen::MatrixXd::Zero(4, 6);
   prior.J.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / position_sigma);
-  // A turn about W's z by psi is the right perturbation R^T e_z psi.
+  // A turn about O's z by psi is the right perturbation R^T e_z psi.
   prior.J.block<1, 3>(3, 3) = pose_of(at.data()).R().row(2) / yaw_sigma;
   prior.r = Eigen::VectorXd::Zero(4);
   return prior;

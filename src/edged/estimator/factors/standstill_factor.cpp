@@ -15,10 +15,10 @@ std::shared_ptr<Factor> StandstillFactor::without(const DroppedState& dropped) c
 }
 
 bool StandstillFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
-  const SE3 T_W_Ba = pose_of(blocks[0]), T_W_Bb = pose_of(blocks[1]);
-  const Eigen::Vector3d phi = so3::log(T_W_Ba.rotation().conjugate() * T_W_Bb.rotation());
+  const SE3 T_O_Ba = pose_of(blocks[0]), T_O_Bb = pose_of(blocks[1]);
+  const Eigen::Vector3d phi = so3::log(T_O_Ba.rotation().conjugate() * T_O_Bb.rotation());
   Eigen::Map<Vector6d> r(residuals);
-  r << kPositionWeight * (T_W_Bb.translation() - T_W_Ba.translation()), kRotationWeight * phi;
+  r << kPositionWeight * (T_O_Bb.translation() - T_O_Ba.translation()), kRotationWeight * phi;
   if (jacobians == nullptr) return true;
   for (int i = 0; i < 2; ++i) {
     if (jacobians[i] == nullptr) continue;

@@ -53,9 +53,9 @@ VelocityFactor::VelocityFactor(StateId state, const Preintegration& imu, const S
 }
 
 bool VelocityFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
-  const Matrix3d R_B_W = pose_of(blocks[0]).R().transpose();
-  const Eigen::Map<const Vector3d> v_W(blocks[1]), bias_gyro(blocks[1] + 3), bias_accel(blocks[1] + 6);
-  const Vector3d v_B = R_B_W * v_W, g_B = R_B_W * kGravity_W, scale = weight_.cwiseSqrt();
+  const Matrix3d R_B_O = pose_of(blocks[0]).R().transpose();
+  const Eigen::Map<const Vector3d> v_O(blocks[1]), bias_gyro(blocks[1] + 3), bias_accel(blocks[1] + 6);
+  const Vector3d v_B = R_B_O * v_O, g_B = R_B_O * kGravity_W, scale = weight_.cwiseSqrt();
   Eigen::Map<Vector3d>{residuals} = scale.asDiagonal() * (way_.by_velocity * v_B + way_.by_gravity * g_B + way_.off +
                                                           way_.by_gyro * bias_gyro + way_.by_accel * bias_accel);
   if (jacobians == nullptr) return true;
@@ -66,7 +66,7 @@ bool VelocityFactor::Evaluate(double const* const* blocks, double* residuals, do
   }
   if (jacobians[1] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, 9, Eigen::RowMajor>> J(jacobians[1]);
-    J << way_.by_velocity * R_B_W, way_.by_gyro, way_.by_accel;
+    J << way_.by_velocity * R_B_O, way_.by_gyro, way_.by_accel;
     J = (scale.asDiagonal() * J).eval();
   }
   return true;
