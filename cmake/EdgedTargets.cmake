@@ -47,11 +47,11 @@ if(EDGED_TESTS)
   edged_precompile(edged_precompiled_tests OFF DEPENDS GTest::gtest_main GTest::gmock HEADERS <gmock/gmock.h> <gtest/gtest.h>)
 endif()
 
-# edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ... TEST_DEPENDS libs ...)
+# edged_module(NAME SOURCES a.cpp ... DEPENDS libs ... TESTS a_test.cpp ... TEST_DEPENDS libs ... TEST_SHARDS number)
 # makes the library edged_NAME (alias edged::NAME), a part of EDGED_COMPONENT, and the test program edged_NAME_test. Its
 # folder is <root>/edged/NAME, and <root> is where it is included from.
 function(edged_module NAME)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;TESTS;TEST_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TEST_SHARDS" "SOURCES;DEPENDS;TESTS;TEST_DEPENDS" ${ARGN})
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH root)
   cmake_path(GET root PARENT_PATH root)
   add_library(edged_${NAME} STATIC ${ARG_SOURCES})
@@ -68,7 +68,7 @@ function(edged_module NAME)
             PATTERN "*_test_support.hpp" EXCLUDE PATTERN testdata EXCLUDE)
   endif()
   if(EDGED_TESTS AND ARG_TESTS)
-    edged_test(edged_${NAME}_test SOURCES ${ARG_TESTS} DEPENDS edged::${NAME} ${ARG_TEST_DEPENDS})
+    edged_test(edged_${NAME}_test SOURCES ${ARG_TESTS} DEPENDS edged::${NAME} ${ARG_TEST_DEPENDS} SHARDS ${ARG_TEST_SHARDS})
   endif()
 endfunction()
 
@@ -96,11 +96,12 @@ if(EDGED_TESTS)
   add_custom_target(edged_short_tests)
 endif()
 
-# edged_test(NAME SOURCES ... DEPENDS ... TIMEOUT seconds LABELS label)
-# ctest runs each test of the program by itself; under sanitizers, which take long to start, the program as a whole
-# (GTEST_FILTER of the presets leaves out of it).
+# edged_test(NAME SOURCES ... DEPENDS ... TIMEOUT seconds LABELS label SHARDS number)
+# ctest runs each test of the program by itself. With SHARDS it runs the program that many times with a share of the tests
+# each, where programs take long to start: a fifth of a second, for the libraries behind opencv_imgcodecs. Under sanitizers,
+# which take longer, it always does, once without SHARDS (GTEST_FILTER of the presets leaves out of it).
 function(edged_test NAME)
-  cmake_parse_arguments(ARG "" "TIMEOUT;LABELS" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;LABELS;SHARDS" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()
@@ -114,10 +115,33 @@ function(edged_test NAME)
   target_compile_definitions(
     ${NAME} PRIVATE EDGED_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EDGED_BINARY_DIR="${CMAKE_BINARY_DIR}")
   if(EDGED_SANITIZE)
-    add_test(NAME ${NAME} COMMAND ${NAME})
-    set_tests_properties(${NAME} PROPERTIES TIMEOUT 3600 LABELS "${ARG_LABELS}")
-  else()
-    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
-                         PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+    set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON)
+    set(ARG_TIMEOUT 3600)
   endif()
+  if(ARG_SHARDS OR EDGED_SANITIZE)
+    edged_test_shards(${NAME} "${ARG_SHARDS}" ${ARG_TIMEOUT} "${ARG_LABELS}")
+    return()
+  endif()
+  set(cost 0)
+  if(ARG_LABELS)
+    set(cost 100)  # the long ones first, or one of them runs alone in the end
+  endif()
+  gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
+                       PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${cost} LABELS "${ARG_LABELS}")
+endfunction()
+
+# The program as a whole is the test NAME, or its shards are NAME_0, NAME_1 ...
+function(edged_test_shards NAME SHARDS TIMEOUT LABELS)
+  if(NOT SHARDS)
+    add_test(NAME ${NAME} COMMAND ${NAME})
+    set_tests_properties(${NAME} PROPERTIES TIMEOUT ${TIMEOUT} LABELS "${LABELS}")
+    return()
+  endif()
+  math(EXPR last "${SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${NAME}_${shard} COMMAND ${NAME})
+    set_tests_properties(
+      ${NAME}_${shard} PROPERTIES TIMEOUT ${TIMEOUT} COST 10 LABELS "${LABELS}" ENVIRONMENT
+      "GTEST_TOTAL_SHARDS=${SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

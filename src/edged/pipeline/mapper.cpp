@@ -55,7 +55,7 @@ void Mapper::begin_start(const OdomState& now) {
   filter_.restart(T_M_O_guess_, now.T_O_B, now.t, position_sigma, yaw_sigma);
   record_.restart({now.t, now.T_O_B}, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
-  blind_s_ = first ? 0.0 : (searching_ ? blind_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
+  dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
   recognised_.reset();
   in_window_.clear();
@@ -65,7 +65,7 @@ void Mapper::begin_start(const OdomState& now) {
 void Mapper::begin_time() {
   OdomToMap odom_to_map = std::move(odom_to_map_);
   odom_to_map.forget_history();
-  *this = Mapper(config_);
+  *this = Mapper(config_, lost_after_s_);
   odom_to_map_ = std::move(odom_to_map);
 }
 
@@ -87,7 +87,7 @@ std::optional<SavedMap> Mapper::save() const {
 }
 
 void Mapper::predict(const OdomState& now) {
-  const bool young = blind_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
+  const bool young = dead_reckoning_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
   filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
 }
@@ -169,8 +169,8 @@ bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) 
 /// are refused by that.
 bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
   const SE3 off = (T_M_O_guess_ * T_O_B).inverse() * (T_M_O * T_O_B);
-  return off.translation().norm() < kFarthest_m + kFarthest_mps * blind_s_ &&
-         so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * blind_s_;
+  return off.translation().norm() < kFarthest_m + kFarthest_mps * dead_reckoning_s_ &&
+         so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * dead_reckoning_s_;
 }
 
 /// T_M_O by looks alone, of keyframes made then.

@@ -46,7 +46,7 @@ class Mapper {
 
   /// How long the pose has gone on dead reckoning alone, at the newest start [s]. It bounds where relocalization may
   /// find the body.
-  double dead_reckoning_s() const { return blind_s_; }
+  double dead_reckoning_s() const { return dead_reckoning_s_; }
 
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
   /// What was found in the image of that instant.
@@ -93,7 +93,7 @@ class Mapper {
   Timestamp predicted_;     ///< newest word of the odometry
   Timestamp started_;       ///< the estimator's newest start
   SE3 T_M_O_guess_;         ///< there, by dead reckoning
-  double blind_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
+  double dead_reckoning_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
   bool searching_ = false;  ///< since then nothing older has been found again
   /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
   std::optional<Timestamp> unlocated_before_;

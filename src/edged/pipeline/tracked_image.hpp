@@ -20,7 +20,7 @@ struct TrackedImage {
   double survival_rate = 1.0;      ///< share of tracks that live through an image, 0 .. 1
 
   /// Tracks as they count: as many as are likely to be there in the next image.
-  double carried() const { return survival * static_cast<double>(tracks.size()); }
+  double carried() const { return survival_rate * static_cast<double>(tracks.size()); }
 };
 
 }  // namespace edged

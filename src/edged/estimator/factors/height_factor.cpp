@@ -52,7 +52,7 @@ HeightFactor::HeightFactor(StateId state, BlockKey bias, Way way, double height_
       loss_(kHeightLoss) {}
 
 double HeightFactor::bias_at(const double* pose, const double* motion) const {
-  const double z = pose[2] + way_.dt * motion[2] + kGravity_O.z() * way_.half_dt2 +
+  const double z = pose[2] + way_.dt * motion[2] + kGravity_W.z() * way_.half_dt2 +
                    pose_of(pose).R().row(2).dot(way_.in_body(motion));
   return height_m_ - z;
 }

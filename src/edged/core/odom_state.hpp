@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The state of the body in the odometry frame O: what the estimator knows, before the map moves it.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "edged/se3.hpp"
+#include "edged/state.hpp"
+#include "edged/time.hpp"
+
+namespace edged {
+
+/// The state of the body B in the odometry frame O (z up) at one instant; NavState has it in the map.
+struct OdomState {
+  Timestamp t;  ///< IMU clock
+  SE3 T_O_B;
+  Eigen::Vector3d v_O = Eigen::Vector3d::Zero();         ///< velocity of B in O [m/s]
+  Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();   ///< [rad/s], measured = true + bias
+  Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+}  // namespace edged
