@@ -14,10 +14,10 @@ KindNumbers numbers_of(const Step& step, Modality modality) {
     if (camera.modality != modality) continue;
     numbers.tracks += camera.tracks.size();
     numbers.event_rate_hz += camera.event_rate_hz;
-    survival += camera.survival_rate;
+    survival_rate += camera.survival_rate;
     ++cameras;
   }
-  if (cameras > 0) numbers.survival_rate = survival / cameras;
+  if (cameras > 0) numbers.survival_rate = survival_rate / cameras;
   return numbers;
 }
 
