@@ -48,7 +48,7 @@ Window full_window(TestWorld& world) {
 
 std::size_t count_observations(const Window& window) {
   std::size_t observations = 0;
-  for (const auto& [id, feature] : window.features()) observations += feature.anchor ? feature.seen.size() - 1 : 0;
+  for (const auto& [id, feature] : window.features()) observations += feature.anchor ? feature.observations.size() - 1 : 0;
   return observations;
 }
 
@@ -76,11 +76,8 @@ void BM_Marginalize(benchmark::State& state) {
   const StateId oldest = window.oldest_id();
   const std::set<BlockKey> leaving = {{BlockKind::Pose, oldest}, {BlockKind::Motion, oldest}};
   Cost cost = cost_of(window);
-  std::erase_if(cost.factors, [&](const Factor& factor) {
-    return std::none_of(factor.blocks.begin(), factor.blocks.end(),
-                        [&](const BlockKey& key) { return leaving.contains(key); });
-  });
-  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor != oldest; });
+  std::erase_if(cost.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
+  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor.state != oldest; });
   for (auto _ : state) benchmark::DoNotOptimize(marginalize(window, cost, leaving).J);
   state.counters["factors"] = static_cast<double>(cost.factors.size());
   state.counters["landmarks"] = static_cast<double>(cost.landmarks.size());

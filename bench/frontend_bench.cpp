@@ -26,7 +26,7 @@ const SE3 kMotion(so3::exp({0.01, -0.02, 0.02}), {0.05, 0.02, 0.03});  // about 
 void detect(benchmark::State& state, CornerKind kind) {
   const cv::Mat image = PlaneScene(frame_camera_of(state), 2.0).image(SE3());
   DetectorConfig config;
-  config.features = kind;
+  config.corners = kind;
   std::size_t found = 0;
   for (auto _ : state) found = detect_corners(image, {}, kCorners, config).size();
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * found));

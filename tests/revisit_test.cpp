@@ -99,7 +99,7 @@ TEST(Revisits, AreFoundAndKnownInTheEndToTheSameBitEachTime) {
   // A step tells what it has found, and how far back that reaches.
   const auto found = std::ranges::find_if(run.steps, [](const Step& step) { return !step.map_matches.empty(); });
   ASSERT_NE(found, run.steps.end());
-  EXPECT_LT(found->found.front().keyframe, found->t - std::chrono::seconds(1));
+  EXPECT_LT(found->map_matches.front().keyframe, found->t - std::chrono::seconds(1));
 }
 
 /// Of a flight whose lens is covered for 4 s while it goes on: the mean position error of the last 5 s, once the first

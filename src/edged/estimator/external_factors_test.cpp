@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "edged/core/check.hpp"
 #include "edged/estimator/factors/height_factor.hpp"
 #include "edged/estimator/factors/velocity_factor.hpp"
 #include "edged/estimator/test_world.hpp"

@@ -35,7 +35,7 @@ struct Wall {
         const Eigen::Vector3d p_C = (T_A_K[k] * T_K_C).inverse() * points[i];
         if (p_C.z() < 0.5 || p_C.hnormalized().norm() > 0.8) continue;
         keyframe.points.push_back(
-            {p_C.hnormalized(), 1.0 / p_C.z(), 0.01 / p_C.z(), {}, looks[i], Eigen::Vector2d::Zero(), 0, 0});
+            {0, p_C.hnormalized(), 1.0 / p_C.z(), 0.01 / p_C.z(), {}, looks[i], Eigen::Vector2d::Zero(), 0, 0});
       }
       map.keyframes.push_back(keyframe);
       map.T_M_K.push_back(T_A_B.inverse() * T_A_K[k]);

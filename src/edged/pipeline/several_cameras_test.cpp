@@ -151,9 +151,9 @@ TEST(PacketsOfSeveralCameras, AreCutByTheCountOfAnyEventCamera) {
 }
 
 /// The poses and features of every step.
-using Numbers = std::vector<double>;
-Numbers numbers_of_all(Odometry& odometry, const std::vector<Measurement>& all, std::vector<Step>* steps = nullptr) {
-  Numbers numbers;
+using StepNumbers = std::vector<double>;
+StepNumbers numbers_of_all(Odometry& odometry, const std::vector<Measurement>& all, std::vector<Step>* steps = nullptr) {
+  StepNumbers numbers;
   drive(
       odometry, [&, next = all.begin()]() mutable { return next == all.end() ? std::nullopt : std::optional(*next++); },
       [&](Step step) {
@@ -211,7 +211,7 @@ TEST(OdometryOfSeveralCameras, GivesTheSameBitsHoweverTheyLagWithinTheirDelays) 
   const std::vector<Measurement> all = recording(1000, 7.0);
   const OdometryConfig config = using_cameras("dvs0,dvs1,cam0,cam1");
   Odometry in_order(four_cameras(), {}, Mode::Fused, config, {kInOrder});
-  const Numbers wanted = numbers_of_all(in_order, all);
+  const StepNumbers wanted = numbers_of_all(in_order, all);
   ASSERT_GT(wanted.size(), 500U);
   const auto lag_ms = [](const Measurement& m) {
     if (const auto* batch = std::get_if<EventBatch>(&m)) return batch->camera == "dvs0" ? 30 : 13;
@@ -222,7 +222,7 @@ TEST(OdometryOfSeveralCameras, GivesTheSameBitsHoweverTheyLagWithinTheirDelays) 
   std::ranges::stable_sort(lagging, {},
                            [&](const Measurement& m) { return *last_stamp(m) + std::chrono::milliseconds(lag_ms(m)); });
   Odometry patient(four_cameras(), {}, Mode::Fused, config);
-  const Numbers got = numbers_of_all(patient, lagging);
+  const StepNumbers got = numbers_of_all(patient, lagging);
   ASSERT_EQ(got.size(), wanted.size());
   EXPECT_EQ(std::memcmp(got.data(), wanted.data(), got.size() * sizeof(double)), 0);
   const PacketizerCounters counters = patient.counters().packets;
