@@ -16,31 +16,30 @@ namespace edged {
 
 /// An observation of a map point in an image.
 struct MapMatch {
-  Timestamp
-      keyframe;  ///< when the keyframe was made that it belongs to, IMU clock: how far this observation reaches back
-  Eigen::Vector2d pixel;  ///< where it was found: undistorted on the event frame, as given on the standard frame
-  Eigen::Vector3d p_W;    ///< where the map has it [m]
+  Timestamp keyframe;     ///< creation time of its keyframe, IMU clock
+  Eigen::Vector2d pixel;  ///< undistorted in an event frame, as recorded in a standard frame
+  Eigen::Vector3d p_W;    ///< position in the map [m]
 };
 
-/// A keyframe that the map has kept, and its points.
+/// A keyframe of the map, and its map points.
 struct MappedKeyframe {
   struct Point {
     Eigen::Vector3d p_W;       ///< [m]
-    std::uint8_t grey;         ///< of its image there
-    int tried = 0, found = 0;  ///< in how many images it was looked for, and found
+    std::uint8_t grey;         ///< intensity of its pixel in the keyframe
+    int tried = 0, found = 0;  ///< number of images in which it was searched for, and matched
   };
   Timestamp t;  ///< IMU clock
   SE3 T_W_B;
-  std::string camera;   ///< whose image it was
-  int times_found = 0;  ///< in how many later images its points were observed
-  Timestamp found_at;   ///< the last time; t where they never were
+  std::string camera;   ///< camera of its image
+  int times_found = 0;  ///< number of later images with matches of its points
+  Timestamp found_at;   ///< time of the last match; t without any
   std::vector<Point> points;
 };
 
-/// Not causal: what came later has its part in it. What was known at its time is in the steps.
+/// The batch solution over all measurements. It is not causal; the causal trajectory is in the steps.
 struct FinalTrajectory {
   Trajectory poses;                       ///< T_W_B at the time of each Good or Degraded step, IMU clock
-  std::vector<MappedKeyframe> keyframes;  ///< those that the map still has
+  std::vector<MappedKeyframe> keyframes;  ///< keyframes that the map still holds
 };
 
 using Hindsight [[deprecated("use FinalTrajectory")]] = FinalTrajectory;

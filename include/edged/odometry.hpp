@@ -56,10 +56,10 @@ class Odometry {
   /// map's. Throws InputError where the bytes are damaged or of another version, no camera of this mode fits, or it is
   /// too late.
   void load_map(std::string_view bytes);
-  /// A map was loaded, and no place of it has been recognised yet.
+  /// A map was loaded, and the body has not been relocalized in it yet.
   bool awaiting_relocalization() const;
   [[deprecated("use awaiting_relocalization()")]] bool elsewhere() const { return awaiting_relocalization(); }
-  /// What has been seen so far, for load_map. Nothing while awaiting_relocalization().
+  /// The map, for load_map. Nothing while awaiting_relocalization().
   std::optional<std::string> save_map() const;
 
   /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
@@ -67,16 +67,16 @@ class Odometry {
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
 
-  /// Path and map as they are known by now, best asked for when all steps have come: poses held to all places that
-  /// were seen again, before and after. Without the map, or where nothing was seen again, the poses are those of the
-  /// steps. Not causal. Takes seconds for an hour of flight; what it needs takes half a megabyte a minute.
+  /// The final trajectory and the map: a batch optimization over all steps and map matches so far. Call it after the
+  /// last step. Without the map, or without any match, the poses are those of the steps. Not causal. It takes seconds
+  /// for an hour of flight, and its record half a megabyte a minute.
   FinalTrajectory final_trajectory() const;
   [[deprecated("use final_trajectory()")]] FinalTrajectory hindsight() const { return final_trajectory(); }
 
-  /// The cameras of the mode as calibrated so far: rotation against the body, and time offset (the whole of it).
+  /// The cameras of the mode with their present online calibration: rotation against the body, and whole time offset.
   Rig rig() const;
-  /// How well that is known of a camera of the mode: rotation about its axes [rad], then time offset [s]. Nothing where
-  /// there is no estimate.
+  /// Covariance of the online calibration of a camera: rotation about its axes [rad], then time offset [s]. Nothing
+  /// without an estimate.
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
 
   OdometryCounters counters() const;

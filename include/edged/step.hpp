@@ -20,14 +20,14 @@
 
 namespace edged {
 
-/// How far the present pose can be relied on.
+/// The quality of the present pose.
 enum class TrackingStatus { Initializing, Good, Degraded, Lost };
 std::string to_string(TrackingStatus status);
-/// Whether there is a pose to go by: Good or Degraded.
+/// Whether there is a pose: Good or Degraded.
 bool is_tracking(TrackingStatus status);
 
-/// How well a pose is known, against the start that the estimator stands on (a loss begins a new one): there position
-/// and yaw are exact.
+/// Covariance of a pose relative to the start of the estimator (a loss begins a new one), where position and yaw are
+/// exact by definition.
 struct PoseCovariance {
   Eigen::Matrix3d position;  ///< [m^2], in W
   Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
@@ -40,14 +40,15 @@ struct CameraStep {
   /// CV_8UC1: the event frame, motion-compensated and undistorted, empty when there were too few events; or the frame
   /// as it came, empty in packets without one.
   cv::Mat image = {};
-  /// The live features by id, in pixels of `image`; where that is empty those of the camera's last one.
+  /// The tracked features by id, in pixels of `image`; if that is empty, in pixels of the camera's last image.
   std::vector<Track> tracks = {};
-  /// Running mean of the share of features that live through an image, 0 to 1: blur, noise and darkness end them.
+  /// Track survival rate: running mean of the share of tracks that survive an image, 0 to 1. Blur, noise and darkness
+  /// lower it.
   double survival_rate = 1.0;
 
   // Of event cameras:
   std::vector<Event> events = {};  ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
-  std::size_t rendered = 0;        ///< how many of them, the newest, `image` is of
+  std::size_t rendered = 0;        ///< number of them, the newest ones, that `image` was rendered from
   double event_rate_hz = 0.0;      ///< of this packet
 
   std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
@@ -60,27 +61,27 @@ struct Step {
   NavState state;                            ///< at t; meaningful unless status is Initializing
   std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
   bool keyframe = false;                     ///< this packet became a keyframe
-  /// After a loss the body has been found in the map: the pose has gone to where it is there, and what covariance is
-  /// against has gone along.
+  /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
+  /// reference of the covariance with it.
   bool relocalized = false;
 
   /// The odometry frame O in the map frame M (W above is M): state.T_W_B = T_M_O * T_O_B. T_O_B goes on without jumps
   /// from one start of the estimator to the next; T_M_O is what the map corrects.
   SE3 T_M_O;
-  std::vector<MapMatch> map_matches;  ///< of the map, in an image of this packet; the pose has been held to them
+  std::vector<MapMatch> map_matches;  ///< map points observed in an image of this packet; they correct T_M_O
 
-  std::string waiting_for;   ///< while there is no estimate: what a start lacks, with numbers
-  std::string started;       ///< the estimator has started with this packet: how, with numbers
+  std::string waiting_for;   ///< while there is no estimate: what initialization lacks, with numbers
+  std::string started;       ///< set if the estimator was initialized with this packet: how, with numbers
   std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
 
-  std::vector<CameraStep> cameras;  ///< those of the run: event cameras, then frame cameras, as the rig has them
-  std::vector<Landmark> landmarks;  ///< in the window, where it was solved
-  std::vector<KeyframeRecord> marginalized_keyframes;  ///< keyframes that have left the window with this packet
+  std::vector<CameraStep> cameras;                     ///< event cameras, then frame cameras, in the order of the rig
+  std::vector<Landmark> landmarks;                     ///< landmarks of the window after the optimization
+  std::vector<KeyframeRecord> marginalized_keyframes;  ///< by this packet
 
   double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
 
-  /// The first camera of that kind, null where the run has none.
+  /// The first camera of that modality; null if the run has none.
   const CameraStep* find(Modality modality) const;
   const CameraStep* find(std::string_view camera) const;
 };

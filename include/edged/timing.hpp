@@ -61,7 +61,7 @@ class StageTimings {
   [[nodiscard]] Scope measure(const std::string& stage) { return {timing_of(stage), true}; }
   /// Without processor time, which costs a system call: for what is entered thousands of times a second.
   [[nodiscard]] Scope measure_often(const std::string& stage) { return {timing_of(stage), false}; }
-  /// A stage that was measured elsewhere.
+  /// Adds a stage that the caller has measured.
   void put(const std::string& stage, const StageTiming& timing) { timing_of(stage) = timing; }
   struct Entry {
     std::string name;

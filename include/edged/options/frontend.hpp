@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of what looks at images: corners, optical flow, outliers, keyframes, frames in the dark.
+// Options of the frontend: corners, optical flow, outlier rejection, keyframes, low-light normalization.
 #pragma once
 
 #include "edged/config.hpp"
@@ -75,7 +75,7 @@ struct TrackerConfig {
   OutlierConfig outliers;
   TemplateConfig templates;
   double forward_backward_px = 1.0;
-  // Event frames change their looks with the motion: at 0.7 their tracks live a third as long.
+  // The appearance of an event frame depends on the motion: at 0.7 its tracks live a third as long.
   double min_correlation = 0.3;
   static constexpr double border_px = 4.0;
   double merge_px = 3.0;
