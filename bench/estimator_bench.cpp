@@ -48,7 +48,8 @@ Window full_window(TestWorld& world) {
 
 std::size_t count_observations(const Window& window) {
   std::size_t observations = 0;
-  for (const auto& [id, feature] : window.features()) observations += feature.anchor ? feature.observations.size() - 1 : 0;
+  for (const auto& [id, feature] : window.features())
+    observations += feature.anchor ? feature.observations.size() - 1 : 0;
   return observations;
 }
 

@@ -52,11 +52,11 @@ struct RunSummary {
   std::vector<CalibrationFound> calibration;
   std::map<std::string, std::size_t> external;  ///< samples that came, by sensor
   std::size_t external_in_packets = 0;          ///< of these, what the estimator was given
-  std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
-  std::optional<Evaluation> evaluation;        ///< SE(3) on all poses; nothing without ground truth
-  std::optional<Evaluation> final_evaluation;  ///< the same of the poses as known in the end, not causal
-  std::optional<Consistency> consistency;      ///< nothing without ground truth
-  std::map<std::string, double> mpe_percent;   ///< per protocol P1..P4 that could be applied
+  std::map<std::string, std::size_t> repairs;   ///< by the reader and the packetizer, zero counts left out
+  std::optional<Evaluation> evaluation;         ///< SE(3) on all poses; nothing without ground truth
+  std::optional<Evaluation> final_evaluation;   ///< the same of the poses as known in the end, not causal
+  std::optional<Consistency> consistency;       ///< nothing without ground truth
+  std::map<std::string, double> mpe_percent;    ///< per protocol P1..P4 that could be applied
 };
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their

@@ -39,13 +39,17 @@ def _deprecated(owner, old, new):
     setattr(owner, old, property(get))
 
 
-for _owner, _old, _new in ((CameraStep, "survival", "survival_rate"), (CameraStep, "drawn", "rendered"),  # deprecated names
-                           (Step, "event_survival", "event_track_survival_rate"),  # deprecated
-                           (Step, "frame_survival", "frame_track_survival_rate"),  # deprecated
-                           (Step, "drawn", "rendered"), (Step, "found_again", "relocalized"),  # deprecated
-                           (Odometry, "elsewhere", "awaiting_relocalization"),  # deprecated
-                           (Odometry, "hindsight", "final_trajectory")):  # deprecated
-    _deprecated(_owner, _old, _new)
+_DEPRECATED = (  # owner, deprecated name, its replacement; the stub leaves them out
+    (CameraStep, "survival", "survival_rate"),  # deprecated
+    (CameraStep, "drawn", "rendered"),  # deprecated
+    (Step, "event_survival", "event_track_survival_rate"),  # deprecated
+    (Step, "frame_survival", "frame_track_survival_rate"),  # deprecated
+    (Step, "drawn", "rendered"),  # deprecated
+    (Step, "found_again", "relocalized"),  # deprecated
+    (Odometry, "elsewhere", "awaiting_relocalization"),  # deprecated
+    (Odometry, "hindsight", "final_trajectory"))  # deprecated
+for _alias in _DEPRECATED:
+    _deprecated(*_alias)
 
 
 def __getattr__(name):

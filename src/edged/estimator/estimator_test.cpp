@@ -134,7 +134,8 @@ TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
   std::size_t keyframes = 0, seen = 0, left = 0;
   double depth_error = 0.0, depth_sigma = 0.0;
   for (int i = 1; i * kStep <= 8.0; ++i) {
-    for (const KeyframeRecord& record : estimator.add(world.packet(i * kStep, kStep, i % 4 == 0)).marginalized_keyframes) {
+    for (const KeyframeRecord& record :
+         estimator.add(world.packet(i * kStep, kStep, i % 4 == 0)).marginalized_keyframes) {
       const double t = to_seconds(record.t);
       if (t < 3.0) continue;  // at rest no depth is known
       ++keyframes;

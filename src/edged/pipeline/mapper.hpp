@@ -90,11 +90,11 @@ class Mapper {
   std::deque<MapKeyframe> in_window_;  ///< what keyframes look like whose poses and depths the window still refines
   std::vector<MapMatch> found_;        ///< in the newest image that was looked at
   std::optional<Timestamp> looked_at_;
-  Timestamp predicted_;     ///< newest word of the odometry
-  Timestamp started_;       ///< the estimator's newest start
-  SE3 T_M_O_guess_;         ///< there, by dead reckoning
-  double dead_reckoning_s_ = 0.0;    ///< how long it had gone on that alone, since what is older was last found
-  bool searching_ = false;  ///< since then nothing older has been found again
+  Timestamp predicted_;            ///< newest word of the odometry
+  Timestamp started_;              ///< the estimator's newest start
+  SE3 T_M_O_guess_;                ///< there, by dead reckoning
+  double dead_reckoning_s_ = 0.0;  ///< how long it had gone on that alone, since what is older was last found
+  bool searching_ = false;         ///< since then nothing older has been found again
   /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
   std::optional<Timestamp> unlocated_before_;
   std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees

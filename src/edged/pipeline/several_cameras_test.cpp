@@ -152,7 +152,8 @@ TEST(PacketsOfSeveralCameras, AreCutByTheCountOfAnyEventCamera) {
 
 /// The poses and features of every step.
 using StepNumbers = std::vector<double>;
-StepNumbers numbers_of_all(Odometry& odometry, const std::vector<Measurement>& all, std::vector<Step>* steps = nullptr) {
+StepNumbers numbers_of_all(Odometry& odometry, const std::vector<Measurement>& all,
+                           std::vector<Step>* steps = nullptr) {
   StepNumbers numbers;
   drive(
       odometry, [&, next = all.begin()]() mutable { return next == all.end() ? std::nullopt : std::optional(*next++); },
