@@ -33,7 +33,7 @@ std::string reason_of(const Step& step) {
     case TrackingStatus::Lost:
       return step.lost_because;
     default:
-      if (step.relocalized) return "found again in the map";
+      if (step.relocalized) return "relocalized in the map";
       return step.started.empty() ? "" : "started " + step.started;
   }
 }

@@ -88,7 +88,7 @@ int run_merge(const MapCommandOptions& options) {
   const std::optional<SE3> T_A_B = find_map_in(map, other);
   if (!T_A_B)
     throw InputError::format(
-        "{}: not known again in {}; run a recording of the one in the other instead: edged run RECORDING --map {} "
+        "{}: not recognized in {}; run a recording of the one in the other instead: edged run RECORDING --map {} "
         "--save-map BOTH",
         options.other.string(), options.file.string(), options.file.string());
   const SavedMap both = merged(map, other, *T_A_B);

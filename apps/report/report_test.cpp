@@ -142,7 +142,7 @@ TEST_F(Report, TellsHealthAndWhatTheMapFoundAgain) {
   const auto again = std::ranges::find_if(changes, [](const auto& change) { return change["relocalized"] == true; });
   ASSERT_NE(again, changes.end());
   EXPECT_EQ((*again)["t"], 3.0);
-  EXPECT_EQ((*again)["reason"], "found again in the map");
+  EXPECT_EQ((*again)["reason"], "relocalized in the map");
 }
 
 TEST_F(Report, LaysTheFinalPathOntoTheTruthAsTheCausalOneIs) {

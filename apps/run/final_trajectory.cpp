@@ -30,7 +30,7 @@ class FinalTrajectoryFiles : public RunObserver {
   explicit FinalTrajectoryFiles(const RunContext& run) : run_(run) {}
   void on_end(const RunEnd& end) override {
     write_final_trajectory(run_.folder, run_.frame, end.known,
-                           run_.heading("final: each by all that was found again before and after"));
+                           run_.heading("final: corrected by all map matches, not causal"));
   }
 
  private:

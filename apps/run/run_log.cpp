@@ -46,7 +46,7 @@ class RunLog : public RunObserver {
   void on_step(const Step& step) override {
     const double t_s = to_seconds(step.t);
     if (!step.started.empty()) spdlog::info(fmt::format("{:.3f} s: started {}", t_s, step.started));
-    if (step.relocalized) spdlog::info(fmt::format("{:.3f} s: found again in the map", t_s));
+    if (step.relocalized) spdlog::info(fmt::format("{:.3f} s: relocalized in the map", t_s));
     if (std::exchange(status_, step.status) == step.status) return;
     if (step.status == TrackingStatus::Lost)
       spdlog::warn(fmt::format("lost at {:.3f} s: {}; starting again", t_s, step.lost_because));

@@ -59,7 +59,7 @@ class RunMap : public RunObserver {
     if (found_) summary.found_s = to_seconds(*found_ - *first_pose_);
     if (!options_.load.empty() && !found_)
       spdlog::warn(
-          fmt::format("--map {}: not found again; the poses are in a frame of their own", options_.load.string()));
+          fmt::format("--map {}: not relocalized; the poses are in a frame of their own", options_.load.string()));
     if (options_.save.empty()) return;
     if (const std::optional<std::string> map = run_.odometry.save_map()) {
       write_file(options_.save, *map);

@@ -214,7 +214,7 @@ void RunMcap::put_status(const Step& step) {
   const auto say = [&](foxglove::Level level, const std::string& text) {
     put("/log", "foxglove.Log", step.t, foxglove::log(step.t, level, text));
   };
-  if (step.relocalized) say(foxglove::Level::Info, "found again in the map");
+  if (step.relocalized) say(foxglove::Level::Info, "relocalized in the map");
   if (std::exchange(status_, step.status) == step.status) return;
   const std::string reason = reason_of(step);
   say(level_of(step.status), to_string(step.status) + (reason.empty() ? "" : ": " + reason));

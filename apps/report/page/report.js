@@ -11,7 +11,7 @@ const kSays = {
   'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
   'degraded': ['It got to the end, but its last poses are less certain.', 'degraded'],
   'not to be trusted': ['There is a path to the end, but it is not to be trusted.', 'lost'],
-  'lost': ['Tracking was lost, and not found again.', 'lost'],
+  'lost': ['Tracking was lost, and did not recover.', 'lost'],
   'lost, initializing again': ['Tracking was lost, and was starting again at the end.', 'lost'],
   'never good': ['There never was a good pose.', 'lost'],
   'interrupted': ['It was interrupted; all up to then is here.', 'degraded'],

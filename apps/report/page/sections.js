@@ -96,7 +96,7 @@ function plotSection() {
   columnPlot(seen, 'event rate', '1/s', 'event_rate', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'scene depth', 'm', 'depth', {zero: true});
   const map = group('Map: what is seen again after it has left the window');
-  columnPlot(map, 'points found again', '', 'map_matches', {zero: true, dots: true});
+  columnPlot(map, 'map matches', '', 'map_matches', {zero: true, dots: true});
   columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true, dots: true});
   const pace = group('Time that a packet takes');
   columnPlot(pace, 'processing', 'ms', 'processing', {zero: true});
@@ -130,7 +130,7 @@ function fillTimeline(all) {
     const spans = run.changes.map((change, k) => ({...change, length: (k + 1 < run.changes.length ? run.changes[k + 1].t : last) - change.t}));
     const bar = make('div', {class: 'timeline', role: 'img', 'aria-label': 'status over time'});
     for (const span of spans) {
-      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s' + (span.relocalized ? ', found again in the map' : '')});
+      const piece = make('i', {c: kStatusColours[span.status], title: span.status + ' from ' + span.t.toFixed(2) + ' s' + (span.relocalized ? ', relocalized in the map' : '')});
       if (span.relocalized) piece.className = 'again';
       piece.style.flexGrow = Math.max(span.length, 1e-3);
       bar.append(piece);

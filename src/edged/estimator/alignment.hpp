@@ -32,7 +32,7 @@ struct Alignment {
   std::vector<OdomState> states;  ///< one a frame; O z-up, origin and yaw at the first body pose
   double gravity_error = 0.0;     ///< |g| found without imposing it, relative to 9.81: a measure of trust
   double scale_sigma = 0.0;  ///< standard deviation of the longest baseline over its length, as the features tell it
-  std::set<FeatureId> outliers;  ///< features that move by themselves
+  std::set<FeatureId> outliers;  ///< features of dynamic objects
   /// Of what it explains of the views, the share that a running estimate explains, 0 to 1: does that one follow the
   /// world, or something that moves in it?
   double explained = 1.0;

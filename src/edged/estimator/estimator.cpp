@@ -30,7 +30,7 @@ constexpr double kRestGyroBiasSigma = 5e-4;
 // Times an observation's sigma, where the gyro is beyond its range: images blur, features are followed without its
 // word, and what those of an image have in common, which the gyro outweighs else, turns the body.
 constexpr double kUnseenTurnNoise = 6.0;
-// Of sigmas, events alone, times that of the options: what moves by itself leads them astray more easily.
+// Of sigmas, events alone, times that of the options: dynamic objects mislead them more easily.
 constexpr double kEventsAloneInflation = 1.4;
 
 /// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.

@@ -44,7 +44,7 @@ class Estimator {
 
   bool initialized() const { return initialized_; }
   /// The start is used, but its scale is not known to init_scale_sigma yet, or no later one has found the same: a start
-  /// that believed in what moves by itself seldom finds the same velocity twice.
+  /// that followed a dynamic object seldom finds the same velocity twice.
   bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
   /// The newest state; meaningful once initialised.
   OdomState newest() const { return window_.newest().nav(); }

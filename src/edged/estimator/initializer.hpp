@@ -23,7 +23,7 @@ namespace edged {
 struct StartWindow {
   Window window;
   double scale_sigma = 0.0;           ///< of ln scale; 0 from rest, where nothing has been scaled yet
-  std::set<FeatureId> outliers = {};  ///< features that move by themselves
+  std::set<FeatureId> outliers = {};  ///< features of dynamic objects
 };
 
 /// What a packet brought the start.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Tells whether the body rests. The IMU's word alone counts where it has been as quiet as its own noise for a while: a
-// camera at rest may see nothing but what moves by itself (walkers, a lamp). Where the IMU has only been calm, for a
+// camera at rest may see nothing but dynamic objects (walkers, a lamp). Where the IMU has only been calm, for a
 // shorter time, a still picture must confirm it.
 #pragma once
 

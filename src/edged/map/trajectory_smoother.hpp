@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Remembers what the odometry said and what was found again of the map, and in the end fits the whole path to it.
+// Records causal poses and map matches, and optimizes the final trajectory over all of them.
 // Nothing of it acts back on odometry or map.
 #pragma once
 
@@ -42,7 +42,7 @@ class TrajectorySmoother {
     Trajectory poses;            ///< T_M_B of all that were added
     std::vector<SE3> keyframes;  ///< T_M_K by number
   };
-  /// Where nothing was ever found again all are as they were given out, to the bit.
+  /// Without any map match all poses are the causal ones, bit by bit.
   Path path(const OdomToMap& odom_to_map) const;
 
  private:

@@ -58,7 +58,7 @@ class Mapper {
   /// of it has been recognised: so long M is a frame of this run's own.
   void load(const SavedMap& map);
   bool started() const { return !record_.empty(); }
-  /// All but the cameras. Nothing while a map that was taken up has not been found again: what this run has seen lies
+  /// All but the cameras. Nothing while awaiting relocalization in a loaded map: what this run has seen lies
   /// in another frame than that.
   std::optional<SavedMap> save() const;
   bool awaiting_relocalization() const { return unlocated_before_.has_value(); }

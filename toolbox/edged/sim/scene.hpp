@@ -17,7 +17,7 @@
 
 namespace edged {
 
-/// How a thing moves by itself.
+/// The motion of a dynamic object.
 struct DynamicObject {
   /// To and fro: reach_W * sin(omega * t + phase).
   struct Swing {
