@@ -139,10 +139,11 @@ Feature& Window::feature(FeatureId id) {
 StateId Window::add_state(WindowState state, const std::vector<CameraObservations>& observations) {
   EDGED_CHECK(states_.empty() || state.t > newest().t, "a state at {} ns after one at {} ns", to_ns(state.t),
               to_ns(newest().t));
-  const std::optional<StateId> before = states_.empty() ? std::nullopt : std::optional(newest_id());
+  const bool first = states_.empty();
+  const StateId before = first ? next_state_ : newest_id();
   const WindowState& added = states_.emplace(next_state_, std::move(state)).first->second;
-  if (before) add(std::make_shared<ImuFactor>(*before, next_state_, added.imu));
-  if (before && added.rested) add(std::make_shared<StandstillFactor>(*before, next_state_));
+  if (!first) add(std::make_shared<ImuFactor>(before, next_state_, added.imu));
+  if (!first && added.rested) add(std::make_shared<StandstillFactor>(before, next_state_));
   for (const CameraObservations& view : observations) observe(view);
   return next_state_++;
 }
