@@ -115,7 +115,7 @@ class Messages(unittest.TestCase):
 
     def test_messages_in_the_faq_are_those_of_the_source(self):
         said = []
-        for source in (path for folder in ("apps", "src", "toolbox") for path in (ROOT / folder).rglob("*.cpp")):
+        for source in (path for folder in ("apps", "src", "toolbox") for path in (ROOT / folder).rglob("*.[ch]pp")):
             if not source.name.endswith("_test.cpp"):
                 said += ["".join(re.findall(r'"((?:\\.|[^"\\\n])*)"', text))
                          for text in self.LITERALS.findall(source.read_text())]

@@ -72,7 +72,8 @@ bool Sequencer::add(Measurement measurement) {
         if constexpr (std::is_same_v<Item, ImuSample>) {
           return push(imu_, std::move(item), *last);
         } else if constexpr (std::is_same_v<Item, ExternalSample>) {
-          return push(external_[item.index()], std::move(item), *last);
+          auto& line = external_[item.index()];
+          return push(line, std::move(item), *last);
         } else {
           auto& lines = std::get<std::vector<Line<Item>>&>(std::tie(events_, frames_));
           auto& line = line_of(lines, item.camera);
