@@ -240,8 +240,8 @@ Json external_json(const std::filesystem::path& folder, Timestamp origin, std::s
   for (const auto& [sensor, all] : samples) {
     const std::size_t stride = all.size() / std::max<std::size_t>(1, most) + 1;
     for (std::size_t i = 0; i < all.size(); i += stride) {
-      json[sensor]["t"].push_back(std::round(1e4 * all[i].first) / 1e4);
-      json[sensor]["y"].push_back(std::round(1e4 * all[i].second) / 1e4);
+      json[sensor]["t"].push_back(rounded(all[i].first, 4));
+      json[sensor]["y"].push_back(rounded(all[i].second, 4));
     }
   }
   return json;
