@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Where the body and the keyframes are in the map M: one Kalman filter over all their poses. The odometry moves the
-// body on; points of keyframes that are found again tie it to them, and all that hangs together moves. The odometry
+// body on; map matches tie it to the keyframes, and all that hangs together moves. The odometry
 // itself learns nothing of it: no measurement counts twice there, and a wrong map does it no harm.
 #pragma once
 

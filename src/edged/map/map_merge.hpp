@@ -9,7 +9,7 @@
 
 namespace edged {
 
-/// Where the frame B of `other` lies in the frame A of `map`, by keyframes of the one whose place is known again in the
+/// Where the frame B of `other` lies in the frame A of `map`, by keyframes of the one whose place is recognized in the
 /// other by its looks: T_A_B. Nothing unless several agree.
 std::optional<SE3> find_map_in(const SavedMap& map, const SavedMap& other);
 

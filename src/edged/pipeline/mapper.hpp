@@ -33,7 +33,7 @@ class Mapper {
   void begin_time();
   /// The odometry has come to `now`.
   void predict(const OdomState& now);
-  /// Looks for the map in the image, and after a new start, until it has been found again, everywhere: true when it has
+  /// Looks for the map in the image, and after a new start, until relocalized, everywhere: true when it has
   /// been just now. T_O_C: of the image's camera and instant.
   bool localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
   /// The packet has become a keyframe, which looks like this.
@@ -94,7 +94,7 @@ class Mapper {
   Timestamp started_;              ///< the estimator's newest start
   SE3 T_M_O_guess_;                ///< there, by dead reckoning
   double dead_reckoning_s_ = 0.0;  ///< how long it had gone on that alone, since what is older was last found
-  bool searching_ = false;         ///< since then nothing older has been found again
+  bool searching_ = false;         ///< since then nothing older has been matched
   /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
   std::optional<Timestamp> unlocated_before_;
   std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
