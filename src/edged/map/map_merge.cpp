@@ -20,7 +20,7 @@ double focal_of(const SavedMap& map, const std::string& camera) {
   return found == map.cameras.end() ? 0.0 : found->focal;
 }
 
-/// What each keyframe of `other` that is recognized: where its body is, in both frames.
+/// Of each keyframe of `other` that is recognized: where its body is, in both frames.
 struct Hypothesis {
   SE3 T_A_K, T_B_K;
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
