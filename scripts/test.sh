@@ -15,7 +15,7 @@ left_out=(--label-exclude stress)
 tools=()
 case "${1:-}" in
   "") ;;
-  --full) presets=(tsan sanitize release) left_out=() tools=(clang-tidy) ;;
+  --full) presets=(tsan sanitize release) left_out=() tools=(clang clang-tidy libclang-rt-14-dev) ;;
   *) echo "usage: scripts/test.sh [--full]" >&2; exit 2 ;;
 esac
 

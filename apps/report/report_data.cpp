@@ -159,7 +159,7 @@ std::vector<LoadedRun> load_runs(std::vector<fs::path> paths, const ReportOption
       throw InputError::format("{}: not found; give the folder that `edged run` left", path.string());
     }
   }
-  std::ranges::stable_partition(paths, [](const fs::path& path) { return fs::is_directory(path); });
+  std::stable_partition(paths.begin(), paths.end(), [](const fs::path& path) { return fs::is_directory(path); });
   for (const fs::path& path : paths) {
     const auto beside = std::ranges::find_if(runs, [](const LoadedRun& run) { return run.given && run.truth; });
     const LoadedRun* first = runs.empty() || !runs.front().given ? nullptr : &runs.front();

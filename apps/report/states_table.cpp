@@ -131,7 +131,7 @@ void CovarianceSamples::add(const Step& step) {
   if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
   if (!step.covariance || !is_tracking(step.status)) return;
   const auto& [position, rotation] = *step.covariance;
-  const auto old = [&](const PoseCovarianceSample& last) {
+  const auto old = [&, &position = position](const PoseCovarianceSample& last) {
     return last.start == start_ && last.good && last.position == position;
   };
   if (good && !samples_.empty() && old(samples_.back())) return;

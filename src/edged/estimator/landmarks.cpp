@@ -197,8 +197,9 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
     const bool misfit = !depth_in_bounds(feature.inverse_depth, config) ||
                         fit.rms_sigmas(feature).value_or(0.0) > limits[feature.anchor->camera];
     const auto bad = misfit ? std::vector<ObservationKey>() : bad_observations(fit, feature, config.max_residual_sigma);
-    const bool newest_bad = std::ranges::any_of(
-        bad, [&](const ObservationKey& view) { return view.state == feature.last_seen.at(view.camera); });
+    const bool newest_bad = std::ranges::any_of(bad, [&last_seen = feature.last_seen](const ObservationKey& view) {
+      return view.state == last_seen.at(view.camera);
+    });
     // Right after a change of anchor a landmark has one observation until its camera's next image.
     const bool goes = misfit || (feature.observations.size() - bad.size() < 2 && !window.alive(feature));
     if (goes) gone.push_back(id);

@@ -244,7 +244,7 @@ TEST(Window, HandsOnLandmarksOfItsOldestStateToANewAnchor) {
 
 class WindowRefuses : public testing::Test {
  protected:
-  const TestWorldOptions options_;
+  const TestWorldOptions options_{};
   TestWorld world_{options_};
   Window window_ = tracked_window(world_, options_);
   const StateId oldest_ = window_.oldest_id(), newest_ = window_.newest_id();

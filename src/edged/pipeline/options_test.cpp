@@ -49,7 +49,7 @@ TEST(OdometryConfig, HasTrackerOptionsPerKindWhereDefaultsDiffer) {
   const ConfigFields fields = ConfigFields::of(config);
   for (const auto& [key, value] : events) {
     const bool separate = std::ranges::any_of(
-        fields.all(), [&](const ConfigField& field) { return field.key.ends_with("tracker.events." + key); });
+        fields.all(), [&key = key](const ConfigField& field) { return field.key.ends_with("tracker.events." + key); });
     EXPECT_EQ(separate, value != frames.at(key)) << key;
   }
 }

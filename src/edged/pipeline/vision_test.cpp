@@ -108,7 +108,8 @@ TEST_F(PlaneVision, EndsTracksThatLocalizationFindsWrong) {
   const VisionOutput first = show(vision, 0);
   const FeatureId wrong = first.images.front().tracks.front().id;
   vision.correct({{wrong}, std::nullopt}, body_);
-  for (const Track& track : show(vision, 1).images.front().tracks) EXPECT_NE(track.id, wrong);
+  const VisionOutput second = show(vision, 1);
+  for (const Track& track : second.images.front().tracks) EXPECT_NE(track.id, wrong);
 }
 
 TEST_F(PlaneVision, ObservesNothingWithoutAnImageAndKeepsItsTracks) {
@@ -124,7 +125,8 @@ TEST_F(PlaneVision, ObservesNothingWithoutAnImageAndKeepsItsTracks) {
 TEST_F(PlaneVision, BeginsANewTimeWithNewFeatures) {
   Vision vision(rig_, {}, Inference::Synchronous, timings_);
   std::set<FeatureId> before;
-  for (const Track& track : show(vision, 0).images.front().tracks) before.insert(track.id);
+  const VisionOutput first = show(vision, 0);
+  for (const Track& track : first.images.front().tracks) before.insert(track.id);
   vision.begin_time();
   const VisionOutput output = show(vision, 1);
   EXPECT_TRUE(output.keyframe);
