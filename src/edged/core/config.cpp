@@ -138,7 +138,7 @@ std::string yaml_comment(const ConfigField& field) {
   return comment;
 }
 
-/// By itself: the yaml library leaks its buffer where the file turns out to be a folder.
+/// A function of its own: the yaml library leaks its buffer if the path is a folder.
 std::string read_text(const std::filesystem::path& file) try {
   std::ifstream in(file);
   if (!in) throw std::ios_base::failure("open", std::error_code(errno, std::generic_category()));
@@ -326,7 +326,7 @@ void ConfigFields::load(const std::filesystem::path& file) {
 
 std::string ConfigFields::to_yaml() const {
   std::string yaml;
-  std::vector<std::string> open;  // groups the last line stands in
+  std::vector<std::string> open;  // groups that enclose the last line
   for (const ConfigField& field : fields_) {
     std::vector<std::string> groups = split_key(field.key);
     const std::string name = groups.back();
