@@ -50,7 +50,7 @@ Number parse_number(const std::string& key, const std::string& text, const char*
                     const std::string& range) {
   Number value{};
   if (!parse(text, value) || std::isnan(static_cast<double>(value))) {
-    throw InputError::format("option '{}' is '{}', but wants {} ({})", key, text, wanted, range);
+    throw InputError::format("option '{}' is '{}', but must be {} ({})", key, text, wanted, range);
   }
   check_range(key, value, doc);
   return value;
@@ -63,7 +63,7 @@ bool parse_bool(const std::string& key, const std::string& text) {
   for (const char* no : {"false", "off", "no", "0"}) {
     if (text == no) return false;
   }
-  throw InputError::format("option '{}' is '{}', but wants true or false", key, text);
+  throw InputError::format("option '{}' is '{}', but must be true or false", key, text);
 }
 
 /// Levenshtein distance: single-letter edits that turn a into b.
@@ -264,7 +264,7 @@ void ConfigFields::add_choice(std::string_view name, const std::vector<std::stri
       name, choices, doc, false, [get = std::move(get), names] { return names[get()]; },
       [set = std::move(set), names, key, choices](const std::string& text) {
         const auto found = std::find(names.begin(), names.end(), text);
-        if (found == names.end()) throw InputError::format("option '{}' is '{}', but wants {}", key, text, choices);
+        if (found == names.end()) throw InputError::format("option '{}' is '{}', but must be {}", key, text, choices);
         set(static_cast<std::size_t>(found - names.begin()));
       });
 }
