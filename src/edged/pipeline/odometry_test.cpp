@@ -391,10 +391,10 @@ TEST(Odometry, RefusesOptionsRigsAndNoiseThatCannotBe) {
   ImuNoise silent;
   silent.gyro_noise = 0.0;
   EXPECT_THROW(Odometry(small_rig(), silent, Mode::Fused), InputError);
-  Rig blind = small_rig();
-  blind.cameras.pop_back();
-  EXPECT_THROW(Odometry(blind, {}, Mode::Fused), InputError);
-  EXPECT_NO_THROW(Odometry(blind, {}, Mode::Events));
+  Rig events_only = small_rig();
+  events_only.cameras.pop_back();
+  EXPECT_THROW(Odometry(events_only, {}, Mode::Fused), InputError);
+  EXPECT_NO_THROW(Odometry(events_only, {}, Mode::Events));
 }
 
 }  // namespace

@@ -192,7 +192,7 @@ std::vector<Finding> RunCheck::judge(Survey survey) const {
   const bool gyro_agrees = std::ranges::any_of(
       cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
   if (const auto better = accel_axes_.better(); better && gyro_agrees)
-    out.push_back({Severity::Error, "accelerometer: gravity does not rotate in its axes as measured by the gyro",
+    out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as measured by the gyro",
                    fmt::format("give it the axes of the gyro: {} would fit", *better)});
   std::erase_if(out, [](const Finding& f) { return f.severity == Severity::Good || f.severity == Severity::Note; });
   return out;
