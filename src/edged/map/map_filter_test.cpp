@@ -23,7 +23,7 @@ class World {
     odometry_ = truth(0.0);
   }
 
-  /// Periodic, every 8 s. The camera looks along x, z of the camera.
+  /// Periodic, every 8 s. The camera axis is along x, z of the camera.
   static SE3 truth(double t) {
     const double a = 2.0 * M_PI * t / 8.0;
     return {so3::exp({0.0, 0.05 * std::sin(a), 0.1 * std::cos(a)}),
