@@ -160,7 +160,8 @@ Moment plain_moment(const EnhanceOptions& options, const Recording& recording, c
   const CameraModel ideal = lens.distortion() == DistortionModel::None ? lens : ideal_pinhole(lens);
   const double pixels = static_cast<double>(lens.width()) * lens.height();
   const auto most = static_cast<std::size_t>(config.packets.window_per_pixel * pixels);
-  Moment moment{{}, {}, {}, ideal == lens ? "raw pixels, not motion-compensated" : "undistorted, not motion-compensated"};
+  Moment moment{
+      {}, {}, {}, ideal == lens ? "raw pixels, not motion-compensated" : "undistorted, not motion-compensated"};
   CameraStep& camera = moment.step.cameras.emplace_back(CameraStep{.name = "events", .modality = Modality::Events});
   std::vector<Event>& events = camera.events;
   std::optional<Timestamp> begin = recording.dataset->info().begin;
