@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The sub-commands of `edged`, and what its exit status means.
+// The sub-commands of `edged`, and the meaning of its exit status.
 #pragma once
 
 #include <functional>

@@ -31,7 +31,7 @@ void print_text(const ConfigField& field) {
   fmt::print("{} = {}\n    {}\n    {}\n", field.key, field.default_value, kind, field.effect);
 }
 
-/// Words of the keys that begin, end or are parted by dots and underscores: what one looks for.
+/// Words of the keys, separated by dots and underscores: the terms of a search.
 std::vector<std::string> words_of_keys(const ConfigFields& fields) {
   std::set<std::string> words;
   for (const ConfigField& field : fields.all()) {
@@ -78,7 +78,7 @@ int run_config(const ConfigOptions& options) {
   if (options.json) {
     fmt::print("{}\n", list.dump(2));
   } else if (passed_over > 0) {
-    fmt::print("and {} for who works on the method: edged config expert\n", passed_over);
+    fmt::print("and {} for developers of the method: edged config expert\n", passed_over);
   }
   return kExitOk;
 }

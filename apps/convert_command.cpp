@@ -36,7 +36,7 @@ std::string left_out_text(const WriteCounts& counts, std::string_view format) {
   add(counts.imu_left_out, "IMU samples");
   add(counts.poses_left_out, "true poses");
   for (const auto& [sensor, count] : counts.external_left_out) add(count, (sensor + " samples").c_str());
-  return parts.empty() ? "" : fmt::format("left out, as {} has no room for them: {}\n", format, fmt::join(parts, ", "));
+  return parts.empty() ? "" : fmt::format("dropped, as {} cannot store them: {}\n", format, fmt::join(parts, ", "));
 }
 
 void print_summary(const ConvertOptions& options, const WritableFormat& format, const WriteCounts& counts,

@@ -17,12 +17,12 @@
 namespace edged {
 namespace {
 
-/// Those that help shows.
+/// The options that help shows.
 std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-/// Text for troff: no line of it is taken for a request, and no character for another.
+/// Text escaped for troff.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -53,7 +53,7 @@ std::string roff_options(const CLI::App& command) {
   return text;
 }
 
-/// What `edged COMMAND --help` tells, and the same of its own sub-commands.
+/// The content of `edged COMMAND --help`, also for its sub-commands.
 std::string roff_command(const CLI::App& command, const std::string& name) {
   std::string text = fmt::format(".SS {}\n{}.\n", roff(name), roff(command.get_description()));
   text += roff_verbatim(CLI::Formatter().make_usage(&command, name));
@@ -72,7 +72,7 @@ std::string man_page(const CLI::App& app) {
   return text + ".SH EXAMPLES AND EXIT STATUS\n" + roff_verbatim(app.get_footer());
 }
 
-/// What --set of a command takes, as KEY=.
+/// The option keys for --set of a command, as KEY=.
 template <typename Config>
 std::string assignments() {
   Config config;
@@ -82,12 +82,12 @@ std::string assignments() {
   return words;
 }
 
-/// What may stand behind an option; "" where it is a file or anything. rigs: how the shell asks for their names.
+/// The possible values of an option; "" for a file or any text. rigs: the shell code that lists their names.
 std::string choices(const CLI::App& command, const CLI::Option& option, const std::string& rigs) {
   if (option.check_name("--rig")) return rigs;
   if (option.check_name("--set"))
     return command.get_name() == "simulate" ? assignments<SimulatorConfig>() : assignments<RunConfig>();
-  // As CLI::IsMember names itself in the help: TEXT:{a,b,c}
+  // The format of CLI::IsMember in the help: TEXT:{a,b,c}
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
   if (open == std::string::npos) return "";
@@ -96,12 +96,12 @@ std::string choices(const CLI::App& command, const CLI::Option& option, const st
   return words;
 }
 
-/// How bash or zsh sets a variable to several words, and asks for the rigs.
+/// The syntax of bash or zsh for an array variable and for the names of the rigs.
 struct ShellWords {
   const char *begin, *end, *rigs;
 };
 
-/// For `case "COMMAND OPTION" in`: what may follow each option, and what else.
+/// For `case "COMMAND OPTION" in`: the values of each option, and all other words.
 std::string completion_cases(const CLI::App& command, const ShellWords& shell) {
   std::string cases;
   std::string names;
@@ -126,7 +126,7 @@ std::string all_cases(const CLI::App& app, const ShellWords& shell) {
   return cases;
 }
 
-/// Where no word fits, bash offers files.
+/// If no word fits, bash offers files.
 std::string bash_completion(const CLI::App& app) {
   const ShellWords bash{"words=\"", "\"", "$(\"${COMP_WORDS[0]}\" manual rigs 2>/dev/null)"};
   return fmt::format(R"(# Completion of bash for {0}, written by `{0} manual bash`.
@@ -180,7 +180,7 @@ std::string fish_quoted(const std::string& text) {
   return "'" + safe + "'";
 }
 
-/// Files are offered beside positional words, and behind options that take anything.
+/// Files are offered for positional words, and for options with any text.
 std::string fish_options(const CLI::App& command, const std::string& where) {
   std::string text;
   for (const CLI::Option* option : command.get_options()) {

@@ -26,14 +26,14 @@
 namespace edged {
 namespace {
 
-/// What ended the program.
+/// The error that ended the program.
 struct Failure {
   int exit_code;
-  const char* kind;  ///< for who reads the json
+  const char* kind;  ///< the kind in the json output
   std::string text;
 };
 
-/// One line for the user; with --json also the one document on stdout that is promised there.
+/// One line for the user; with --json also the documented json object on stdout.
 int tell(const CLI::App& app, const Failure& failure, bool json) {
   std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), failure.text.c_str());
   if (json) {
@@ -58,7 +58,7 @@ std::vector<std::string> flags_of(const CLI::App& command) {
   return names;
 }
 
-/// What is wrong with the command line, by the command that it stands in.
+/// The error in the command line, with its command.
 Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   std::string called = app.get_name();
@@ -79,13 +79,13 @@ Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
   return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
 }
 
-/// A folder that may not be read, a name that is too long, a full disk: nothing that we did wrong.
+/// A folder without permission, a name that is too long, a full disk: no bugs of ours.
 std::string text_of(const std::filesystem::filesystem_error& error) {
   return fmt::format("{}: {}; check the path and your rights there", error.path1().string(), error.code().message());
 }
 
-/// The packets of a wide sensor are megabytes, made and freed thirty times a second: given back to the system they
-/// would be cleared by it, page by page, each time anew.
+/// Packets of a wide sensor are megabytes, allocated and freed thirty times a second: if returned to the system, it
+/// would clear their pages each time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
@@ -93,7 +93,7 @@ void keep_freed_memory() {
 #endif
 }
 
-/// stdout is written when its buffer is full, at the latest now.
+/// stdout is buffered: write errors show at the latest now.
 void end_output() {
   if (std::fflush(stdout) != 0)
     throw InputError::format("the output cannot be written: {}", std::generic_category().message(errno));
@@ -106,7 +106,8 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   const bool json = std::ranges::count(words, std::string_view("--json")) > 0;
   try {
     keep_freed_memory();
-    cv::setNumThreads(1);  // one packet is too little work to share, and one thread keeps results reproducible
+    cv::setNumThreads(
+        1);  // one packet is too little work for several threads, and one thread keeps results reproducible
     start_logging();
     app.parse(argc, argv);
     const int code = run();

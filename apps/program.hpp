@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which program this is, and what every main does: reads the command line, and turns exceptions into one line and an
+// The version, and the common part of every main: parses the command line, and turns exceptions into one line and an
 // exit code.
 #pragma once
 
@@ -19,10 +19,10 @@ extern const char* const kVersion;
 /// line.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
 
-/// Most edits of a letter by which a word is still taken for a mistyped one.
+/// Largest number of edits for a word to count as mistyped.
 inline std::size_t typing_errors(const std::string& word) { return std::max<std::size_t>(2, word.size() / 4); }
 
-/// "" where nothing is near.
+/// "" without a similar one.
 inline std::string did_you_mean(const std::string& nearest) {
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }

@@ -9,7 +9,7 @@ import unittest
 
 from program import WithFlight, edged, with_imu, with_transform
 
-FITS, CANNOT_BE_TOLD, DOES_NOT_FIT = 0, 4, 5
+FITS, UNDETERMINED, DOES_NOT_FIT = 0, 4, 5
 
 
 def turned(degrees):
@@ -59,12 +59,12 @@ class CalibCheck(WithFlight):
 
     def test_too_little_motion_is_no_verdict(self):
         code, said = self.check(self.flight, "--duration", 1.2)
-        self.assertEqual((code, said["verdict"]), (CANNOT_BE_TOLD, "cannot be told"), said)
+        self.assertEqual((code, said["verdict"]), (UNDETERMINED, "cannot be determined"), said)
         self.assertIn("--duration", said["why"])
         still = self.folder / "still"
         edged("simulate", "--duration", 6, "--set", "motion.rest_s=5", "--out", still, "--quiet")
         code, said = self.check(still)
-        self.assertEqual((code, said["verdict"]), (CANNOT_BE_TOLD, "cannot be told"), said)
+        self.assertEqual((code, said["verdict"]), (UNDETERMINED, "cannot be determined"), said)
 
     def test_units_and_sizes_that_are_wrong_do_not_fit(self):
         in_g = with_imu(lambda t, a, g: (t, [x / 9.80665 for x in a], g))

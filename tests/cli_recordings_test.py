@@ -231,7 +231,7 @@ class Recordings(WithFlight):
         for name in ("height.txt", "velocity.txt"):
             self.assertEqual((copy / name).read_text(), (flight / name).read_text())
         converted = edged("convert", flight, self.folder / "flight.bag", "--quiet")
-        self.assertIn("left out, as bag has no room for them: 50 height samples, 28 velocity samples", converted.stdout)
+        self.assertIn("dropped, as bag cannot store them: 50 height samples, 28 velocity samples", converted.stdout)
 
     def test_a_damaged_height_file_is_mended_or_refused_with_its_remedy(self):
         damaged = self.folder / "baro.txt"

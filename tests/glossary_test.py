@@ -105,6 +105,11 @@ class Glossary(unittest.TestCase):
             with self.subTest(where=header.name, what="comments"):
                 self.assertEqual(private_words_in(comments), [])
 
+    def test_comments_of_the_library_use_standard_terms(self):
+        for path in sorted((ROOT / "src").rglob("*.[ch]pp")):
+            with self.subTest(where=path.name):
+                self.assertEqual(private_words_in(split_source(path.read_text())[1]), [])
+
     def test_public_types_are_named_by_the_glossary_or_contain_a_term(self):
         named = set(re.findall(r"\w+", " ".join(row[3] for row in ALL_TERMS)))
         count = 0

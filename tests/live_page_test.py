@@ -182,7 +182,7 @@ class LivePage(WithFlight):
         browser.show(1600, 900)
         with self.serving("--live") as (_, url):
             browser.open(url)
-            browser.wait_for("document.querySelector('.says')?.textContent === 'It runs, and knows where it is.'")
+            browser.wait_for("document.querySelector('.says')?.textContent === 'Running, with a good pose.'")
             browser.wait_for("document.querySelectorAll('.shot img').length === 2 && [...document.images].every(i => i.naturalWidth > 100)")
             before = browser.value(FACTS)
             self.assertGreaterEqual(browser.value("document.querySelectorAll('.plot canvas').length"), 20)

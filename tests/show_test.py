@@ -67,8 +67,8 @@ class Show(WithFlight):
         made = edged("enhance", self.bare(), "--geometry", "240x180", "--at", 3, "--out", out, "--quiet", "--json")
         self.assertEqual(made.returncode, 0, made.stderr)
         self.assertEqual(len(made.stderr.strip().splitlines()), 1)
-        self.assertIn("as the events fell: the recording has no IMU samples", made.stderr)
-        self.assertEqual(json.loads(made.stdout)["drawn_how"], "as the events fell")
+        self.assertIn("raw pixels, not motion-compensated: the recording has no IMU samples", made.stderr)
+        self.assertEqual(json.loads(made.stdout)["drawn_how"], "raw pixels, not motion-compensated")
         self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_as_the_events_fell.png").exists())
         self.assertFalse((out / "02_events_without_compensation.png").exists())
 

@@ -107,7 +107,7 @@ class Verdict(WithFlight):
     def test_frames_that_never_come_are_missed(self):
         result, metrics = self.run_it(self.changed("images.txt", lambda text: text.replace("frame_", "gone_")), "fused")
         self.assertEqual((result.returncode, metrics["status"]), (5, "not to be trusted"), result.stdout)
-        self.assertIn("no frames: the mode needs them, and not one came", result.stdout)
+        self.assertIn("no frames: the mode needs them, and the recording has none", result.stdout)
 
     def test_a_run_without_a_start_says_what_it_waited_for_and_what_to_do(self):
         flight = self.folder / "short"

@@ -25,8 +25,7 @@
 namespace edged {
 namespace {
 
-/// Each camera is asked by itself: events count as if no frames were beside, and have packets of their own, which a
-/// run leaves out to save time.
+/// Each camera is checked by itself: event frames keep all their features and packets, as without frames.
 OdometryConfig asking_each_camera() {
   OdometryConfig config;
   config.packets.min_interval_s = 0.015;
@@ -34,10 +33,10 @@ OdometryConfig asking_each_camera() {
   return config;
 }
 
-/// A run: everything that `edged run` does but for its files.
+/// A run like that of `edged run`, without its files.
 class CheckRun {
  public:
-  /// begin: the cameras as the run takes them to be at first.
+  /// begin: the initial calibration of the cameras.
   CheckRun(Source& source, const Rig& begin, Mode mode, bool quiet)
       : source_(source),
         check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics),
@@ -57,7 +56,7 @@ class CheckRun {
     return judge_fit(found_, check_.findings(*source_.dataset, source_.dataset->ground_truth()),
                      statistics_.waiting_for());
   }
-  /// As found: by all that came before the estimate was last good.
+  /// The estimated calibration, from all measurements up to the last good estimate.
   const Rig& rig() const { return rig_; }
 
  private:
@@ -67,7 +66,7 @@ class CheckRun {
     return measurement;
   }
 
-  /// What a loss leaves behind is no estimate, so the last good one is kept.
+  /// After a loss there is no estimate, so the last good one is kept.
   bool observe(const Step& step) {
     constexpr Duration kEvery = std::chrono::milliseconds(500);
     statistics_.add(step);
@@ -110,8 +109,8 @@ bool estimated(const CalibrationFit& fit) {
   return std::ranges::all_of(fit.cameras, [](const CameraFit& camera) { return camera.found.estimated(); });
 }
 
-/// Where the run found cameras to be off, again from there: what it saw while it had them wrong, and cannot take back,
-/// holds what it finds by up to 1.6 ms.
+/// If the run estimates a wrong calibration, it is repeated from that estimate: measurements processed with the wrong
+/// one bias it by up to 1.6 ms.
 Checked check(const CalibCheckOptions& options, Source& source, Mode mode) {
   Checked first = check_from(source.calibration.rig, source, mode, options.quiet);
   const bool off = std::ranges::any_of(first.fit.cameras, [](const CameraFit& camera) { return is_off(camera.found); });

@@ -13,13 +13,13 @@ namespace edged {
 struct CalibCheckOptions {
   SourceOptions source;
   std::string mode = "auto";
-  std::filesystem::path out;  ///< the calibration as found goes there; "" for nowhere
+  std::filesystem::path out;  ///< output file for the estimated calibration; "" for none
   bool quiet = false, json = false;
 };
 
-inline constexpr double kCheckedSeconds = 20.0;  ///< of a recording, unless told otherwise
+inline constexpr double kCheckedSeconds = 20.0;  ///< default length of the used part of a recording
 
-/// Prints the verdict and returns the exit code: 0 fits, 5 does not, 4 cannot be told.
+/// Prints the verdict and returns the exit code: 0 fits, 5 does not, 4 cannot be determined.
 int check_calibration(CalibCheckOptions options);
 
 }  // namespace edged

@@ -30,7 +30,7 @@ struct CameraFacts {
   double pitch_um;  ///< of the pixels
   bool frames;      ///< from the same pixels
   const char* imu;  ///< what it has
-  /// White noise: data sheet, raised as in the rigs that ship (5 and 2.5 times) for scale, axis and sampling errors.
+  /// White noise: data sheet times 5 and 2.5, as in the shipped rigs, for scale, axis and sampling errors.
   double gyro_noise, accel_noise;
 };
 
@@ -139,7 +139,7 @@ std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts)
   return out;
 }
 
-/// A path, else the name of a rig that ships.
+/// A path, else the name of a shipped rig.
 Calibration load_chosen(const CalibOptions& options) {
   if (!std::filesystem::exists(options.file) && options.imu.empty() && options.cameras.empty())
     return load_rig(options.file);
@@ -211,7 +211,7 @@ int write_template(const CalibOptions& options) {
   return kExitOk;
 }
 
-/// FILE is the calibration as --calib or --rig would name it; --imu holds samples.
+/// FILE is a calibration as for --calib or --rig; --imu has samples.
 int run_check(const CalibOptions& options) {
   CalibCheckOptions check{options.recording, options.mode, options.out, options.quiet, options.json};
   check.source.imu = options.imu;
@@ -226,7 +226,7 @@ int run_check(const CalibOptions& options) {
 int run_calib(const CalibOptions& options) {
   Calibration calibration = load_chosen(options);
   if (!options.out.empty()) {
-    calibration.rig.name = options.out.stem().string();  // as --rig finds it
+    calibration.rig.name = options.out.stem().string();  // found as by --rig
     write_new_file(options.out, to_yaml(calibration));
   }
   if (options.json) {
@@ -238,13 +238,14 @@ int run_calib(const CalibOptions& options) {
   return kExitOk;
 }
 
-/// --check and what only means something beside it.
+/// --check and the options that need it.
 CLI::Option* add_check_options(CLI::App& calib, CalibOptions& options, CLI::Option* file) {
   CLI::Option* check = calib.add_option(
       "--check", options.recording.recording,
-      fmt::format("Whether FILE, or what the recording brings, fits this recording: a run over its first {:.0f} s "
-                  "[else --from, --duration, --to], whose own rotation and clock of each camera are held against it",
-                  kCheckedSeconds));
+      fmt::format(
+          "Whether FILE, or the calibration of the recording, fits this recording: a run over its first {:.0f} s "
+          "[else --from, --duration, --to], whose estimate of rotation and clock of each camera is compared with it",
+          kCheckedSeconds));
   const std::size_t before = calib.get_options().size();
   add_reading_options(calib, options.recording);
   calib.add_option("--mode", options.mode, "Sensors used beside the IMU; auto: all that are present")
@@ -263,7 +264,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<CalibOptions>();
   CLI::App* calib = app.add_subcommand(
       "calib",
-      "Show a calibration: both directions of each transform, field of view, clock, IMU noise, what looks wrong");
+      "Show a calibration: both directions of each transform, field of view, clock, IMU noise, suspicious values");
   CLI::Option* file = calib->add_option("FILE", options->file,
                                         "Calibration file or folder (format found by content), or the name of a rig");
   calib->add_option("--imu", options->imu,
@@ -273,7 +274,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       calib
           ->add_option(
               "--camera", options->cameras,
-              "What a camera sees, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
+              "Modality of a camera, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
               "tell; may be repeated")
           ->allow_extra_args(false);
   calib->add_option("--out", options->out,
@@ -292,7 +293,8 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged calib camchain-imucam.yaml --imu imu.yaml --out head.yaml\n"
       "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
       "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
-      "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be told (too little motion, no start), 3 what cannot be "
+      "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be determined (too little motion, no start), 3 what "
+      "cannot be "
       "read.");
   calib->callback([options, file, fresh, check, &chosen] {
     if (file->count() + fresh->count() + check->count() == 0) throw CLI::RequiredError("FILE, --new or --check");

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What headers say of CLI11: its own takes the compiler six seconds in every source that includes it.
+// Forward declarations of CLI11, whose own header costs six seconds of compile time per source.
 #pragma once
 
 namespace CLI {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Options of a run as the command line gives them: a file, then single values on top of it.
+// Options of a run from the command line: a file, then single values that override it.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace edged {
 /// Every option of a run.
 struct RunConfig {
   OdometryConfig odometry;
-  QueueConfig live;  ///< what may wait in a live run
+  QueueConfig live;  ///< queue of a live run
   void visit(ConfigFields& fields);
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// However many come, a bounded number of them, evenly over all.
+// Keeps a bounded number of items, spread evenly over all.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// The first stays.
+/// The first item is always kept.
 template <typename T>
 void keep_every_second(std::vector<T>& values) {
   for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
@@ -20,7 +20,7 @@ class Evenly {
  public:
   explicit Evenly(std::size_t most) : most_(most) {}
 
-  /// True where this thinned out those that there were.
+  /// True if this thinned out the earlier items.
   bool add(const T& value) {
     if (seen_++ % stride_ != 0) return false;
     kept_.push_back(value);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Files that a command leaves: complete or not there, and a refusal that says what to do.
+// Output files of a command: complete or absent, and errors with a remedy.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace edged {
 
-/// Replaces the file, at once: whoever reads it or ends the program meanwhile finds the old one or the new one. Throws
-/// InputError when it cannot be written.
+/// Replaces the file atomically: readers find the old one or the new one, even if the program is killed meanwhile.
+/// Throws InputError when it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
-/// Where write_file writes until the file is complete.
+/// The temporary file of write_file.
 std::filesystem::path part_of(std::filesystem::path file);
 
 /// Throws InputError where the file cannot be written, as those below do.
 std::ofstream open_for_writing(const std::filesystem::path& file);
 
-/// Before what a long run has seen can then not be kept: throws InputError where the file's folder does not exist.
+/// Throws InputError if the file's folder does not exist: checked before a long run whose result could not be saved.
 void check_folder_of(const std::filesystem::path& file);
 
 /// Throw InputError where --out cannot be used.

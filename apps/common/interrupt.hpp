@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that the main loop asks for.
+// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that the main loop polls.
 #pragma once
 
 #include "edged/core/dataset.hpp"

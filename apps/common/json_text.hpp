@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Json as text: what --json prints, what files hold.
+// Json as text, for --json and files.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Indented. Bytes of names that are no UTF-8 are replaced: recordings bring any.
+/// Indented. Bytes that are not UTF-8 are replaced: names in recordings may have any bytes.
 inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -20,7 +20,7 @@ inline std::string compact_json(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// What is not finite is no number of json.
+/// Null for numbers that are not finite, which json does not have.
 inline nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }

@@ -16,8 +16,7 @@ void start_logging();
 /// From now on everything also goes to the file, the lines kept so far first.
 void attach_log_file(const std::filesystem::path& file);
 
-/// While it lives, warnings and errors are kept for a command that reports them itself. What is not taken is logged in
-/// the end.
+/// While it lives, warnings and errors are kept for a command that reports them itself. The rest is logged at the end.
 class HeldWarnings {
  public:
   HeldWarnings();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Checks of numbers on the command line, whose refusals a user can read.
+// Checks of numbers on the command line, with readable errors.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// CLI's own bounds name the largest number there is.
+/// Messages of CLI's own bounds would contain the largest double.
 inline CLI::Validator at_least_zero(bool zero_too, const char* wanted, const char* type) {
   return {[zero_too, wanted](std::string& text) {
             double value = 0.0;

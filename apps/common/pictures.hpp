@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the pictures of this program share: colours and lettering, small pictures of tracks, pages of many.
+// Common parts of the output images: colours, text, thumbnails with tracks, sheets of many images.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -19,7 +19,7 @@ inline void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, dou
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, ink, 1, cv::LINE_AA);
 }
 
-/// JPEG, not wider than widest_px. Each corner with where it was one image ago; the image is not written on.
+/// JPEG, not wider than widest_px. Each corner with its previous position; `image` is not modified.
 std::vector<unsigned char> track_picture(const cv::Mat& image, const std::vector<Track>& tracks, int widest_px);
 
 struct SheetCell {

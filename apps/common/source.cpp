@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view kSimulatorPrefix = "sim:";
 
-/// What the user chose, if anything.
+/// The calibration that the user chose, if any.
 std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
   if (!options.calib.empty()) return load_calibration(options.calib);
   if (!options.rig.empty()) return load_rig(options.rig);
@@ -59,7 +59,7 @@ RecordingOptions recording_options(const SourceOptions& options) {
   return chosen;
 }
 
-/// With the calibration that was chosen, or which the recording brings, if any.
+/// With the chosen calibration, or that of the recording, if any.
 Recording open_whole(const SourceOptions& options) {
   std::optional<Calibration> calibration = chosen_calibration(options);
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) {
@@ -156,7 +156,8 @@ cv::Size recording_event_sensor(const Recording& recording) {
   if (!info.event_sensor.empty()) return info.event_sensor;
   const RigCamera* camera = recording.calibration ? recording.calibration->rig.find(Modality::Events) : nullptr;
   if (!camera)
-    throw InputError::format("{}: does not tell the size of its event sensor; give --geometry WIDTHxHEIGHT", info.name);
+    throw InputError::format("{}: does not contain the size of its event sensor; give --geometry WIDTHxHEIGHT",
+                             info.name);
   return {camera->model.width(), camera->model.height()};
 }
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// RECORDING on the command line: a folder or file, or "sim:PRESET[:SEED]" for the simulator; with the calibration that
-// fits it.
+// RECORDING on the command line: a folder or file, or "sim:PRESET[:SEED]" for the simulator; with its calibration.
 #pragma once
 
 #include <filesystem>
@@ -41,7 +40,7 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for a preset that there is not.
+/// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for an unknown preset.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
 /// Adds --rig, --calib, --geometry, --time-unit, --topic, --from (also --start), --to, --duration and --dim-frames.
@@ -50,23 +49,23 @@ void add_reading_options(CLI::App& command, SourceOptions& options);
 /// Adds RECORDING, --imu, a flag for each external sensor, and these.
 void add_source_options(CLI::App& command, SourceOptions& options);
 
-/// With the calibration that was chosen, or which the recording brings, if any. Throws InputError when nothing can be
+/// With the chosen calibration, or that of the recording, if any. Throws InputError when nothing can be
 /// opened.
 Recording open_uncalibrated(const SourceOptions& options);
 
-/// Whether it is measured now, and who is too slow for it misses something.
+/// Whether it is a live source, of which a slow reader loses data.
 bool is_live(const SourceOptions& options);
 
-/// Of the recording, else of its calibration. Throws InputError where nothing tells.
+/// Of the recording, else of its calibration. Throws InputError if it is unknown.
 cv::Size recording_event_sensor(const Recording& recording);
 
-/// Throws InputError when nothing can be opened, or no calibration with extrinsics is at hand.
+/// Throws InputError when nothing can be opened, or there is no calibration with extrinsics.
 Source open_source(const SourceOptions& options);
 /// The same of a recording that is open.
 Source calibrated(const SourceOptions& options, Recording recording);
 
-/// Calls the cameras that the mode needs as the recording does, and warns of what it had to assume for that. Throws
-/// InputError where it cannot be known.
+/// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
+/// InputError if that is ambiguous.
 void match_cameras(Source& source, Mode mode);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The one living line on stderr while something runs, and the log lines that must not be torn by it.
+// The status line on stderr while something runs, and log lines that must not mix with it.
 #pragma once
 
 #include <spdlog/sinks/base_sink.h>
@@ -14,8 +14,8 @@
 
 namespace edged {
 
-/// On a terminal the line is rewritten in place, ten times a second at most; elsewhere it is a plain line every five
-/// seconds. Leaves a clean line behind when it goes out of scope.
+/// On a terminal the line is rewritten in place, ten times a second at most; otherwise a plain line every five seconds
+/// is printed. Its destructor clears the line.
 class StatusLine {
  public:
   explicit StatusLine(bool quiet);
@@ -23,10 +23,10 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// True when it is time for another line: ask first, format then.
+  /// True when another line is due: check it before formatting.
   bool due() const;
   void show(const std::string& text);
-  /// Wipes the line, so that something else can be printed.
+  /// Clears the line, so that something else can be printed.
   void clear();
 
  private:
@@ -36,7 +36,7 @@ class StatusLine {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Warnings and errors to stderr, above the living line.
+/// Warnings and errors to stderr, above the status line.
 class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override;
@@ -46,14 +46,13 @@ class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
 /// "1234567" -> "1.23 M", for rates and counts.
 std::string si_number(double value);
 
-/// "12.3 / 60.0 s read", of a job that has come to t; without the whole where it is not known.
+/// "12.3 / 60.0 s read", of a job that has reached t; without the total if it is unknown.
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
 
-/// What a terminal has at least.
+/// Minimum width of a terminal.
 inline constexpr std::size_t kColumns = 80;
 
-/// A line broken between words where it would be longer than that; what follows is indented. A word alone may be
-/// longer.
+/// A text wrapped between words at that width, with later lines indented. A single word may be longer.
 std::string wrapped(const std::string& line, std::size_t indent);
 
 /// One line, cut to a number of columns.

@@ -42,7 +42,7 @@ void StatusChanges::add(const Step& step) {
   if (changes_.empty() || changes_.back().status != step.status || step.relocalized) {
     changes_.push_back({step.t, step.status, reason_of(step), step.relocalized});
   } else if (const std::string reason = reason_of(step); !reason.empty() && !is_tracking(step.status)) {
-    changes_.back().reason = reason;  // what was missing last says most
+    changes_.back().reason = reason;  // the last reason is the most useful one
   }
 }
 

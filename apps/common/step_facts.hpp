@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What tables, plots and reports say of a step: numbers of a kind of camera, reach of the map, changes of the status.
+// Figures of a step for tables, plots and reports: per modality, age of map matches, status changes.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +20,20 @@ struct KindNumbers {
 
 KindNumbers numbers_of(const Step& step, Modality modality);
 
-/// Since the oldest keyframe of which the map found a point in this packet's image; nothing where it found none.
+/// Time since the oldest keyframe with a map match in this packet's image; nothing without a match.
 std::optional<double> map_reach_s(const Step& step);
 
-/// The first of them are shown, by the report and by the live page.
+/// Report and live page show the first ones.
 inline constexpr std::size_t kMostChangesShown = 300;
 
 struct StatusChange {
   Timestamp t;
   TrackingStatus status;
-  std::string reason;        ///< what was missing last, while it lasts; "" where there is nothing to say
-  bool relocalized = false;  ///< in the map; the status may have been this before
+  std::string reason;        ///< the last reason, while it lasts; "" without one
+  bool relocalized = false;  ///< in the map; the status may be unchanged
 };
 
-/// Why the status is what it is: what a start waits for, what ended the estimate, how it started.
+/// The reason of the status: what initialization waits for, what ended the estimate, how it was initialized.
 std::string reason_of(const Step& step);
 
 class StatusChanges {

@@ -28,7 +28,7 @@ struct DepthOptions {
   bool json = false;
 };
 
-/// Median over windows of a DAVIS240C's central region [ms of the processor, which other programs do not lengthen].
+/// Median over windows of a DAVIS240C's central region [ms of processor time, independent of other programs].
 double inference_ms(DepthNetwork& network) {
   const cv::Size image(240, 180);
   const cv::Rect seen =
@@ -77,7 +77,7 @@ int run_depth(const DepthOptions& options) {
   return kExitOk;
 }
 
-/// Nothing is fetched: the published weights come under their authors' terms, so that the user gets them.
+/// Nothing is downloaded: the published weights are under their authors' terms, so the user must get them.
 int explain_fetch() {
   const std::vector<std::filesystem::path> folders = resource_folders("depth");
   const std::filesystem::path target = (folders.empty() ? "." : folders.front()) / "e2depth.onnx";

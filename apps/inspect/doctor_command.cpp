@@ -36,7 +36,7 @@ std::vector<RigCamera> cameras_to_check(const Recording& recording) {
   return cameras;
 }
 
-/// Everything that was said while reading counts as a finding, too: nothing is printed that the summary does not hold.
+/// Warnings while reading are findings, too: the summary contains everything that is printed.
 void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
   for (std::string& line : lines) findings.push_back({Severity::Warning, std::move(line), ""});
 }
@@ -62,7 +62,7 @@ int run_doctor(const DoctorOptions& options) {
   std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
   add_log(held.take(), findings);
   if (read.damage)
-    findings.push_back({Severity::Error, *read.damage, "what is above tells of the recording up to there"});
+    findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});
   fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n" : to_text(findings));
   const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
   return ill ? kExitInput : kExitOk;

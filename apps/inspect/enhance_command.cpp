@@ -41,10 +41,10 @@ struct EnhanceOptions {
   bool quiet = false, json = false;
 };
 
-/// What the odometry had in hand at one packet; without IMU or calibration what the recording alone gives.
+/// The input of enhancement at one packet; without IMU or calibration from the recording alone.
 struct Moment {
   Step step;
-  cv::Mat uncompensated;  ///< the events of its event frame where they fell, undistorted; empty where that is no other
+  cv::Mat uncompensated;  ///< its events without motion compensation, undistorted; empty if that is the same
   cv::Mat frame;          ///< the newest standard frame; empty where there is none
   std::string drawn_how;  ///< its event frame
 };
@@ -60,7 +60,7 @@ void refuse_outside(const EnhanceOptions& options, std::optional<Timestamp> begi
 
 InputError too_few_events(const EnhanceOptions& options, std::size_t events, const OdometryConfig& config) {
   return InputError::format(
-      "{}: no events to draw at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per "
+      "{}: no events to render at {} s: {} in the last {} s, and a frame needs expert.min_events_per_pixel = {} per "
       "pixel; choose another --at",
       options.source.recording, options.at_s, events, config.packets.max_age_s, config.min_events_per_pixel);
 }
@@ -143,10 +143,10 @@ Moment run_up_to(const EnhanceOptions& options, Recording recording, const Odome
 std::string lacks(const Recording& recording) {
   if (!recording.dataset->info().has_imu) return "the recording has no IMU samples (--imu FILE)";
   if (!recording.calibration) return "there is no calibration (--rig NAME, --calib FILE)";
-  return recording.calibration->has_extrinsics ? "" : "the calibration does not tell the camera's pose to the IMU";
+  return recording.calibration->has_extrinsics ? "" : "the calibration does not contain the camera's pose to the IMU";
 }
 
-/// The lens where it is known; else one that changes nothing.
+/// The lens if it is known; else one without distortion.
 CameraModel lens_of(const Recording& recording) {
   const RigCamera* known = recording.calibration ? recording.calibration->rig.find(Modality::Events) : nullptr;
   if (known) return known->model;
@@ -154,13 +154,14 @@ CameraModel lens_of(const Recording& recording) {
   return CameraModel(size.width, size.height, size.width, size.width, 0.5 * (size.width - 1), 0.5 * (size.height - 1));
 }
 
-/// The newest events before a time, as many as a packet's frame has, where they fell: what can be had without poses.
+/// The newest events before a time, as many as an event frame has, without motion compensation, which needs poses.
 Moment plain_moment(const EnhanceOptions& options, const Recording& recording, const OdometryConfig& config) {
   const CameraModel lens = lens_of(recording);
   const CameraModel ideal = lens.distortion() == DistortionModel::None ? lens : ideal_pinhole(lens);
   const double pixels = static_cast<double>(lens.width()) * lens.height();
   const auto most = static_cast<std::size_t>(config.packets.window_per_pixel * pixels);
-  Moment moment{{}, {}, {}, ideal == lens ? "as the events fell" : "undistorted, not motion-compensated"};
+  Moment moment{
+      {}, {}, {}, ideal == lens ? "raw pixels, not motion-compensated" : "undistorted, not motion-compensated"};
   CameraStep& camera = moment.step.cameras.emplace_back(CameraStep{.name = "events", .modality = Modality::Events});
   std::vector<Event>& events = camera.events;
   std::optional<Timestamp> begin = recording.dataset->info().begin;
@@ -218,7 +219,7 @@ const std::pair<EdgeMethod, const char*> kEdgeMethods[] = {{EdgeMethod::Canny, "
                                                            {EdgeMethod::Sobel, "Sobel"},
                                                            {EdgeMethod::Scharr, "Scharr"}};
 
-/// One row a step of Algorithm 1, one column a method.
+/// One row per step of Algorithm 1, one column per method.
 std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& config) {
   const cv::Mat& events = moment.step.find(Modality::Events)->image;
   const EnhanceConfig clahe = with_method(config, EdgeMethod::Clahe);
@@ -281,7 +282,7 @@ int run_enhance(const EnhanceOptions& options) {
   const Moment moment =
       lacking.empty() ? run_up_to(options, std::move(recording), config) : plain_moment(options, recording, config);
   if (!lacking.empty())
-    spdlog::warn(fmt::format("without poses the event frame is drawn {}: {}", moment.drawn_how, lacking));
+    spdlog::warn(fmt::format("without poses the event frame is rendered {}: {}", moment.drawn_how, lacking));
   make_picture_folder(options.out);
   const std::vector<SheetRow> rows = all_stages(moment, config.enhance);
   int number = 0;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Events as they fell, counted by pixel: picture after picture, of a length of time or of a number of events.
+// Images of event counts per pixel, each over a time or a number of events.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace edged {
 
-/// What one picture is made of.
+/// The events of one image.
 struct PictureRule {
   Duration length;         ///< from one picture to the next, counted from the first event
-  std::size_t events = 0;  ///< so many each, however long they take; 0: by length
+  std::size_t events = 0;  ///< number of events per image; 0: by time
 };
 
 struct EventPicture {
@@ -24,14 +24,14 @@ struct EventPicture {
   cv::Mat positive, negative;  ///< events of each pixel, CV_8UC1, 255 at most
 };
 
-/// Cuts a stream of events into pictures. A length of time without an event makes none.
+/// Cuts a stream of events into pictures. A time without events has no image.
 class EventPictures {
  public:
-  /// binning: so many pixels of the sensor, across and down, are one of the picture.
+  /// binning: side length of the square of sensor pixels that form one image pixel.
   EventPictures(cv::Size sensor, int binning, const PictureRule& rule);
 
   using Show = std::function<void(const EventPicture&)>;
-  /// Those that are complete are shown. Throws InputError for an event outside the sensor.
+  /// Passes on complete images. Throws InputError for an event outside the sensor.
   void add(std::span<const Event> events, const Show& show);
   /// The last one, if it is not empty.
   void finish(const Show& show);
@@ -50,7 +50,7 @@ class EventPictures {
 
 enum class PictureStyle { Polarity, Counts };
 
-/// CV_8UC3 on white: more events give more ink. Polarity: blue where most grew brighter, red where darker; Counts:
+/// CV_8UC3 on white: more events are darker. Polarity: blue for mostly positive events, red for negative ones; Counts:
 /// grey.
 cv::Mat draw_event_picture(const EventPicture& picture, PictureStyle style);
 

@@ -29,7 +29,7 @@ std::string calibration_text(const Recording& recording) {
   return (recording.calibration->has_extrinsics ? "cameras and IMU:" : "intrinsics only:") + cameras;
 }
 
-/// A size that is not known is among what one asks for here: the pixels that fired tell it.
+/// An unknown sensor size is no error here: it is estimated from the pixels with events.
 Recording open_of_any_size(SourceOptions source) {
   try {
     return open_uncalibrated(source);
@@ -49,7 +49,7 @@ int run_info(const InfoOptions& options) {
   else
     fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
   if (damage) throw InputError(*damage);
-  if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts reach as far as was read");
+  if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts cover the part that was read");
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }
 

@@ -88,7 +88,8 @@ int run_merge(const MapCommandOptions& options) {
   const std::optional<SE3> T_A_B = find_map_in(map, other);
   if (!T_A_B)
     throw InputError::format(
-        "{}: not recognized in {}; run a recording of the one in the other instead: edged run RECORDING --map {} "
+        "{}: not recognized in {}; run a recording of one in the map of the other instead: edged run RECORDING --map "
+        "{} "
         "--save-map BOTH",
         options.other.string(), options.file.string(), options.file.string());
   const SavedMap both = merged(map, other, *T_A_B);
@@ -125,7 +126,7 @@ void add_map_command(CLI::App& app, std::function<int()>& chosen) {
   map->footer(
       "Examples:\n"
       "  edged run monday.bag --save-map lab.map\n"
-      "  edged run tuesday.bag --map lab.map --save-map lab.map   # in monday's frame, once it knows where it is\n"
+      "  edged run tuesday.bag --map lab.map --save-map lab.map   # in monday's frame, once relocalized\n"
       "  edged map show lab.map --out lab.ply");
   info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
   show->callback([options, &chosen] {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the page of `edged show` plays: pictures and frames, as many as a bounded page holds, evenly over the whole.
+// The data of the page of `edged show`: event images and frames, a bounded number, spread evenly over the recording.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@ namespace edged {
 
 class PlayerData {
  public:
-  /// limit_bytes: of all pictures, as text in the page. Beyond, every second one goes.
+  /// limit_bytes: of all pictures, as text in the page. Beyond it every second image is removed.
   explicit PlayerData(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}
 
-  /// The newest frame stands beside the pictures that follow.
+  /// The newest frame is shown beside the following event images.
   void add(const Frame& frame);
   void add(const EventPicture& picture);
 
   std::size_t pictures() const { return shots_.size(); }
-  /// How many pictures there would have been for one that is kept.
+  /// Number of original images per kept image.
   std::size_t every() const { return every_; }
 
   /// Times [s] since the first picture; frames once each, pictures name theirs by its index.
@@ -37,10 +37,10 @@ class PlayerData {
     Timestamp begin, end;
     std::size_t events;
     std::vector<unsigned char> png;      ///< grey: positive counts above the negative ones
-    std::shared_ptr<const Still> frame;  ///< null where none has come
+    std::shared_ptr<const Still> frame;  ///< null without one
   };
 
-  /// What a shot takes in the page, its frame where that is another than the one before.
+  /// Size of an image in the page, with its frame if that is a new one.
   static std::size_t bytes_of(const Shot& shot, const Still* before);
   void thin_out();
 

@@ -41,13 +41,13 @@ struct ShowOptions {
   bool quiet = false, json = false;
 };
 
-/// What has been shown, for the one who asked.
+/// Summary of what has been shown.
 struct Shown {
   std::size_t pictures = 0, frames = 0, every = 1;
-  std::optional<double> stopped_after_s;  ///< since the first picture, where there would have been more
+  std::optional<double> stopped_after_s;  ///< since the first image; set if the limit of images was reached
 };
 
-/// Reads it through, or until `on_picture` has enough.
+/// Reads to the end, or until `on_picture` stops it.
 class Reader {
  public:
   Reader(const ShowOptions& options, Dataset& dataset, cv::Size sensor, int binning)
@@ -157,7 +157,7 @@ int show_recording(const ShowOptions& options) {
   const cv::Size sensor = recording_event_sensor(recording);
   const bool page = options.out.extension() == ".html";
   const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
-  if (shown.pictures == 0) spdlog::warn(fmt::format("{}: not one event came", dataset.info().name));
+  if (shown.pictures == 0) spdlog::warn(fmt::format("{}: no events", dataset.info().name));
   print_shown(options, shown, dataset.repairs());
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

@@ -63,7 +63,7 @@ std::string events_text(const Survey& s) {
   text += survey_line(
       "", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
-  if (!e.hot_known) return text + survey_line("", "too short to tell hot pixels");
+  if (!e.hot_known) return text + survey_line("", "too short to detect hot pixels");
   std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
   for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
     hot +=
@@ -107,7 +107,7 @@ std::string external_survey_text(const std::string& name, const ExternalSurvey& 
   for (std::size_t i = 0; i < sensor.columns.size(); ++i)
     range += fmt::format("{}{} {:.2f} to {:.2f}", i == 0 ? "" : ", ", sensor.columns[i], s.least[i], s.most[i]);
   text += survey_line("", fmt::format("{} {}; noise {:.2g} {}", range, sensor.unit, s.noise, sensor.unit) +
-                              (s.sigma > 0.0 ? fmt::format(" (its samples say {:.2g})", s.sigma) : ""));
+                              (s.sigma > 0.0 ? fmt::format(" (stated in its samples: {:.2g})", s.sigma) : ""));
   return text;
 }
 
@@ -128,7 +128,7 @@ const char* name_of(Severity severity) {
 }
 
 const char* name_of(Fit fit) {
-  return fit == Fit::Fits ? "fits" : fit == Fit::DoesNotFit ? "does not fit" : "cannot be told";
+  return fit == Fit::Fits ? "fits" : fit == Fit::DoesNotFit ? "does not fit" : "cannot be determined";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One pass through a recording; what a survey, a diagnosis and a check of a calibration say, as text and json.
+// One pass through a recording; survey, diagnosis and calibration check as text and json.
 #pragma once
 
 #include <functional>
@@ -29,11 +29,11 @@ nlohmann::ordered_json to_json(const CalibrationFound& found);
 
 struct SurveyRun {
   Survey survey;
-  std::optional<std::string> damage;  ///< why the recording could not be read beyond what was surveyed
+  std::optional<std::string> damage;  ///< the error that ended reading
 };
 
-/// With a status line. Ends early, with what was read so far, when the user interrupts. also: sees every measurement;
-/// may be empty.
+/// With a status line. Ends early, with what was read so far, when the user interrupts. also: called with every
+/// measurement; may be empty.
 SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also);
 
 }  // namespace edged

@@ -119,7 +119,7 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
 }
 
-/// Copies of the first camera of each kind, as the odometry goes on with its own, at the pace of a viewer.
+/// Copies of the first camera of each kind, at the rate of a viewer, as the odometry continues with the originals.
 void LiveFeed::take_shots(const Step& step) {
   const auto now = LiveClockTime::now();
   const auto take = [&](std::shared_ptr<const Shot>& shot, const CameraStep* camera) {

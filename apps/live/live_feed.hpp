@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What viewers of a run that goes on are told: rows of its plots, changes of its status, map points, pictures.
+// Data for viewers of a running run: rows of its plots, status changes, map points, images.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace edged {
 
-/// How far a run has come.
+/// The progress of a run.
 struct RunProgress {
   RunStatistics statistics;
   std::size_t poses = 0;
@@ -32,30 +32,30 @@ struct RunProgress {
   PacketPace pace;  ///< of the newest packet
 };
 
-/// `add` and `finish` are for the thread of the run, the rest for any others. It holds a bounded number of rows, evenly
-/// over the whole run, and copies images only while there is a viewer.
+/// `add` and `finish` are for the thread of the run, the rest for any thread. Keeps a bounded number of rows, spread
+/// evenly over the run, and copies images only while there is a viewer.
 class LiveFeed {
  public:
   static constexpr std::size_t kMostRows = 3000;
 
-  /// What one viewer has been told.
+  /// What one viewer has received.
   struct Place {
     std::size_t rows = 0, thinned = 0, changes = 0, map = 0;
-    std::size_t left_out = 0;  ///< updates that came while this viewer was too slow for them
+    std::size_t left_out = 0;  ///< updates skipped because this viewer was too slow
   };
 
   /// Positions are those of `frame`, as in the trajectory files.
   explicit LiveFeed(OutputFrame frame);
 
   void add(const Step& step, RunProgress progress, const RunAlbum& album);
-  /// The numbers at the end: the last measurements come after the last step.
+  /// The final numbers, as the last measurements are after the last step.
   void finish(RunProgress progress);
 
   void viewer_came() { ++viewers_; }
   void viewer_left() { --viewers_; }
   std::size_t viewers() const { return viewers_; }
 
-  /// One line of json: the present numbers, and what this viewer does not know yet of the rest (docs/report.md).
+  /// One line of json: the present numbers, and the rest that is new for this viewer (docs/report.md).
   std::string news(Place& place) const;
   /// The newest image with its tracks as JPEG, made by the caller's thread; empty where there is none.
   std::vector<unsigned char> picture(Modality of) const;
@@ -73,12 +73,12 @@ class LiveFeed {
     cv::Mat image;
     std::vector<Track> tracks;
   };
-  /// All that is guarded; what is large is copied by its new part only.
+  /// All guarded data; of large parts only new elements are copied.
   struct Present {
     Row newest;
     std::string reason;
     RunProgress progress;
-    std::size_t rows = 0, changes = 0;  ///< of all, that lie before those here
+    std::size_t rows = 0, changes = 0;  ///< number of elements before the first one here
     std::vector<Row> new_rows;
     std::vector<StatusChange> new_changes;
     std::vector<float> new_map;

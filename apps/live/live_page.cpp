@@ -27,12 +27,12 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 constexpr auto kUpdatePeriod = std::chrono::milliseconds(200), kEndPeriod = std::chrono::milliseconds(20);
-constexpr std::size_t kMostViewers = 12, kThreads = kMostViewers + 4;  // a viewer keeps one for as long as it watches
+constexpr std::size_t kMostViewers = 12, kThreads = kMostViewers + 4;  // each viewer occupies one while it is connected
 constexpr auto kLongestFarewell = std::chrono::seconds(10), kPatience = std::chrono::seconds(2),
                kTimeToConnect = std::chrono::seconds(1);
 
-/// By a provider: what is set as a body is compressed, which takes longer than this machine's own network.
-/// sent: called when the answer is out, or has failed.
+/// Sent by a provider: a plain body would be compressed, which is slower than the local network.
+/// sent: called when the response has been sent, or has failed.
 void reply(httplib::Response& response, const char* type, std::string body, std::function<void()> sent = nullptr) {
   response.set_header("Cache-Control", "no-store");
   const std::size_t size = body.size();
@@ -56,7 +56,7 @@ std::string url_of(const ServeAddress& address) {
   return fmt::format("http://{}{}{}:{}/", v6 ? "[" : "", address.host, v6 ? "]" : "", address.port);
 }
 
-/// What the live page calls the run.
+/// The title of the run on the live page.
 nlohmann::ordered_json about_run(const RunContext& run) {
   const DatasetInfo& info = run.info();
   const bool ends = info.begin && info.end;
@@ -96,7 +96,7 @@ class LivePage::Server {
   std::string url;
 
  private:
-  /// One who watches, in the thread that serves it.
+  /// One viewer, in the thread that serves it.
   struct Viewer {
     LiveFeed::Place place;
     WallClock::time_point due = WallClock::now();
@@ -119,7 +119,7 @@ class LivePage::Server {
   std::string end_;               ///< metrics.json on one line, once the run is over
   std::filesystem::path report_;  ///< report.html, once the run is over
   std::size_t reports_on_the_way_ = 0, most_viewers_ = 0, left_out_ = 0;
-  WallClock::time_point page_sent_, asked_;  ///< when the page, and when anything was asked for last
+  WallClock::time_point page_sent_, asked_;  ///< time of the last request of the page, and of any request
 
   std::jthread thread_;  ///< last: it uses the others
 };
@@ -127,14 +127,14 @@ class LivePage::Server {
 LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
     : feed(std::move(frame)), page_(live_report_page(about)) {
   http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  // A connection that waits holds a thread, and the end of the program: browsers open some in advance.
+  // An idle connection blocks a thread, and the end of the program: browsers open some in advance.
   http_.set_keep_alive_max_count(1);
   http_.set_keep_alive_timeout(1);
   http_.set_read_timeout(1);
-  http_.set_write_timeout(1);  // one who does not read is let go: a browser comes back by itself
+  http_.set_write_timeout(1);  // a viewer that does not read is disconnected: browsers reconnect
   http_.set_tcp_nodelay(true);
-  // Not httplib's own, by which two programs could share a port and its viewers. A system that holds megabytes for one
-  // who is slow would show that one what was long ago.
+  // Not httplib's default options, with which two programs could share a port. A large send buffer would delay the
+  // updates of a slow viewer.
   http_.set_socket_options([](int socket) {
     const int yes = 1, held_bytes = 1 << 15;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -143,7 +143,8 @@ LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_js
   answer();
   bind(address);
   thread_ = std::jthread([this] { http_.listen_after_bind(); });
-  while (!http_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // only then it can be stopped
+  while (!http_.is_running())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // stop() works only after this
 }
 
 LivePage::Server::~Server() {
@@ -187,7 +188,7 @@ void LivePage::Server::answer() {
   http_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { welcome(response); });
   http_.Get(R"(/(events|frame)\.jpg)", [this](const httplib::Request& request, httplib::Response& response) {
     const auto jpeg = feed.picture(request.matches[1] == "events" ? Modality::Events : Modality::Frames);
-    if (jpeg.empty()) return refuse(response, 404, "There is no picture yet.\n");
+    if (jpeg.empty()) return refuse(response, 404, "There is no image yet.\n");
     reply(response, "image/jpeg", {jpeg.begin(), jpeg.end()});
   });
   http_.Get("/report.html", [this](const httplib::Request&, httplib::Response& response) { send_report(response); });
@@ -196,7 +197,7 @@ void LivePage::Server::answer() {
 void LivePage::Server::welcome(httplib::Response& response) {
   {
     const std::lock_guard lock(mutex_);
-    if (feed.viewers() >= kMostViewers) return refuse(response, 503, "Too many watch already.\n");
+    if (feed.viewers() >= kMostViewers) return refuse(response, 503, "Too many viewers already.\n");
     feed.viewer_came();
     most_viewers_ = std::max(most_viewers_, feed.viewers());
   }
@@ -210,7 +211,7 @@ void LivePage::Server::welcome(httplib::Response& response) {
       });
 }
 
-/// The next update when it is due. Whoever takes longer to read one misses those meanwhile. False: the viewer has gone.
+/// Sends the next update when it is due. A slow viewer misses updates. False: the viewer has disconnected.
 bool LivePage::Server::tell(Viewer& viewer, httplib::DataSink& sink) {
   std::string end;
   {
@@ -224,7 +225,7 @@ bool LivePage::Server::tell(Viewer& viewer, httplib::DataSink& sink) {
   }
   viewer.due = WallClock::now() + (end.empty() ? kUpdatePeriod : kEndPeriod);
   const auto write = [&sink](const std::string& text) { return sink.write(text.data(), text.size()); };
-  if (viewer.knows_the_end) return write(": the run is over\n\n");  // fails once the browser has what it wants
+  if (viewer.knows_the_end) return write(": the run is over\n\n");  // fails once the browser has disconnected
   if (!write("data: " + feed.news(viewer.place) + "\n\n")) return false;
   viewer.knows_the_end = !end.empty();
   return end.empty() || write("event: end\ndata: " + end + "\n\n");
@@ -271,7 +272,7 @@ void LivePage::Server::part_from_viewers() {
     changed_.wait_for(lock, std::chrono::milliseconds(20));
   }
   spdlog::info(
-      fmt::format("live page: {} at once at most, {} updates left out for who was too slow", most_viewers_, left_out_));
+      fmt::format("live page: at most {} viewers at once, {} updates skipped for slow ones", most_viewers_, left_out_));
 }
 
 LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)

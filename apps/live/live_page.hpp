@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A run to be watched in a browser while it goes on: the report's page, filled by a server in threads of its own.
+// Live view of a run in a browser: the report's page, filled by a server in threads of its own.
 #pragma once
 
 #include <filesystem>
@@ -14,36 +14,35 @@
 
 namespace edged {
 
-/// --serve: where the live page of a run is to be had.
+/// --serve: the address of the live page of a run.
 struct ServeAddress {
   std::string host = "127.0.0.1";
   int port = 8765;  ///< 0: any that is free
 };
 
-/// Of "PORT" or "HOST:PORT" ("[::1]:PORT"); of "true", which a flag without a value is, the usual one. Nothing where it
-/// is none of them.
+/// Of "PORT" or "HOST:PORT" ("[::1]:PORT"); of "true", the value of a bare flag, the default address. Nothing for any
+/// other text.
 std::optional<ServeAddress> parse_serve_address(const std::string& text);
 
-/// Adds --serve; text becomes what parse_serve_address takes, and stays empty where the flag is not given.
+/// Adds --serve; text is set to the input of parse_serve_address, or stays empty without the flag.
 void add_serve_option(CLI::App& command, std::string& text);
 
-/// What the thread of the run calls returns at once, whatever browsers do, but for `finish`.
+/// Calls by the thread of the run do not block, whatever browsers do, except `finish`.
 class LivePage {
  public:
-  /// From now on there is something at url(). about: the run, as the page names it. Throws InputError where the address
-  /// cannot be had.
+  /// Starts to serve url(). about: the title of the run. Throws InputError if the address is not available.
   LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame);
   ~LivePage();
   LivePage(const LivePage&) = delete;
   LivePage& operator=(const LivePage&) = delete;
 
-  /// As a browser on this machine takes it.
+  /// For a browser on this machine.
   const std::string& url() const;
 
   void add(const Step& step, RunProgress progress, const RunAlbum& album);
 
-  /// Tells the viewers that the run is over. They get report.html of the folder in place of the live page; returns when
-  /// all have it, at the latest 10 s later, and 2 s after the last has asked for anything.
+  /// Notifies the viewers that the run is over. They get report.html of the folder in place of the live page; returns
+  /// when all have it, after at most 10 s, or 2 s after the last request.
   void finish(RunProgress progress, const nlohmann::ordered_json& metrics, const std::filesystem::path& folder);
 
  private:

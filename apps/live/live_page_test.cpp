@@ -16,7 +16,7 @@ namespace {
 
 const Rig kHead{"head", {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3(), {}}}};
 
-/// A run of steps, told to the feed.
+/// A run of steps, added to the feed.
 class LiveRun : public ::testing::Test {
  protected:
   void go_on(int steps) {
@@ -69,7 +69,7 @@ TEST_F(LiveRun, SaysWhyTheStatusIsWhatItIs) {
   EXPECT_EQ(news(place)["changes"][0]["reason"], "waits for parallax, 1 px of 5");
   go_on(4);
   const auto update = news(place);
-  EXPECT_EQ(update["changes_from"], 0);  // what was missing last is told again
+  EXPECT_EQ(update["changes_from"], 0);  // the last reason is sent again
   EXPECT_EQ(update["changes"][0]["reason"], "waits for parallax, 4 px of 5");
   EXPECT_EQ(update["changes"][1]["status"], "Good");
   EXPECT_EQ(update["status"], "Good");
@@ -81,7 +81,7 @@ TEST_F(LiveRun, StaysSmallHoweverLongItIs) {
   news(place);
   go_on(20000);
   const auto update = news(place), all = news(fresh);
-  EXPECT_EQ(update["rows_from"], 0);  // they have been thinned out: all anew
+  EXPECT_EQ(update["rows_from"], 0);  // rows have been thinned out: all are sent again
   EXPECT_EQ(update["rows"], all["rows"]);
   const auto t = all["rows"]["t"].get<std::vector<double>>();
   EXPECT_LT(t.size(), LiveFeed::kMostRows);

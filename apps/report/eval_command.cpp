@@ -29,7 +29,7 @@ struct EvalOptions {
   bool json = false;
 };
 
-/// KITTI holds no times: nothing that is measured in seconds can be said of it.
+/// KITTI has no times: metrics over seconds are not possible.
 void refuse_times(const EvalOptions& options, const CLI::App& eval) {
   std::string timed =
       chosen_protocol(options.how).window == TimeWindow{} ? "" : "--protocol " + options.how.protocol_name;
@@ -40,7 +40,7 @@ void refuse_times(const EvalOptions& options, const CLI::App& eval) {
                              timed);
 }
 
-/// Pose i against pose i; all that would need times is left empty.
+/// Pairs by index; metrics that need times are left empty.
 Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate, const EvalOptions& options) {
   if (truth.size() != estimate.size())
     throw InputError::format(

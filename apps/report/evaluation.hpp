@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How a trajectory is held against ground truth, as a user says it on the command line, and the result as a table.
+// Options for the comparison of a trajectory with ground truth on the command line, and the result as a table.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options);
 Protocol chosen_protocol(const EvaluationOptions& options);
 
 std::string to_table(const Evaluation& evaluation);
-/// In one line, of the windows that there are.
+/// In one line, for the existing windows.
 std::string local_error_text(const std::vector<LocalError>& local);
 
 }  // namespace edged

@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostRows = 3000, kMostRowsInAll = 6000, kMostPicturesInAll = 60, kMostMapKeyframes = 2000;
 constexpr std::size_t kLogLines = 300;
 
-/// What a run has left, all but its poses read as it is.
+/// The files of a run, all but its poses as they are.
 struct LoadedRun {
   fs::path path;
   StatesTable states;  ///< of a trajectory file: Good rows without columns
@@ -38,7 +38,7 @@ struct LoadedRun {
   ReportPath poses;
 };
 
-/// Null where there is none, or a kill left half of it.
+/// Null if it is missing, or truncated by a kill.
 Json read_json(const fs::path& file) {
   std::ifstream in(file);
   Json json = in ? Json::parse(in, nullptr, false) : Json();
@@ -53,7 +53,7 @@ std::optional<Calibration> read_calibration(const fs::path& file) {
   return calibration;
 }
 
-/// The truth that the run knew.
+/// The ground truth of the run.
 std::optional<GroundTruth> own_truth(const LoadedRun& run) {
   const fs::path file = run.path / "groundtruth.tum";
   if (!fs::exists(file) || run.album.is_null()) return std::nullopt;
@@ -64,7 +64,7 @@ std::string output_frame(const LoadedRun& run) {
   return run.metrics.is_null() ? "body" : run.metrics.value("output_frame", "body");
 }
 
-/// In the world that is shown: laid onto the truth as the poses are that were known at their time.
+/// In the world that is shown: with the alignment of the causal poses.
 Trajectory as_shown(const LoadedRun& run, Trajectory path, const std::string& frame) {
   const OutputFrame written(run.given->rig, frame), shown(run.given->rig, run.poses.frame);
   for (StampedPose& pose : path) {
@@ -74,7 +74,7 @@ Trajectory as_shown(const LoadedRun& run, Trajectory path, const std::string& fr
   return path;
 }
 
-/// As known in the end.
+/// The final trajectory.
 Trajectory final_path(const LoadedRun& run) {
   const fs::path file = run.path / "trajectory_final.tum";
   if (!run.given || !fs::exists(file)) return {};
@@ -84,7 +84,7 @@ Trajectory final_path(const LoadedRun& run) {
   return as_shown(run, std::move(path), output_frame(run));
 }
 
-/// Where the keyframes of the map were made; found: in how many images each was found again.
+/// The poses of the map's keyframes; found: the number of images with matches of each.
 Json map_keyframes_json(const LoadedRun& run, Timestamp origin) {
   Json json = Json::object();
   if (!run.given) return json;
@@ -102,8 +102,8 @@ Json map_keyframes_json(const LoadedRun& run, Timestamp origin) {
 
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   if (!fs::exists(folder / "states.csv") || !fs::exists(folder / "calibration.yaml")) {
-    throw InputError::format(
-        "{}: is no run folder (states.csv, calibration.yaml); give the folder that `edged run` left", folder.string());
+    throw InputError::format("{}: is no run folder (states.csv, calibration.yaml); give a folder of `edged run`",
+                             folder.string());
   }
   LoadedRun run{folder,
                 read_states(folder),
@@ -133,7 +133,7 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   return run;
 }
 
-/// Poses of another program, of the sensor whose truth is that of the run beside them. That run's calibration, too.
+/// Poses of another program, for the sensor of the run's ground truth. With that run's calibration.
 LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportOptions& options) {
   LoadedRun run{file, {}, {}, {}, {}, std::nullopt, std::nullopt, std::nullopt, {}};
   Trajectory body = read_trajectory(file);
@@ -151,12 +151,12 @@ LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportO
   return run;
 }
 
-/// Folders first, as files are shown beside them, in the order that they were given otherwise.
+/// Folders first, as files refer to them; otherwise in the given order.
 std::vector<LoadedRun> load_runs(std::vector<fs::path> paths, const ReportOptions& options) {
   std::vector<LoadedRun> runs;
   for (const fs::path& path : paths) {
     if (!fs::exists(path)) {
-      throw InputError::format("{}: not found; give the folder that `edged run` left", path.string());
+      throw InputError::format("{}: not found; give a folder of `edged run`", path.string());
     }
   }
   std::stable_partition(paths.begin(), paths.end(), [](const fs::path& path) { return fs::is_directory(path); });
@@ -265,7 +265,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
   return json;
 }
 
-/// Runs that overlap in time with the first have its zero of time, others their own.
+/// Runs that overlap in time with the first one share its time origin, others have their own.
 Timestamp origin_of(const LoadedRun& run, const LoadedRun& first) {
   if (run.states.t.empty()) return Timestamp{};
   const auto& [a, b] = std::tie(run.states.t, first.states.t);
@@ -285,7 +285,7 @@ Json report_data(const std::vector<fs::path>& paths, const ReportOptions& option
   }
   return json;
 } catch (const Json::exception& e) {
-  throw InputError::format("{}: a json file there is not as `edged run` left it ({}); run it again",
+  throw InputError::format("{}: a json file there is damaged ({}); run it again",
                            paths.front().string() + (paths.size() > 1 ? " or beside" : ""), e.what());
 }
 

@@ -15,7 +15,7 @@
 namespace edged {
 namespace {
 
-/// As json that a browser finds within a script: "<" begins no tag there.
+/// As json within a script element, with "<" escaped.
 std::string script_safe(const nlohmann::ordered_json& data) {
   const std::string text = compact_json(data);
   std::string safe;
@@ -30,7 +30,7 @@ std::string script_safe(const nlohmann::ordered_json& data) {
   return safe;
 }
 
-/// start: what begins once all is defined; sources: where pictures and data may come from.
+/// start: the script to run at the end; sources: allowed sources of images and data.
 std::string filled_page(const nlohmann::ordered_json& data, const char* start, const char* sources) {
   const std::map<std::string_view, std::string> parts = {
       {"css", kReportCss}, {"data", script_safe(data)}, {"tools", kToolsJs},   {"plot", kPlotJs},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// report.html: one file that a browser shows without a network. Its parts lie in apps/report/page/.
+// report.html: one self-contained file. Its parts are in apps/report/page/.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,13 @@
 
 namespace edged {
 
-/// No text of the data can end the script that holds it.
+/// The data is escaped, so that it cannot end its script element.
 std::string report_page(const nlohmann::ordered_json& data);
 
-/// The page of a run that goes on, which asks where it comes from for what happens (apps/live/live_page). about: what
-/// is known before it begins.
+/// The page of a live run, which polls its server (apps/live/live_page). about: data known at the start.
 std::string live_report_page(const nlohmann::ordered_json& about);
 
-/// The page of `edged show`: pictures of events that play. data: a recording and its PlayerData.
+/// The page of `edged show`, which plays event images. data: a recording and its PlayerData.
 std::string player_page(const nlohmann::ordered_json& data);
 
 /// report.html of one run folder, into it.

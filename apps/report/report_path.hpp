@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The poses of a run or a trajectory file as its report shows them: laid onto the truth where there is one.
+// The poses of a run or a trajectory file in its report: aligned with the truth if there is one.
 #pragma once
 
 #include <filesystem>
@@ -23,15 +23,15 @@ struct ReportPath {
   std::vector<std::size_t> rows;              ///< of states.csv, one for each pose
   std::vector<std::optional<SE3>> truth;      ///< true pose, one for each pose
   std::vector<std::optional<SE3>> true_body;  ///< the same of the body
-  Trajectory true_path;                       ///< all of the truth while the run lasted
+  Trajectory true_path;                       ///< the ground truth over the time of the run
   std::vector<double> error_m, rotation_deg;  ///< one for each pose, NaN where there is no truth
-  std::vector<PoseErrorSample> pose_errors;   ///< errors since each start, and how large they may be
+  std::vector<PoseErrorSample> pose_errors;   ///< errors since each start, and their limits
   std::optional<Evaluation> evaluation;       ///< nothing where there is no truth, or it does not fit
-  std::string not_compared;                   ///< why, where there is a truth
+  std::string not_compared;                   ///< the reason, if there is a truth
   Similarity alignment;                       ///< world of the estimate to the world that is shown
 };
 
-/// body: T_W_B. frame: whose pose is shown where there is no truth, which brings its own. samples: none of a file.
+/// body: T_W_B. frame: whose pose is shown without a truth, which has its own frame. samples: empty for a file.
 ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how);

@@ -13,14 +13,13 @@
 
 namespace edged {
 
-/// A number with so many decimals takes little room as text; null where it is none.
+/// A number rounded to so many decimals, to save space as text; null if it is not finite.
 nlohmann::ordered_json rounded(double value, int decimals);
 
-/// Roll, pitch, yaw [deg] about x, y, z: R = Rz Ry Rx. Each without jumps against the one before.
+/// Roll, pitch, yaw [deg] about x, y, z: R = Rz Ry Rx. Unwrapped: without jumps from one to the next.
 Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before);
 
-/// Which rows stand for all: evenly chosen, but the largest error among them and, unless it flutters, each change of
-/// status.
+/// A subset of rows: evenly spaced, with the largest error and, unless they are too frequent, each change of status.
 std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vector<double>& error, std::size_t most);
 
 /// Times [s] since origin; null where a row has no pose.
@@ -30,7 +29,7 @@ nlohmann::ordered_json pose_errors_json(const std::vector<PoseErrorSample>& pose
 /// x, y, z of point after point in the world that is shown.
 nlohmann::ordered_json path_json(const Trajectory& path, std::size_t most);
 nlohmann::ordered_json map_json(const nlohmann::ordered_json& album, const Similarity& alignment);
-/// As noted while it ran; without an album those that states.csv tells. The first 300.
+/// From the album of the run; without one from states.csv. The first 300.
 nlohmann::ordered_json changes_json(const StatesTable& states, const nlohmann::ordered_json& album, Timestamp origin);
 
 /// Of external.csv, by sensor: `t` [s since origin] and `y`, its value, of several their norm. At most so many samples

@@ -47,7 +47,7 @@ class Report : public ::testing::Test {
   }
   ~Report() override { fs::remove_all(top); }
 
-  /// A run on a circle, 1 % too large, as `edged run` leaves it.
+  /// A run folder of `edged run`, with a circle 1 % too large.
   fs::path make_run(const std::string& name, bool with_truth, int steps = 200) {
     const fs::path folder = top / name;
     make_run_folder(folder);
@@ -205,7 +205,7 @@ TEST_F(Report, ShowsRunsAndTrajectoryFilesSideBySide) {
   EXPECT_EQ(runs[0]["name"], "a");
   EXPECT_EQ(runs[1]["rows"]["t"], runs[0]["rows"]["t"]);
   EXPECT_TRUE(runs[1]["evaluation"].is_null());
-  // Another program's file is held against the truth of the runs beside it.
+  // A file of another program is compared with the truth of the runs beside it.
   EXPECT_TRUE(runs[2]["metrics"].is_null());
   EXPECT_NEAR(runs[2]["evaluation"]["ate_rmse_m"].get<double>(), runs[0]["metrics"]["ate_rmse_m"].get<double>(), 1e-9);
 }

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is read of the tables in a run folder: states.csv as columns, whatever version wrote it, pace.csv,
-// keyframes.csv.
+// Readers of the tables in a run folder: states.csv of any version as columns, pace.csv, keyframes.csv.
 #pragma once
 
 #include <filesystem>
@@ -26,18 +25,18 @@ struct StatesTable {
   const std::vector<double>* find(const std::string& column) const;
 };
 
-/// Of a run's folder. Lines that are cut short, as a kill may leave the last one, are left out. Throws InputError when
+/// Of a run's folder. Truncated lines, such as the last one after a kill, are skipped. Throws InputError when
 /// there is no such file, or it has other columns.
 StatesTable read_states(const std::filesystem::path& folder);
 
 /// Good and Degraded rows as T_W_B on the IMU clock. rows: gets the row of each.
 Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows = nullptr);
 
-/// Those of the poses whose covariance was worked out anew.
+/// The poses whose covariance was computed at their step.
 std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states);
 
-/// Gathers the poses whose covariance was worked out anew, and all Degraded ones that have one; a loss ends a start,
-/// and so does being found again.
+/// Collects the poses whose covariance was computed at their step, and all Degraded ones that have one; a loss ends a
+/// start, and so does relocalization.
 class CovarianceSamples {
  public:
   /// Every step, in time order.
@@ -49,7 +48,7 @@ class CovarianceSamples {
   int start_ = 0;
 };
 
-/// Adds the columns processing_ms and latency_ms, where the run's folder has them.
+/// Adds the columns processing_ms and latency_ms, if the run's folder has them.
 void read_pace(const std::filesystem::path& folder, StatesTable& states);
 
 /// keyframes.csv of a run's folder, without their points; empty where there is no such file.

@@ -35,7 +35,7 @@ TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
   EXPECT_EQ(claims[0].start, claims[1].start);
   EXPECT_NE(claims[1].start, claims[2].start);
   EXPECT_EQ(claims[2].start, claims[3].start);
-  EXPECT_NE(claims[3].start, claims[4].start) << "it has gone to another place";
+  EXPECT_NE(claims[3].start, claims[4].start) << "the pose has jumped";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// external.csv: the samples of height and velocity sensors that came, for the report.
+// external.csv: the samples of height and velocity sensors, for the report.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-/// The file comes into being with the first sample.
+/// The file is created with the first sample.
 class ExternalLog : public RunObserver {
  public:
   explicit ExternalLog(const RunContext& run) : run_(run) {}

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a run knows in the end, as files: the final path, and the map.
+// The final results of a run as files: the final trajectory and the map.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 namespace edged {
 
 /// trajectory_final.tum with the poses of `frame`, keyframes.csv and map.ply with those of the body. comments head the
-/// first. All are complete where there is no map, or not a pose.
+/// first. All are valid even without a map or poses.
 void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
                             const std::vector<std::string>& comments);
 

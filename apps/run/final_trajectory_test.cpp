@@ -60,7 +60,7 @@ TEST_F(FinalTrajectoryFiles, HoldsPosesKeyframesAndPoints) {
   EXPECT_EQ(read[0].t, t);
   EXPECT_EQ(read[0].T_W_B.translation(), T.translation());
   EXPECT_EQ(read[0].times_found, 3);
-  EXPECT_EQ(ply[4], "element vertex 1") << "what is no place is left out";
+  EXPECT_EQ(ply[4], "element vertex 1") << "a point that is not finite is skipped";
   EXPECT_EQ(ply.back(), "0.50000 -0.25000 2.00000 77 77 77 0 9 4");
 }
 

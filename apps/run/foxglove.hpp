@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Messages as Foxglove and the tools that follow it know them, in json, and what json schema says of each.
+// Messages of Foxglove in json, with their json schemas.
 #pragma once
 
 #include <array>
@@ -34,21 +34,21 @@ Json poses_in_frame(Timestamp t, const char* frame, std::span<const StampedPose>
 Json point_cloud(Timestamp t, const char* frame, std::span<const Point> points);
 
 struct Lines {
-  std::string id;  ///< takes the place of what was shown under it
+  std::string id;  ///< replaces the entity with the same id
   std::vector<Point> points;
-  std::vector<unsigned> pairs;  ///< which of them are joined, two by two; none: all in a row
+  std::vector<unsigned> pairs;  ///< pairs of joined points; empty: all in a row
   std::array<double, 4> colour;
 };
 Json scene_update(Timestamp t, const char* frame, const Lines& lines);
 
 Json compressed_image(Timestamp t, const std::string& camera, const std::vector<unsigned char>& jpeg);
-/// Of images that are made smaller by `scale`.
+/// For images reduced by `scale`.
 Json camera_calibration(Timestamp t, const RigCamera& camera, double scale);
 
 enum class Level { Info = 2, Warning = 3, Error = 4 };
 Json log(Timestamp t, Level level, const std::string& message);
 
-/// What a step tells in numbers.
+/// The figures of a step.
 Json stats(const Step& step);
 
 }  // namespace edged::foxglove

@@ -25,7 +25,7 @@ Json list(const Json& items, int length) {
   return json;
 }
 
-/// All fields are there in every message, but for the others.
+/// All fields are required, except the others.
 Json object(const std::string& title, const Fields& fields, const Fields& others = {}) {
   Json json = {{"title", title}, {"type", "object"}, {"properties", Json::object()}, {"required", Json::array()}};
   for (const auto& [name, field] : fields) {
@@ -71,7 +71,7 @@ Json frame_transforms_type() {
                                              {"rotation", numbers("Quaternion", {"x", "y", "z", "w"})}}))}});
 }
 
-/// What begins with a time and a frame.
+/// Messages that begin with a time and a frame.
 Json in_frame(const std::string& title, const Fields& fields) {
   Fields all = {{"timestamp", time_type()}, {"frame_id", text()}};
   all.insert(all.end(), fields.begin(), fields.end());
@@ -89,7 +89,7 @@ Json point_cloud_type() {
        {"data", bytes()}});
 }
 
-/// Kinds of things that are never shown here are lists of anything.
+/// Unused kinds of entities are lists of anything.
 Json scene_update_type() {
   const Json anything = list(of_type("object"));
   const Json line =

@@ -78,7 +78,7 @@ void draw_line(cv::Mat& canvas, const std::vector<cv::Point2d>& line, const cv::
   cv::polylines(canvas, points, false, colour, thickness, cv::LINE_AA, kFractionBits);
 }
 
-/// Whether the path before a pose is not the way that led there: none is known, or it was found again elsewhere.
+/// Whether the path has a break before a pose: after a loss, or at a relocalization.
 bool begins_anew(const OverviewContent& content, const Trajectory& path, std::size_t i) {
   constexpr Duration kGap = std::chrono::milliseconds(500);
   if (i == 0) return true;
@@ -175,14 +175,14 @@ int draw_image(cv::Mat& canvas, const cv::Mat& image, const std::string& caption
   return sized.rows;
 }
 
-/// In a line; empty where nothing is.
+/// In a line; empty without problems.
 std::string what_is_wrong(const RunSummary& summary) {
   const auto error = std::ranges::find(summary.verdict.findings, Severity::Error, &Finding::severity);
   const std::string because = error != summary.verdict.findings.end() ? error->text : summary.verdict.waiting_for;
   const double silent_s = summary.consistency ? summary.consistency->silent_s() : 0.0;
   if (!summary.verdict.trusted)
     return because.starts_with(summary.status) ? because : fmt::format("{}: {}", summary.status, because);
-  if (silent_s > 0.0) return fmt::format("farther off than it says for {:.1f} s", silent_s);
+  if (silent_s > 0.0) return fmt::format("error beyond its covariance for {:.1f} s", silent_s);
   return summary.statistics.times_lost() > 0 ? fmt::format("lost {} times", summary.statistics.times_lost()) : "";
 }
 
@@ -235,7 +235,7 @@ void LiveliestMoment::consider(const Step& step) {
   usual_rate_hz_ += (last_ ? 1.0 - std::exp(-age_s) : 1.0) * (events.event_rate_hz - usual_rate_hz_);
   last_ = step.t;
   if (events.event_rate_hz > 4.0 * usual_rate_hz_) return;  // a flash or a burst of noise
-  if (!frame_.empty() && frame.empty()) return;             // a moment with both images beats one with events alone
+  if (!frame_.empty() && frame.empty()) return;  // a moment with both images is preferred to one with events alone
   if (event_frame.empty() && frame.empty()) return;
   const double liveliness =
       event_frame.empty() ? static_cast<double>(numbers_of(step, Modality::Frames).tracks) : events.event_rate_hz;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// overview.png: what the sensors saw at the run's liveliest moment, the path from above and from the side, the error
-// over time, and in red what is wrong.
+// overview.png: images at the moment with the highest event rate, the path from above and from the side, the error over
+// time, and problems in red.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -15,8 +15,8 @@
 
 namespace edged {
 
-/// The images of the moment with the highest event rate, but for bursts far above that of the last second (without
-/// events: with the most tracks); of one that was not Good where none was.
+/// The images at the moment with the highest event rate, except bursts far above that of the last second (without
+/// events: with the most tracks); among Good steps, if there are any.
 class LiveliestMoment {
  public:
   void consider(const Step& step);
@@ -33,12 +33,12 @@ class LiveliestMoment {
 
 struct OverviewContent {
   std::string title;
-  std::string wrong;  ///< said in red; empty where nothing is
+  std::string wrong;  ///< problems, in red; may be empty
   LiveliestMoment moment;
   Trajectory estimate;          ///< in the world of the truth, where there is one
   Trajectory truth;             ///< empty where there is none
   std::vector<double> error_m;  ///< of each pose of the estimate, NaN where it is not known; empty without a truth
-  std::vector<StatusChange> changes;  ///< shades the error's time where it was not Good
+  std::vector<StatusChange> changes;  ///< shades times that were not Good
   Timestamp end;                      ///< of the last of them
 };
 

@@ -82,7 +82,7 @@ void Run::make_folder() {
   const EarlierRun earlier = run_.options.force ? EarlierRun::Replace : EarlierRun::Keep;
   const std::string& archive = run_.options.archive;
   if (!archive.empty() && archive != kArchiveBeside)
-    check_archive(run_.archive = archive, earlier);  // before there is a folder
+    check_archive(run_.archive = archive, earlier);  // before the folder exists
   const std::filesystem::path wanted = run_folder_path(run_);
   run_.folder = make_run_folder(wanted, earlier);
   if (archive == kArchiveBeside) {
@@ -117,8 +117,8 @@ RunSummary Run::go() {
           return interrupt_signal() == 0;
         });
   } catch (const std::exception& e) {
-    // What came before it stays, in complete files.
-    spdlog::info(fmt::format("broken off: {}", e.what()));  // main tells the user
+    // Earlier results stay, in complete files.
+    spdlog::info(fmt::format("broken off: {}", e.what()));  // main reports it
     finish(reader, true);
     throw;
   }

@@ -12,10 +12,10 @@ namespace edged {
 
 class RunReader;
 
-/// One run from the first measurement to the files' end.
+/// One run from the first measurement to the complete files.
 class Run {
  public:
-  /// Makes the run folder; `options` must outlive the run. Throws InputError for what cannot be run.
+  /// Makes the run folder; `options` must outlive the run. Throws InputError if it cannot run.
   Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config);
   RunSummary go();
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWidest_px = 320;
 
-/// Keeps the album, which others look at.
+/// The observer that keeps the album.
 class AlbumFiles : public RunObserver {
  public:
   explicit AlbumFiles(RunContext& run) : run_(run) {}

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the report of a run shows beside its files: small pictures, map points, and why its status changed (album.json).
+// Further data for the report of a run: thumbnails, map points, and reasons of status changes (album.json).
 #pragma once
 
 #include <array>
@@ -21,8 +21,7 @@ namespace edged {
 /// Bytes as text of 64 letters (RFC 4648).
 std::string base64(const std::vector<unsigned char>& bytes);
 
-/// Looks at the steps as they come. However long the run is, it keeps a bounded number of pictures and points, evenly
-/// over the whole of it.
+/// Observes the steps. It keeps a bounded number of images and points, spread evenly over the run.
 class RunAlbum {
  public:
   static constexpr std::size_t kMostPictures = 60;
@@ -45,7 +44,7 @@ class RunAlbum {
              const std::optional<GroundTruth>& truth) const;
 
  private:
-  /// JPEG, empty where the step brought none.
+  /// JPEG, empty if the step has none.
   struct Picture {
     Timestamp t;
     std::vector<unsigned char> events, frame;
@@ -61,7 +60,7 @@ class RunAlbum {
   StatusChanges changes_;
   Timestamp last_{};
   std::map<FeatureId, std::array<float, 3>> points_;
-  FeatureId every_ = 1;  ///< only ids that it divides are kept
+  FeatureId every_ = 1;  ///< only multiples of it are kept
 };
 
 }  // namespace edged

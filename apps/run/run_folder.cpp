@@ -45,7 +45,7 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                            error.message());
 }
 
-/// Whether it is not there yet, empty, or an earlier run's. Throws InputError where that cannot be told.
+/// Whether it does not exist, is empty, or is of an earlier run. Throws InputError if that is unknown.
 bool may_hold_a_run(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -59,7 +59,7 @@ bool may_hold_a_run(const std::filesystem::path& folder) {
   return empty || fs::exists(folder / kRunFiles[0]);
 }
 
-/// All but its mark.
+/// All files but its mark.
 void empty_of_run(const std::filesystem::path& folder) {
   for (const char* name : kRunFiles) {
     if (name == kRunFiles[0]) continue;
@@ -76,7 +76,7 @@ bool claim(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) refuse_folder(folder, error);
-  std::FILE* mark = std::fopen((folder / kRunFiles[0]).c_str(), "wx");  // one of several that try at once succeeds
+  std::FILE* mark = std::fopen((folder / kRunFiles[0]).c_str(), "wx");  // only one of several concurrent runs succeeds
   if (mark != nullptr) return std::fclose(mark), true;
   if (errno != EEXIST) refuse_folder(folder, {errno, std::generic_category()});
   return false;
@@ -124,7 +124,7 @@ void check_archive(const std::filesystem::path& file, EarlierRun earlier) {
   if (earlier == EarlierRun::Keep && std::filesystem::exists(file, error))
     throw InputError::format("{}: is there already; give another --archive=FILE, or --force to replace it",
                              file.string());
-  // What cannot be written is told before the run, not after it.
+  // Errors of writing are reported before the run, not after it.
   std::string trial = file.string() + ".XXXXXX";
   const int opened = mkstemp(trial.data());
   if (opened < 0)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The folder a run leaves behind, and the file that it may be packed into.
+// The output folder of a run, and its archive.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace edged {
 
-/// What becomes of an earlier run in the folder that is asked for.
+/// What to do with an earlier run in the chosen folder.
 enum class EarlierRun { Keep, Replace };
 
 /// Makes the folder and returns it. Where it holds an earlier run, that run's files are replaced, or it is kept and the
-/// folder gets a number: FOLDER-2, FOLDER-3, the first that is free. Runs that begin at once never get the same. Throws
+/// folder gets a number: FOLDER-2, FOLDER-3, the first that is free. Concurrent runs never get the same folder. Throws
 /// InputError when the path is something else: a file, or a folder that holds things but no run.
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep);
 
-/// Of a run that does not begin: takes its mark away, and the folder where nothing else is in it.
+/// For a run that does not begin: removes its mark, and the folder if it is then empty.
 void give_back_run_folder(const std::filesystem::path& folder);
 
 /// FOLDER with the suffix behind its name, also where it is written as FOLDER/ or `.`
@@ -28,7 +28,7 @@ inline constexpr const char* kArchiveBeside = "true";  ///< --archive without a 
 
 void add_archive_option(CLI::App& app, std::string& archive);
 
-/// Throws InputError where the file is there already and is to be kept, or could not be written in the end.
+/// Throws InputError if the file exists and must be kept, or cannot be written.
 void check_archive(const std::filesystem::path& file, EarlierRun earlier);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// run.log and the status line: what a run says while it goes on.
+// run.log and the status line: the messages of a run.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 

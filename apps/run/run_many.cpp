@@ -36,17 +36,17 @@ struct CloseFile {
 };
 using TemporaryFile = std::unique_ptr<std::FILE, CloseFile>;
 
-/// One recording's process and what came of it.
+/// The process of one recording and its result.
 struct Job {
   std::string recording, name;
   TemporaryFile output = {}, errors = {};
   pid_t process = 0;  ///< 0: not begun
   bool ended = false;
   int exit_code = 0;
-  ordered_json result = {};  ///< what --json printed
+  ordered_json result = {};  ///< output of --json
 };
 
-/// As a folder may be called: "flight" of data/flight.bag, "sim_room_1" of sim:room:1.
+/// A folder name: "flight" of data/flight.bag, "sim_room_1" of sim:room:1.
 std::string name_of(const std::string& recording) {
   const std::filesystem::path path = std::filesystem::path(recording).lexically_normal();
   std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
@@ -85,7 +85,7 @@ void begin(Job& job, const ManyRuns& runs) {
   if (error != 0) throw InputError::format("no process can be begun: {}", std::generic_category().message(error));
 }
 
-/// Keeps what it left; its lines on stderr go on, with the recording's name.
+/// Collects its result; passes its lines on stderr on, with the recording's name.
 void finish(Job& job, int status, StatusLine& line) {
   job.ended = true;
   job.exit_code = WIFSIGNALED(status) ? kExitSignalBase + WTERMSIG(status) : WEXITSTATUS(status);
@@ -102,7 +102,7 @@ void finish(Job& job, int status, StatusLine& line) {
     std::fprintf(stderr, "%s: %s\n", job.name.c_str(), errors.substr(0, end).c_str());
 }
 
-/// All that run end, with complete files. Whoever had our signal, too, must not get a second of its kind.
+/// Ends all running processes, with complete files. A process that also received our signal must not get a second one.
 void pass_on(int signal, const std::vector<Job>& jobs) {
   for (const Job& job : jobs)
     if (job.process != 0 && !job.ended) kill(job.process, signal == SIGINT ? SIGTERM : SIGINT);
@@ -139,7 +139,7 @@ std::string number_text(const ordered_json& value, double factor, int digits) {
   return value.is_number() ? fmt::format("{:.{}f}", factor * value.get<double>(), digits) : "-";
 }
 
-/// At most 80 columns. What an error was has been told on stderr.
+/// At most 80 columns. Errors are on stderr already.
 std::string to_table(const std::vector<Job>& jobs) {
   constexpr const char* kRow = "{:<24}  {:<18}  {:>9}  {:>9}  {:>9}\n";
   std::string table = fmt::format(kRow, "recording", "status", "ATE [mm]", "path [m]", "CPU s/s");

@@ -19,11 +19,11 @@ struct ManyRuns {
   int jobs = 1;  ///< processes at once
 };
 
-/// What the call of `edged run` gave that holds for each of its recordings: their arguments, but for where results go.
+/// The arguments of `edged run` common to all its recordings, without the output.
 std::vector<std::string> arguments_for_each(const CLI::App& run, const std::vector<std::string>& assignments);
 
 /// Prints the summary table, or with json {"runs": [...]}, in the order of the recordings. Returns the exit code of the
-/// first that is not 0; that of the signal, where one came.
+/// first that is not 0; or that of a signal.
 int run_many(const ManyRuns& runs);
 
 }  // namespace edged

@@ -18,14 +18,13 @@
 namespace edged {
 namespace {
 
-/// read: of the file's bytes. What it refuses gets the file's name.
+/// read: a function of the file's bytes. Adds the file's name to its errors.
 template <typename Read>
 auto read_map_file(const std::filesystem::path& file, Read read) {
   std::error_code ignored;
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file, ignored))
-    throw InputError::format("{}: no map that can be read; `edged run RECORDING --save-map FILE` makes one",
-                             file.string());
+    throw InputError::format("{}: not a readable map; `edged run RECORDING --save-map FILE` makes one", file.string());
   const std::string bytes(std::istreambuf_iterator<char>(in), {});
   try {
     return read(bytes);
@@ -36,11 +35,11 @@ auto read_map_file(const std::filesystem::path& file, Read read) {
 
 class RunMap : public RunObserver {
  public:
-  /// Gives the odometry the map to go on in. Throws InputError, with the file's name, where that cannot be used or the
-  /// other could not be written in the end.
+  /// Loads the map of --map. Throws InputError, with the file's name, if that cannot be used or that of --save-map
+  /// cannot be written.
   explicit RunMap(RunContext& run) : run_(run), options_(run.options.map) {
     if (!run.config.odometry.map.enabled)
-      throw InputError("--map and --save-map want the map: leave out map.enabled=false");
+      throw InputError("--map and --save-map need the map: leave out map.enabled=false");
     if (!options_.save.empty()) check_folder_of(options_.save);
     if (!options_.load.empty())
       read_map_file(options_.load, [&run](const std::string& bytes) { run.odometry.load_map(bytes); });
@@ -52,7 +51,7 @@ class RunMap : public RunObserver {
     if (!options_.load.empty() && !found_ && !run_.odometry.awaiting_relocalization()) found_ = step.t;
   }
 
-  /// Writes the map that is to be kept.
+  /// Writes the map of --save-map.
   void on_summary(RunEnd& end) override {
     MapSummary& summary = end.summary.map.emplace(MapSummary{options_.load.string(), {}, {}});
     end.in_map_since = found_;
@@ -65,7 +64,7 @@ class RunMap : public RunObserver {
       write_file(options_.save, *map);
       summary.saved = options_.save.string();
     } else {
-      spdlog::warn(fmt::format("--save-map {}: not written, as this run has not found its place in that of --map",
+      spdlog::warn(fmt::format("--save-map {}: not written, as this run has not been relocalized in that of --map",
                                options_.save.string()));
     }
   }
@@ -81,7 +80,7 @@ class RunMap : public RunObserver {
 void add_map_options(CLI::App& app, MapOptions& options) {
   app.add_option("--map", options.load,
                  "Relocalize in a map of --save-map: poses are in its frame once "
-                 "a place has been recognized");
+                 "relocalized");
   app.add_option("--save-map", options.save, "Save the map to this file, which may be that of --map");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Maps that outlive a run: --map and --save-map of `edged run`.
+// Saved maps: --map and --save-map of `edged run`.
 #pragma once
 
 #include <filesystem>

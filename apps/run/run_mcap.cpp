@@ -49,7 +49,7 @@ std::vector<T> evenly(const std::vector<T>& values) {
   return kept.all();
 }
 
-/// A pyramid each: the camera, the corners of its image some way off.
+/// One pyramid per keyframe: the camera and the corners of its image at some distance.
 foxglove::Lines frusta(const std::vector<StampedPose>& bodies, const RigCamera& camera) {
   const CameraModel& m = camera.model;
   foxglove::Lines lines{"keyframes", {}, {}, {0.2, 0.6, 1.0, 0.8}};
@@ -87,7 +87,7 @@ foxglove::Level level_of(TrackingStatus status) {
                                               : foxglove::Level::Info;
 }
 
-/// Tells whether two runs had the same options (FNV-1a, 64 bit).
+/// A hash to compare the options of two runs (FNV-1a, 64 bit).
 std::string hash_of(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
@@ -169,7 +169,7 @@ void RunMcap::add(const Step& step, const RunAlbum& album) {
   }
 }
 
-/// Poses as they were given; all in one message, as players that seek look for the last of a topic only.
+/// Causal poses; all in one message, as players that seek read only the last one of a topic.
 void RunMcap::describe_cameras(Timestamp t) {
   first_ = t;
   std::vector<foxglove::Transform> transforms;
@@ -237,7 +237,7 @@ void RunMcap::finish(const FinalTrajectory& known, const RunAlbum& album, const 
   if (!truth.empty()) {
     foxglove::Lines line{"ground truth", {}, {}, {0.6, 0.6, 0.6, 1.0}};
     for (const StampedPose& pose : evenly(truth)) line.points.push_back(point_of(pose.T.translation()));
-    // Known only now, it is to be seen from the beginning on.
+    // Known only now, but to be shown from the beginning.
     file_.close_chunk();
     put("/ground_truth", kSceneUpdate, *first_, foxglove::scene_update(*first_, kWorld, line));
   }

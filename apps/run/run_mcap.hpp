@@ -18,23 +18,22 @@
 
 namespace edged {
 
-/// What a program needs to say about a file of results: version, options.
+/// Metadata of a results file: version, options.
 using RunFacts = std::map<std::string, std::string>;
 
-/// Looks at the steps as they come; docs/report.md lists the topics. Numbers come with every step, pictures, path and
-/// map at rates of their own, as they were known at the time. It holds a chunk, the index, and some hundred poses.
+/// Observes the steps; docs/report.md lists the topics. Writes numbers with every step, images, causal path and map at
+/// rates of their own. Keeps a chunk, the index, and some hundred poses in memory.
 class RunMcap {
  public:
   /// rig: the cameras of the mode. Throws InputError where the file cannot be written, as all members do.
   RunMcap(const std::filesystem::path& file, Rig rig, const RunFacts& facts);
 
   void add(const Step& step, const RunAlbum& album);
-  /// The path and the map as known in the end. truth: of the body, in the world of the estimate; none where there is
-  /// none.
+  /// Writes the final trajectory and the map. truth: of the body, in the world of the estimate; may be empty.
   void finish(const FinalTrajectory& known, const RunAlbum& album, const Trajectory& truth, const RunSummary& summary);
 
  private:
-  /// Says when it is time again.
+  /// A timer for topics with a rate of their own.
   class Pace {
    public:
     explicit Pace(Duration period) : period_(period) {}
@@ -53,7 +52,7 @@ class RunMcap {
   void put_status(const Step& step);
 
   McapWriter file_;
-  Rig rig_;  ///< as its pictures are: those of events without distortion
+  Rig rig_;  ///< of its images: those of events without distortion
   std::map<std::string, std::size_t> topics_;
   std::optional<Timestamp> first_;
   Timestamp last_{};

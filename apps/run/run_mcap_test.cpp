@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Results as MCAP, read by our own reader; tests/mcap_test.py has one that is not ours.
+// Results as MCAP, read by our own reader; tests/mcap_test.py uses another one.
 #include "run/run_mcap.hpp"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ constexpr std::array kObservers = {
     observe_map,
     observe_states,
     observe_external,
-    observe_album,  // which those below look at
+    observe_album,  // which those below use
     observe_final_trajectory,
     observe_summary,
     observe_overview,
@@ -29,7 +29,7 @@ constexpr std::array kObservers = {
     observe_live_page,
 };
 
-/// What was asked for, or what the format's users expect, where the calibration has that.
+/// The chosen frame, or the convention of the format, if the calibration has that.
 std::string frame_name(const std::string& wanted, const Source& source) {
   const std::string& usual = source.dataset->info().pose_frame;
   const bool has_usual = std::ranges::count(source.calibration.rig.cameras, usual, &RigCamera::name) > 0;

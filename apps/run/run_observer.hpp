@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a run tells its observers. An output is one observer, with its line in each list of run_observer.
+// The interface of observers of a run. Each output is one observer, with its line in each list of run_observer.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@
 
 namespace edged {
 
-/// What observers look at; it lives as long as the run.
+/// Data for observers; it lives as long as the run.
 struct RunContext {
   RunContext(const RunOptions& run_options, Source recording, Mode run_mode, const RunConfig& run_config);
 
@@ -36,25 +36,25 @@ struct RunContext {
   OutputFrame frame;  ///< whose pose the trajectory files hold
   Rig used;           ///< the cameras of the run
   Odometry odometry;
-  std::filesystem::path folder, archive;  ///< the second: "" where none is asked for
+  std::filesystem::path folder, archive;  ///< the second: "" for none
   StageTimings timings;                   ///< of the program
   ResourceMeter meter;
   PacketPace pace;           ///< of the newest step
-  RunStatistics statistics;  ///< by all steps, the newest included
+  RunStatistics statistics;  ///< with all steps, the newest included
   RunAlbum album;            ///< the same
 };
 
-/// What is known when no more steps come.
+/// The results at the end of the steps.
 struct RunEnd {
   RunSummary summary;
   std::optional<GroundTruth> truth;
-  std::optional<Timestamp> in_map_since;  ///< poses before are not in the frame of the map that was given
+  std::optional<Timestamp> in_map_since;  ///< poses before it are not in the frame of the loaded map
   FinalTrajectory known;
-  ReportPath path;  ///< as it was known at the time, laid onto the truth
+  ReportPath path;  ///< the causal trajectory, aligned with the truth
 };
 
-/// The constructor refuses what cannot be done, before there is a run folder. All calls come from the thread of the
-/// run.
+/// The constructor throws InputError for invalid options, before the run folder exists. All calls come from the thread
+/// of the run.
 class RunObserver {
  public:
   RunObserver() = default;
@@ -64,21 +64,22 @@ class RunObserver {
 
   /// The stage of timing.json that on_step counts for; neighbours of one stage are timed together.
   virtual const char* stage() const { return "write"; }
-  /// The folder is there.
+  /// The folder exists.
   virtual void on_begin() {}
-  /// Before the odometry gets it.
+  /// Called before the odometry gets the measurement.
   virtual void on_measurement(const Measurement&) {}
   virtual void on_step(const Step&) {}
-  /// No more steps come: adds what only this observer knows. Summary and truth are there but for what others add.
+  /// At the end of the steps: adds the results of this observer. Summary and truth are complete except for those of
+  /// others.
   virtual void on_summary(RunEnd&) {}
-  /// Writes what it has to. Also after an error, so that what came before it stays.
+  /// Writes its files. Also called after an error, to keep earlier results.
   virtual void on_end(const RunEnd&) {}
 };
 
-/// Those that the run asks for, in the order in which they are told.
+/// The observers of a run, in the order of their calls.
 std::vector<std::unique_ptr<RunObserver>> make_observers(RunContext& run);
 
-/// Makes an observer, or nothing where the run does not ask for it. Each is defined beside what it writes.
+/// Makes an observer, or nothing if its output is not requested. Each is defined beside its output.
 using ObserverFactory = std::unique_ptr<RunObserver>(RunContext& run);
 ObserverFactory observe_status_line, observe_log;  // run_log
 ObserverFactory observe_verdict;                   // verdict

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What `edged run` was asked for.
+// The options of `edged run`.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,7 @@ struct RunOptions {
   bool live = false;
   bool mcap = false;
   std::string archive;  ///< which file; "true" for the one beside the folder; "" for none
-  std::string serve;    ///< where to; "true" where that is not said; "" without a live page
+  std::string serve;    ///< address; "true" for the default; "" without a live page
 };
 
 }  // namespace edged

@@ -7,8 +7,7 @@
 namespace edged {
 namespace {
 
-/// Events and frames read before they are wanted: a packet of a wide sensor in haste, and little beside what a run
-/// holds.
+/// Events and frames read ahead: a packet of a wide sensor in fast motion, and little relative to the memory of a run.
 constexpr int kReadAheadMegabytes = 16;
 
 }  // namespace
@@ -16,7 +15,7 @@ constexpr int kReadAheadMegabytes = 16;
 RunReader::RunReader(RunContext& run) : run_(run) {
   const auto interrupted = [] { return interrupt_signal() != 0; };
   Dataset& dataset = *run_.source.dataset;
-  // The price of making up a recording is no part of what it costs to estimate one: that is not done beside.
+  // The cost of simulation is not part of the cost of estimation, so it does not run in parallel.
   if (run_.source.seed) return;
   if (run_.options.live) {
     live_.emplace(dataset, run_.config.live, interrupted);

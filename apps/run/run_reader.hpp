@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How a run gets its measurements: from a thread that reads ahead, from one that plays the recording as sensors would,
-// or, where the recording is made up, in the thread of the run.
+// How a run gets its measurements: from a thread that reads ahead, from one that plays the recording in real time, or,
+// for a simulation, in the thread of the run.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ class RunReader {
   /// Starts to read.
   explicit RunReader(RunContext& run);
 
-  /// Nothing at the end, and when the user interrupts.
+  /// Nothing at the end, or after an interrupt.
   std::optional<Measurement> next();
-  /// The result for t is there. How late it is [s], in a live run.
+  /// The result for t is complete. Returns its latency [s], in a live run.
   std::optional<double> note_result(Timestamp t);
   /// The dataset is no longer read.
   void stop();

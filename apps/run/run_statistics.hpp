@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is counted while a run goes, and what the process used.
+// Statistics of a run, and resources of the process.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace edged {
 
-/// How long the program took for a packet.
+/// Processing time of a packet.
 struct PacketPace {
   double processing_ms = 0;          ///< the odometry's work on it
-  std::optional<double> latency_ms;  ///< live runs: from when it was measured to its result
+  std::optional<double> latency_ms;  ///< live runs: from measurement to result
 };
 
 /// Counts of one run. Stamps are on the IMU clock.
@@ -44,10 +44,10 @@ class RunStatistics {
   TrackingStatus last_status() const { return last_status_; }
   /// Share of the time since the first Good packet that was Lost.
   double lost_share() const;
-  /// What was missing when an estimate was last waited for, and what ended the last one; empty where it never was so.
+  /// What the last initialization waited for, and what ended the last estimate; may be empty.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
-  /// As estimated last [m/s^2].
+  /// The last estimate [m/s^2].
   const Eigen::Vector3d& accel_bias() const { return accel_bias_; }
   /// ln s of Eq. 5 at the end; nothing without the depth factor.
   const std::optional<LogScale>& ln_depth_scale() const { return ln_depth_scale_; }
@@ -73,7 +73,7 @@ class ResourceMeter {
   double cpu_s() const;  ///< user + system, all threads
   static double peak_rss_mb();
 
-  /// Calls work() and leaves out what it uses.
+  /// Calls work() and excludes its resources.
   template <typename Work>
   auto without(Work work) {
     const double wall = wall_s(), cpu = cpu_s();

@@ -140,16 +140,16 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
   const auto& [intake, packets] = counters;
   const std::pair<const char*, std::size_t> dropped[] = {
       {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
-      {"measurements dropped as too much waited", intake.no_room},
-      {"height or velocity samples dropped that no sensor measures", intake.external_unfit},
+      {"measurements dropped as the queue was full", intake.no_room},
+      {"height or velocity samples dropped as impossible", intake.external_unfit},
       {"events outside the calibration's image dropped", intake.events_outside},
       {"frames of another size than the calibration's dropped", intake.frames_unfit},
       {"measurements with absurd stamps dropped", intake.absurd_stamps},
       {"measurements with stamps far ahead dropped", intake.far_ahead},
-      {"clocks set back: began anew", intake.clocks_set_back},
+      {"clocks set back: restarted", intake.clocks_set_back},
       {"packets before the first IMU sample dropped", packets.packets_before_imu},
       {"packets after the last IMU sample dropped", packets.packets_after_imu},
-      {"packets dropped while the IMU stayed away", packets.packets_overflow},
+      {"packets dropped during gaps of the IMU", packets.packets_overflow},
       {"late events dropped", packets.events_late},
       {"late frames dropped", packets.frames_late},
       {"times of 5 s without a frame", packets.frames_missing},
@@ -243,7 +243,7 @@ std::string to_table(const RunSummary& s) {
     table += line("local error", local_error_text(e.local));
     if (s.final_evaluation) {
       table += line("final, not causal", fmt::format("{:.4f} m", s.final_evaluation->ate_m.rmse),
-                    "ATE once all was known; local error " + local_error_text(s.final_evaluation->local));
+                    "ATE of the final trajectory; local error " + local_error_text(s.final_evaluation->local));
     }
     table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a run amounts to: metrics.json, and the short table at its end.
+// The summary of a run: metrics.json, and the short table at its end.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@
 
 namespace edged {
 
-/// How a live run kept up.
+/// Latency and drops of a live run.
 struct LiveSummary {
   StageTiming latency;           ///< from when a measurement was due to its result
   ShedCounters shed;             ///< by the queue before the packetizer
@@ -29,16 +29,16 @@ struct LiveSummary {
   QueuePeaks peaks;
 };
 
-/// What became of --map and --save-map.
+/// The results of --map and --save-map.
 struct MapSummary {
   std::string loaded;             ///< file; empty: none was given
-  std::optional<double> found_s;  ///< from the first pose until the body was found in it
-  std::string saved;              ///< file; empty: none was asked for, or there was nothing to save
+  std::optional<double> found_s;  ///< from the first pose until relocalization in it
+  std::string saved;              ///< file; empty: not requested, or nothing to save
 };
 
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
-  std::string archive;  ///< file that holds the folder, too; "": none was asked for
+  std::string archive;  ///< archive of the folder; "": not requested
   std::optional<int> seed;
   /// "good", "degraded", "not to be trusted" (with a pose to the end, but contradicted), "lost", "never good",
   /// "interrupted" or "broken off" (by an error)
@@ -50,24 +50,24 @@ struct RunSummary {
   std::optional<LiveSummary> live;
   std::optional<MapSummary> map;
   std::vector<CalibrationFound> calibration;
-  std::map<std::string, std::size_t> external;  ///< samples that came, by sensor
-  std::size_t external_in_packets = 0;          ///< of these, what the estimator was given
+  std::map<std::string, std::size_t> external;  ///< samples received, by sensor
+  std::size_t external_in_packets = 0;          ///< of these, samples used by the estimator
   std::map<std::string, std::size_t> repairs;   ///< by the reader and the packetizer, zero counts left out
   std::optional<Evaluation> evaluation;         ///< SE(3) on all poses; nothing without ground truth
-  std::optional<Evaluation> final_evaluation;   ///< the same of the poses as known in the end, not causal
+  std::optional<Evaluation> final_evaluation;   ///< the same of the final trajectory, not causal
   std::optional<Consistency> consistency;       ///< nothing without ground truth
   std::map<std::string, double> mpe_percent;    ///< per protocol P1..P4 that could be applied
 };
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
-/// covariances, in the body's. Leaves the summary without evaluation, and logs why, where that is not possible.
+/// covariances, in the body's. Leaves the summary without evaluation, and logs the reason, if that is not possible.
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
                   const Rig& rig, const GroundTruth& truth);
 
-/// The same of its poses as known in the end, which are as many.
+/// The same of the final trajectory, which has as many poses.
 void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);
 
-/// What the odometry could not use, in the words of a user.
+/// Unused measurements, in plain words.
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters);
 
 nlohmann::ordered_json to_json(const RunSummary& summary);

@@ -68,7 +68,8 @@ class StatesFiles : public RunObserver {
  public:
   explicit StatesFiles(const RunContext& run) : run_(run) {}
   void on_begin() override {
-    writer_.emplace(run_.folder, run_.frame, run_.heading("causal: each as it was known at its time"));
+    writer_.emplace(run_.folder, run_.frame,
+                    run_.heading("causal: each estimated from the measurements up to its time"));
     pace_.emplace(run_.folder);
   }
   void on_step(const Step& step) override {
@@ -94,7 +95,7 @@ RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& fra
       states_(open_for_writing(states_file_)) {
   states_ << "# state of the body (IMU) in the world (z up), stamps on the IMU clock, whatever the trajectory's frame\n"
           << kStatesHeader;
-  flush();  // a run without a packet leaves files that can be read, too
+  flush();  // a run without a packet leaves readable files, too
 }
 
 void RunWriter::add(const Step& step) {
@@ -106,7 +107,7 @@ void RunWriter::add(const Step& step) {
     euroc_.add(pose);
     kitti_.add(pose);
   }
-  // Each line goes out by itself: a buffer that is left to fill up ends within one, and there a kill would leave it.
+  // Each line is flushed: a kill must not leave a partial line.
   flush();
 }
 

@@ -29,7 +29,7 @@ class RunWriter {
   std::size_t poses() const { return poses_; }
 
  private:
-  /// All that was given is in the files. Throws InputError when the disk is full.
+  /// Flushes all files. Throws InputError when the disk is full.
   void flush();
 
   OutputFrame frame_;

@@ -16,7 +16,7 @@
 namespace edged {
 namespace {
 
-/// One word of a command line.
+/// One quoted word of a command line.
 std::string shell_word(const std::string& text) {
   const bool plain =
       text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
@@ -45,15 +45,15 @@ std::string doctor_command(const SourceOptions& source) {
   return command;
 }
 
-/// What it found is a finding only where the calibration is wrong by more than the estimate may be.
+/// An estimate is a finding only if the calibration error exceeds the uncertainty of the estimate.
 void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
-  constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // below these it costs nothing
+  constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // smaller errors are harmless
   const double shift_ms = c.time_offset_ms - c.given_offset_ms;
   const Severity severity = c.beyond ? Severity::Error : Severity::Warning;
   const std::string done = c.beyond ? "more than a run can correct" : "the run has corrected it";
   if (c.inverse)
     out.push_back({severity,
-                   fmt::format("camera {}: its rotation to the IMU was found {:.2f} deg +- {:.2f} deg off the "
+                   fmt::format("camera {}: its rotation to the IMU was estimated {:.2f} deg +- {:.2f} deg off the "
                                "calibration, the inverse fits",
                                c.camera, c.rotation_deg, *c.rotation_sigma_deg),
                    kTurnRound});
@@ -69,14 +69,15 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
                    fmt::format("{}; set time_offset of this camera to {:.4f}", done, 1e-3 * c.time_offset_ms)});
 }
 
-/// Calibrations are good to a degree: a smaller turn tells no direction. The inverse must lie far nearer.
+/// Calibrations are accurate to a degree: smaller rotations do not determine the direction. The inverse must be far
+/// closer.
 bool fits_inverse(const SE3& given, const SE3& found, double found_deg, double sigma_deg) {
   constexpr double kLeast_deg = 1.0, kSigmas = 4.0, kNearer = 0.4;
   const double inverse_deg = kDegreesPerRadian * so3::log(given.rotation() * found.rotation()).norm();
   return found_deg > std::max(kLeast_deg, kSigmas * sigma_deg) && inverse_deg < kNearer * found_deg;
 }
 
-/// What does not fit goes into the biases first.
+/// Inconsistencies appear in the biases first.
 void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kMost = 1.2;  // [m/s^2]; up to 0.5 on the mirror recordings
   if (run.accel_bias().norm() > kMost)
@@ -90,8 +91,7 @@ void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kMostLost = 0.1;
   const double lost_s = run.time_in_s(TrackingStatus::Lost);
   const std::string why = run.lost_because().empty() ? "" : ", the last time as " + run.lost_because();
-  const std::string remedy =
-      "after a loss position and yaw are those of dead reckoning: look into states.csv and run.log";
+  const std::string remedy = "after a loss position and yaw are those of dead reckoning: see states.csv and run.log";
   if (run.last_status() == TrackingStatus::Lost)
     out.push_back({Severity::Error, fmt::format("lost at the end{}", why), remedy});
   else if (run.lost_share() > kMostLost)
@@ -103,7 +103,7 @@ void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
         {Severity::Warning, fmt::format("lost {} times, for {:.1f} s{}", run.times_lost(), lost_s, why), remedy});
 }
 
-/// What contradicts is told as soon as it is known: who watches can stop there.
+/// Contradictions are reported as soon as they are known, so that the user can stop the run.
 class RunJudge : public RunObserver {
  public:
   explicit RunJudge(RunContext& run) : run_(run), check_(run.info(), run.used, run.source.calibration.has_extrinsics) {}
@@ -131,7 +131,7 @@ class RunJudge : public RunObserver {
 
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config) {
-  constexpr double kBeyond = 4.0;  // sigmas of what was thought possible
+  constexpr double kBeyond = 4.0;  // sigmas of the prior
   std::vector<CalibrationFound> out;
   for (const RigCamera& camera : odometry.rig().cameras) {
     const RigCamera& before = given.camera(camera.name);
@@ -147,7 +147,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
                    std::abs(found.time_offset_ms - found.given_offset_ms) > kBeyond * config.time_offset_sigma_ms;
     if (const auto P = odometry.calibration_covariance(camera.name)) {
       const Eigen::Matrix3d rotation = P->topLeftCorner<3, 3>();
-      // Of the angle that was found; where there is none, of the axis that is known least.
+      // Of the estimated angle; if that is zero, of the least certain axis.
       const Eigen::Vector3d axis = turned.normalized();
       const double variance = turned.norm() > 0.0
                                   ? axis.dot(rotation * axis)
@@ -190,8 +190,8 @@ Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics
     const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
                             : verdict.waiting_for.empty() ? "no start was tried"
                                                           : "it waited for " + verdict.waiting_for;
-    verdict.findings.push_back({Severity::Error, "never good: " + why,
-                                "see what recording and calibration say of themselves: " + verdict.next});
+    verdict.findings.push_back(
+        {Severity::Error, "never good: " + why, "check recording and calibration: " + verdict.next});
   }
   return verdict;
 }

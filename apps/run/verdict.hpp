@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether the result of a run can be trusted, by what is known without ground truth.
+// The verdict on the result of a run, without ground truth.
 #pragma once
 
 #include <string>
@@ -15,19 +15,19 @@
 
 namespace edged {
 
-/// What the run found of the calibration of each camera.
+/// The estimated calibration of each camera.
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config);
 
-/// The given one with rotation and clock of the cameras that were found.
+/// The given calibration with the estimated rotation and clock of the cameras.
 Calibration with_found(Calibration given, const Rig& found);
 
 struct Verdict {
   std::vector<Finding> findings;  ///< warnings and errors
   bool contradicted = false;      ///< by recording, calibration or the estimate itself
   bool trusted = true;            ///< not contradicted, and there is a result
-  std::string waiting_for;        ///< never good, or lost at the end: what was missing last
-  std::string next;               ///< the command to run then; empty where there is nothing to be done
+  std::string waiting_for;        ///< never good, or lost at the end: the last reason
+  std::string next;               ///< the command to run then; may be empty
 };
 
 /// findings: of recording and calibration.

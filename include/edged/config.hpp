@@ -17,12 +17,12 @@
 
 namespace edged {
 
-/// The known name that the user most likely meant: like the whole, or with a last dotted part that is almost the same,
-/// where the group was left out or mistaken. "" where that takes more than so many edits of a letter.
+/// The known name that the user most likely meant: one close to the whole name, or one with almost the same last dotted
+/// part, if the group is missing or wrong. "" if none is within that many single-letter edits.
 std::string nearest_name(std::span<const std::string> known, const std::string& name,
                          std::size_t most_edits = std::numeric_limits<std::size_t>::max());
 
-/// What a user must know of an option. min and max bound numbers, both inclusive.
+/// The documentation of an option. min and max bound numbers, both inclusive.
 struct FieldDoc {
   std::string_view unit = "";
   double min = -std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ struct ConfigField {
   std::string type;           ///< "bool", "int", "number", "text" or "a | b | c"
   std::string unit;           ///< "" where it has none
   std::string range;          ///< e.g. "0.1 .. 10"
-  std::string default_value;  ///< as the struct was when the list was made
+  std::string default_value;  ///< value of the struct when the list was made
   std::string effect;
   std::function<std::string()> get;
   std::function<void(const std::string&)> set;  ///< throws InputError naming the key and the range
@@ -102,12 +102,13 @@ class ConfigFields {
     pair_.reset();
   }
 
-  /// What became of a key of an earlier version. `before` and `now` may be a group: both end with a dot. now: "" where
-  /// the option has become a constant.
+  /// A key of an earlier version, renamed or removed. `before` and `now` may be a group: both end with a dot. now: ""
+  /// where the option has become a constant.
   struct Renamed {
     std::string_view before, now;
   };
-  /// Keys of the version before, which set() accepts with a warning that names the new key. The first that fits counts.
+  /// Keys of the version before, which set() accepts with a warning that names the new key. The first entry that
+  /// matches is used.
   void accept(std::span<const Renamed> renamed) { renamed_ = renamed; }
 
   const std::vector<ConfigField>& all() const { return fields_; }

@@ -1,26 +1,26 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What became of the measurements.
+// How many measurements were used or dropped, and why.
 #pragma once
 
 #include <cstddef>
 
 namespace edged {
 
-/// What was left out as it came.
+/// Measurements that were dropped on arrival.
 struct IntakeCounters {
   std::size_t unknown_camera = 0;   ///< measurements of a camera that the rig does not have
   std::size_t unused_camera = 0;    ///< of one of the rig that the run does not use
   std::size_t absurd_stamps = 0;    ///< events and measurements more than 146 years from zero
-  std::size_t far_ahead = 0;        ///< the same more than 10 s ahead of all, and contradicted by the next
-  std::size_t clocks_set_back = 0;  ///< how often; each time all begins anew
+  std::size_t far_ahead = 0;        ///< the same, more than 10 s ahead of all others and contradicted by the next
+  std::size_t clocks_set_back = 0;  ///< number of clock jumps; the estimator restarts at each
   std::size_t events_outside = 0;   ///< of the pixels of their camera
   std::size_t frames_unfit = 0;     ///< not grey (CV_8UC1), or not of their camera's size
   std::size_t external_unfit = 0;   ///< samples of other sensors: not finite, or more than such a sensor measures
-  std::size_t no_room = 0;          ///< measurements that came when too much waited already, or after finish()
+  std::size_t no_room = 0;          ///< measurements that arrived with full queues, or after finish()
 };
 
-/// What became of the input. Every event added is in `new_events` of exactly one packet or in one of these counts.
+/// Input used and dropped. Every event added is in `new_events` of exactly one packet or in one of these counts.
 struct PacketizerCounters {
   std::size_t packets = 0;             ///< handed out
   std::size_t packets_before_imu = 0;  ///< dropped: not after the first IMU sample

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is left of a keyframe when it leaves the window.
+// What the window has estimated of a keyframe when it is marginalized.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,22 +11,22 @@
 
 namespace edged {
 
-/// A landmark as a keyframe saw it.
+/// A landmark as observed in a keyframe.
 struct KeyframePoint {
   FeatureId id = 0;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< on the unit plane of the camera
   double inverse_depth = 0.0;                       ///< of z there [1/m]
-  double sigma = 0.0;                               ///< of inverse_depth, by the view that tells it best
+  double sigma = 0.0;                               ///< of inverse_depth, from the best-conditioned observation
 };
 
-/// What one camera of the rig saw.
+/// The observations of one camera of the rig.
 struct KeyframeView {
   std::string camera;
   SE3 T_B_C;  ///< as calibrated then, at the instant of its image
   std::vector<KeyframePoint> points;
 };
 
-/// A keyframe by all that the window has learnt of it.
+/// All that the window has estimated of a keyframe.
 struct KeyframeRecord {
   Timestamp t;
   SE3 T_W_B;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What sensors give. Plain structs.
+// Measurements of the sensors, as plain structs.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,7 +62,7 @@ using ExternalSample = std::variant<HeightSample, VelocitySample>;
 
 using Measurement = std::variant<EventBatch, Frame, ImuSample, ExternalSample>;
 
-/// What a camera gives.
+/// What a camera delivers.
 enum class Modality { Events, Frames };
 
 }  // namespace edged

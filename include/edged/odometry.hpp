@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The front door: measurements in, steps out.
+// The entry point of the library: measurements in, steps out.
 #pragma once
 
 #include <functional>
@@ -28,33 +28,34 @@ namespace edged {
 ///   while (const std::optional<Step> step = odometry.next()) show(step->state);
 ///
 /// add, finish, newest_state and state_at may be called from any thread, all else from one. Deterministic: the same
-/// measurements of each sensor give the same bits, however the sensors lag behind one another within their delays; but
-/// for a depth network that has a thread of its own. Prints nothing.
+/// measurements of each sensor give the same bits, whatever the lags between sensors within their delays. The exception
+/// is a depth network with a thread of its own. Prints nothing.
 class Odometry {
  public:
   /// Throws InputError when the rig lacks a camera that the mode needs, an option is out of its range or contradicts
-  /// another, or the IMU's noise cannot be.
+  /// another, or the noise of the IMU is invalid.
   Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config = {},
            const FeedConfig& feed = {});
   ~Odometry();
   Odometry(Odometry&& other) noexcept;  ///< `other` may only be destroyed or assigned to
   Odometry& operator=(Odometry&& other) noexcept;
 
-  /// Stamps as recorded, each sensor's own in order. Never throws on data: what cannot be used is counted, as is what
-  /// comes later than the delay of its sensor allows or finds no room as next() has not been called for long. Where a
-  /// clock is set back by more than a second, for good, the estimate is lost and starts again in the new time. Images
-  /// that own their pixels are not copied: what is written into them afterwards is seen.
+  /// Stamps as recorded, each sensor's own in order. Never throws on data: unusable measurements are dropped and
+  /// counted, as are those that arrive later than the delay of their sensor allows, or while the queue is full because
+  /// next() has not been called. If a clock jumps back by more than a second and stays there, the estimate is lost and
+  /// the estimator restarts in the new time. Images that own their pixels are not copied: do not write into them
+  /// afterwards.
   void add(Measurement measurement);
-  /// No more measurements: what is left comes out of next().
+  /// Marks the end of the measurements: next() returns the remaining steps.
   void finish();
-  /// What the next packet brought, once all that it needs has come; nothing: add more. Does not wait. Lost tracking is
-  /// a status.
+  /// The result of the next packet, once all its measurements have arrived; nothing: add more. Does not block. Lost
+  /// tracking is a status, no error.
   std::optional<Step> next();
 
-  /// Goes on in a map that save_map of an earlier run gave, before the first measurement. Until a place of it has been
-  /// recognised the poses are in a frame of this run's own; with the step that says relocalized they come into the
-  /// map's. Throws InputError where the bytes are damaged or of another version, no camera of this mode fits, or it is
-  /// too late.
+  /// Loads a map that save_map of an earlier run returned. Call it before the first measurement. Poses are in a frame
+  /// of this run's own until the body is relocalized in the map; from the step with `relocalized` they are in the frame
+  /// of the map. Throws InputError if the bytes are damaged or of another version, no camera of this mode fits, or
+  /// measurements have been added already.
   void load_map(std::string_view bytes);
   /// A map was loaded, and the body has not been relocalized in it yet.
   bool awaiting_relocalization() const;
@@ -62,8 +63,8 @@ class Odometry {
   /// The map, for load_map. Nothing while awaiting_relocalization().
   std::optional<std::string> save_map() const;
 
-  /// The state at the newest IMU sample, or at any time since the newest step: predicted from that by the samples that
-  /// have come since, in a few microseconds. Nothing while there is no estimate to go by, and a second after it.
+  /// The state at the newest IMU sample, or at any time since the newest step: predicted from that step by the samples
+  /// since, in a few microseconds. Nothing without an estimate, or more than a second after it.
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
 
@@ -73,7 +74,8 @@ class Odometry {
   FinalTrajectory final_trajectory() const;
   [[deprecated("use final_trajectory()")]] FinalTrajectory hindsight() const { return final_trajectory(); }
 
-  /// The cameras of the mode with their present online calibration: rotation against the body, and whole time offset.
+  /// The cameras of the mode with their present online calibration: rotation relative to the body, and total time
+  /// offset.
   Rig rig() const;
   /// Covariance of the online calibration of a camera: rotation about its axes [rad], then time offset [s]. Nothing
   /// without an estimate.
@@ -88,7 +90,7 @@ class Odometry {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Feeds the odometry all that `source` gives and shows each step to `observe`, which says whether to go on.
+/// Feeds the odometry all measurements of `source` and passes each step to `observe`, which returns whether to go on.
 void drive(Odometry& odometry, const std::function<std::optional<Measurement>()>& source,
            const std::function<bool(Step)>& observe);
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What can be chosen: the mode, every option of the odometry, grouped by the part that owns it, and how it is fed.
+// The choices of the user: the mode, every option of the odometry, grouped by the part that owns it, and how it is fed.
 #pragma once
 
 #include <string>
@@ -25,10 +25,10 @@ Mode parse_mode(const std::string& name);
 /// When a packet is cut (docs/decisions/010-packet-rule.md).
 struct PacketizerConfig {
   double events_per_pixel = 0.35;      ///< a packet is cut after this many new events per pixel
-  double window_per_pixel = 0.35;      ///< events a packet carries back in time, per pixel
-  double max_age_s = 0.25;             ///< but none older than this: at standstill the old ones are noise
-  double max_interval_s = 0.04;        ///< a cut at the latest after this time (the heartbeat at standstill)
-  double min_interval_s = 0.03;        ///< and never sooner than this after the last, but for a frame
+  double window_per_pixel = 0.35;      ///< events that a packet repeats from those before it, per pixel
+  double max_age_s = 0.25;             ///< but none older than this: at standstill older ones are noise
+  double max_interval_s = 0.04;        ///< longest time between two cuts (at standstill)
+  double min_interval_s = 0.03;        ///< shortest time between two cuts, unless a frame arrives
   int max_waiting_events = 4'000'000;  ///< in packets that wait for the IMU; 16 bytes each
   void visit(ConfigFields& fields);
 };
@@ -40,11 +40,11 @@ struct AlignmentConfig {
   void visit(ConfigFields& fields);
 };
 
-/// How what a camera gives is weighed by what becomes of its tracks.
+/// How the observations of a camera are weighted by the survival rate of its tracks.
 struct HealthConfig {
   double time_constant_s = 0.3;    ///< of the running mean of the share of tracks that survive an image
   double min_survival_rate = 0.4;  ///< below it the camera's observations are ignored
-  int min_event_features = 40;     ///< kept on event frames where the standard frames carry all of theirs
+  int min_event_features = 40;     ///< features kept on event frames while the standard frames have all of theirs
 
   void visit(ConfigFields& fields);
 };
@@ -52,7 +52,7 @@ struct HealthConfig {
 struct StatusConfig {
   double degraded_after_s = 0.7;  ///< without enough landmarks or rest
   double lost_after_s = 2.5;
-  int min_landmarks = 8;          ///< seen by the newest state, for a Good pose
+  int min_landmarks = 8;          ///< landmarks that the newest state must observe for a Good pose
   double degraded_strain = 0.75;  ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
   double lost_strain = 0.85;      ///< the first time; see StatusJudge
   void visit(ConfigFields& fields);
@@ -76,10 +76,10 @@ struct OdometryConfig {
   DepthConfig depth;
   EstimatorConfig estimator;
   MapConfig map;
-  double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which nothing moves in view
+  double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which the view is static
   double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
   double thin_width_px = 400.0;       ///< beside good frames events of sensors twice as wide and more are thinned
-  double min_events_per_pixel = 0.1;  ///< a packet with fewer events draws no event frame
+  double min_events_per_pixel = 0.1;  ///< a packet with fewer events has no event frame
   StatusConfig status;
 
   void visit(ConfigFields& fields);
@@ -91,10 +91,10 @@ struct OdometryConfig {
   void declare(ConfigFields& fields);
 };
 
-/// By how much the measurements of a sensor may lag behind the newest of all, stamp against stamp [s]. A sensor that
-/// delivers is waited for no longer than until it has passed what waits, so that the delay costs latency only where it
-/// is silent or slow: of the frames, those packets of events that lie between two of them. The defaults hold for what
-/// drivers usually do: event cameras come in USB packets of up to 33 ms, a frame a readout after its exposure's middle.
+/// By how much the stamps of a sensor may lag behind the newest stamp of all sensors [s]. A packet waits for a sensor
+/// only until that sensor has passed it, so the delay costs latency only where a sensor is silent or slow: for frames,
+/// in packets of events between two of them. The defaults fit usual drivers: events arrive in USB packets of up to 33
+/// ms, a frame arrives one readout after the middle of its exposure.
 struct SensorDelays {
   double events_s = 0.05, frames_s = 0.05, imu_s = 0.05;
   double external_s = 0.05;  ///< of height and velocity sensors; none is waited for before its first sample
@@ -104,14 +104,14 @@ struct SensorDelays {
   bool operator==(const SensorDelays&) const = default;
 };
 
-/// Measurements come in the order that Dataset promises: nothing is waited for.
+/// Measurements arrive in the order that Dataset guarantees: no waiting.
 inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0, 0.0};
 
-/// How the odometry is fed and worked. The defaults are for sensors whose drivers have a thread each; a recording,
-/// which is in order, is `{kInOrder}`.
+/// How the odometry gets its measurements and runs. The defaults are for live sensors with a driver thread each; use
+/// `{kInOrder}` for a recording.
 struct FeedConfig {
   SensorDelays delays;
-  Inference inference = Inference::Synchronous;  ///< OwnThread: the depth network never keeps the others waiting
+  Inference inference = Inference::Synchronous;  ///< OwnThread: no other stage waits for the depth network
 };
 
 }  // namespace edged

@@ -25,8 +25,8 @@ enum class DistortionModel {
 
 /// A pinhole camera with radial-tangential or equidistant distortion.
 /// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
-/// An equidistant lens that sees further than 86 degrees off its axis is used within 70: there the unit plane ends.
-/// A value: cheap to copy, never changed after construction.
+/// An equidistant lens that reaches more than 86 degrees off its axis is used only within 70, the limit of the unit
+/// plane. A value: cheap to copy, never changed after construction.
 class CameraModel {
  public:
   CameraModel() = default;
@@ -59,7 +59,7 @@ class CameraModel {
   /// view, or beyond the circle that a lens draws. Throws InputError when it is of another size or leaves no pixel.
   CameraModel masked(const std::vector<std::uint8_t>& used) const;
   bool is_masked() const { return mask_.used != nullptr; }
-  /// Whether the pixel, which must lie in the image, is one of those that the mask leaves.
+  /// Whether the mask leaves the pixel in use. The pixel must lie in the image.
   bool uses(int x, int y) const {
     return !mask_.used || (*mask_.used)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                                         static_cast<std::size_t>(x)] != 0;
@@ -105,7 +105,7 @@ class CameraModel {
   void find_monotone_range();
   bool in_limit(const Eigen::Vector2d& pixel, double border_px) const;
   bool in_mask(const Eigen::Vector2d& pixel, double border_px) const;
-  /// Throws InputError when a pixel of the border has no bearing (the tangential part is not seen by the radial check).
+  /// Throws InputError when a pixel of the border has no bearing (the radial check does not cover the tangential part).
   void check_border() const;
 
   int width_ = 0, height_ = 0;
@@ -133,7 +133,7 @@ struct Rig {
   std::string name;
   std::vector<RigCamera> cameras;
 
-  /// Throws InputError that lists the names there are.
+  /// Throws an InputError that lists the known names.
   const RigCamera& camera(const std::string& camera_name) const;
   /// First camera of that kind, or null.
   const RigCamera* find(Modality modality) const;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What one packet of measurements brought: all that an observer of the odometry may want, as a value of its own.
+// The result of one packet of measurements, as a value of its own.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -65,12 +65,12 @@ struct Step {
   /// reference of the covariance with it.
   bool relocalized = false;
 
-  /// The odometry frame O in the map frame M (W above is M): state.T_W_B = T_M_O * T_O_B. T_O_B goes on without jumps
-  /// from one start of the estimator to the next; T_M_O is what the map corrects.
+  /// The odometry frame O in the map frame M (W above is M): state.T_W_B = T_M_O * T_O_B. T_O_B has no jumps between
+  /// one start of the estimator and the next; the map corrects T_M_O.
   SE3 T_M_O;
   std::vector<MapMatch> map_matches;  ///< map points observed in an image of this packet; they correct T_M_O
 
-  std::string waiting_for;   ///< while there is no estimate: what initialization lacks, with numbers
+  std::string waiting_for;   ///< without an estimate: why initialization has not succeeded yet, with numbers
   std::string started;       ///< set if the estimator was initialized with this packet: how, with numbers
   std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
 

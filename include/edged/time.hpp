@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Time: nanoseconds since the recording's own epoch. Seconds appear only at the edges of the program.
+// Time: nanoseconds since the recording's own epoch. Seconds appear only in input and output.
 #pragma once
 
 #include <chrono>

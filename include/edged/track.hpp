@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A feature that is followed through the images of one camera.
+// A feature that is tracked through the images of one camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct Track {
   Eigen::Vector2d keyframe_pixel = Eigen::Vector2d::Zero();  ///< at the last keyframe; only when in_keyframe
   Eigen::Vector2d keyframe_point = Eigen::Vector2d::Zero();
   bool in_keyframe = false;  ///< existed at the last keyframe
-  int age = 0;               ///< images it has been followed through
+  int age = 0;               ///< number of images in which it has been tracked
   Timestamp first_seen;
 };
 

@@ -86,7 +86,7 @@ def make_poses(t, position, quaternion):
 
 
 def trajectory(steps):
-    """The poses of the steps that have one to go by (status GOOD or DEGRADED), of the body on the IMU's clock."""
+    """The poses of the steps that have one (status GOOD or DEGRADED), of the body on the IMU's clock."""
     good = [(step.t, step.position, step.quaternion) for step in steps if step.is_tracking]
     return _numpy.array(good, POSE)
 

@@ -24,7 +24,7 @@ Path = str | os.PathLike[str]
 
 
 class InputError(ValueError):
-    """What a user can mend, in one line: file, line or key, and the remedy."""
+    """An error that the user can correct, in one line: file, line or key, and the remedy."""
 
 
 class Status(enum.Enum):
@@ -101,7 +101,7 @@ class CameraStep:
         """id, pixel, point, previous_pixel, age, first_seen; pixels of image."""
     @property
     def survival_rate(self) -> float:
-        """Running mean of the share of corners that live through an image, 0 to 1."""
+        """Running mean of the share of tracks that survive an image, 0 to 1."""
     @property
     def events(self) -> NDArray[np.void]:
         """Of the packet, oldest first, on the IMU's clock; some were in the one before."""
@@ -119,10 +119,10 @@ class Step(_BodyState):
     def status(self) -> Status: ...
     @property
     def is_tracking(self) -> bool:
-        """GOOD or DEGRADED: there is a pose to go by."""
+        """Whether there is a pose: GOOD or DEGRADED."""
     @property
     def position_covariance(self) -> NDArray[np.float64] | None:
-        """In W [m^2], against the start."""
+        """In W [m^2], relative to the start."""
     @property
     def rotation_covariance(self) -> NDArray[np.float64] | None:
         """In B [rad^2], of phi in R_true = R Exp(phi)."""
@@ -130,7 +130,7 @@ class Step(_BodyState):
     def keyframe(self) -> bool: ...
     @property
     def relocalized(self) -> bool:
-        """After a loss, in the map: the pose has gone to where it is there."""
+        """After a loss, or in a loaded map: the pose has jumped to its place in the map."""
     @property
     def waiting_for(self) -> str: ...
     @property
@@ -147,7 +147,7 @@ class Step(_BodyState):
     def frame_tracks(self) -> NDArray[np.void]: ...
     @property
     def event_track_survival_rate(self) -> float | None:
-        """Running mean of the share of corners that live through an image, 0 to 1; None without that camera."""
+        """Running mean of the share of tracks that survive an image, 0 to 1; None without that camera."""
     @property
     def frame_track_survival_rate(self) -> float | None: ...
     @property
@@ -186,7 +186,7 @@ class Measurement:
 
 
 class FinalTrajectory:
-    """Not causal: what came later has its part in it."""
+    """Not causal: later measurements contribute."""
     @property
     def poses(self) -> NDArray[np.void]:
         """POSE, one a Good or Degraded step."""
@@ -214,9 +214,9 @@ class Odometry:
         """[m/s] in the axes of the sensor. sigma: one, or one an axis; 0 for the option's, inf for an axis not measured."""
     def add(self, measurement: Measurement) -> None: ...
     def finish(self) -> None:
-        """No more measurements: what is left comes out of next()."""
+        """Marks the end of the measurements: next() returns the remaining steps."""
     def next(self) -> Step | None:
-        """None: add more. Does not wait."""
+        """None: add more. Does not block."""
     def __iter__(self) -> Iterator[Step]:
         """The steps that there are by now; again after more was added."""
     def __next__(self) -> Step: ...
@@ -224,20 +224,20 @@ class Odometry:
         """At the newest IMU sample; any thread."""
     def state_at(self, t: int) -> State | None: ...
     def load_map(self, map: bytes) -> None:
-        """What save_map of another gave, before the first measurement. Poses are in its frame once a place of it is recognised."""
+        """Bytes of save_map of another run, before the first measurement. Poses are in its frame once relocalized."""
     def save_map(self) -> bytes | None:
-        """What has been seen; None while awaiting_relocalization."""
+        """The map; None while awaiting_relocalization."""
     @property
     def awaiting_relocalization(self) -> bool:
-        """A map was loaded, and no place of it has been recognised yet."""
+        """A map was loaded, and the body has not been relocalized in it yet."""
     def final_trajectory(self) -> FinalTrajectory:
-        """Path and map as known by now."""
+        """Trajectory and map, from all measurements so far."""
     @property
     def rig(self) -> dict[str, Camera]:
-        """The cameras of the mode as calibrated so far."""
+        """The cameras of the mode with their online calibration."""
     @property
     def counters(self) -> dict[str, int]:
-        """Packets, and what was left out."""
+        """Packets, and dropped measurements."""
     @property
     def timings(self) -> dict[str, float]:
         """Seconds spent by stage."""

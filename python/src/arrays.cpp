@@ -72,7 +72,7 @@ py::array read_only(py::array array) {
   return array;
 }
 
-/// Lives as long as the process: no destructor may run after the interpreter's end.
+/// Never destroyed: no destructor may run after the interpreter's end.
 const py::dtype& kept(py::dtype dtype) { return *new py::dtype(std::move(dtype)); }
 
 }  // namespace

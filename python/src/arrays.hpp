@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// numpy arrays that are the library's own memory, and arrays taken in after a look at how they lie.
+// numpy arrays that share the library's memory, and checked access to arrays of the user.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -28,7 +28,7 @@ template <>
 const py::dtype& dtype_of<Track>();
 template <>
 const py::dtype& dtype_of<Landmark>();
-/// One row (t, position, quaternion) a pose; a copy, as the quaternion's place in memory is Eigen's affair.
+/// One row (t, position, quaternion) a pose; a copy, as the memory layout of the quaternion is internal to Eigen.
 const py::dtype& pose_dtype();
 
 /// Read-only, without a copy; keeps `owner` alive.
@@ -40,7 +40,7 @@ py::array view(const std::vector<T>& items, const py::handle& owner) {
 }
 
 /// Throw TypeError for another dtype, ValueError for another shape or gaps in memory; `what` begins the message.
-/// Only looked at, not copied.
+/// Views, not copies.
 void check_events(const py::array& events);
 void check_imu(const py::array& samples);
 void check_image(const py::array& image);

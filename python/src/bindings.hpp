@@ -15,7 +15,7 @@
 
 namespace edged::python {
 
-/// Without the GIL and one thread at a time. The lock is taken without the GIL: who holds it may wait for that.
+/// Without the GIL and one thread at a time. The lock is taken without the GIL, as its holder may wait for the GIL.
 template <typename Function>
 auto guarded(std::mutex& mutex, const Function& function) {
   const py::gil_scoped_release free;
@@ -45,7 +45,7 @@ struct PyMeasurement {
   Measurement value;
 };
 
-/// An odometry and what keeps its one-threaded half so, whatever threads Python has.
+/// An odometry with the lock for its single-threaded calls.
 struct PyOdometry {
   PyOdometry(const Calibration& calibration, Mode mode, const OptionValues& options, const SensorDelays& delays);
   std::mutex mutex;

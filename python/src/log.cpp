@@ -12,7 +12,7 @@ namespace {
 /// deadlock.
 class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
-  /// Given away for good: at the interpreter's end it is too late for a destructor.
+  /// Never destroyed: at the interpreter's end it is too late for a destructor.
   PythonLog() : logger_(py::module_::import("logging").attr("getLogger")("edged").release()) {}
 
  protected:

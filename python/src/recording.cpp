@@ -92,7 +92,8 @@ py::object ground_truth(PyRecording& self) {
   return py::make_tuple(truth->frame, poses_array(truth->trajectory));
 }
 
-/// That of the recording, its cameras of the mode under the recording's names; what had to be assumed is warned of.
+/// The calibration of the recording, its cameras of the mode under the recording's names; with a warning for each
+/// assumption.
 Calibration matched_calibration(const PyRecording& self, Mode mode) {
   const DatasetInfo& info = self.dataset->info();
   if (!self.calibration)

@@ -37,7 +37,7 @@ std::optional<Eigen::Matrix3d> covariance(const Step& step, Part part) {
   return (*step.covariance).*part;
 }
 
-/// What stands for a camera that the run does not have.
+/// The value for a camera that the run does not have.
 const CameraStep& camera_of(const Step& step, Modality modality) {
   static const CameraStep kNone;
   const CameraStep* camera = step.find(modality);

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""What goes in is looked at: one clear line where it does not fit."""
+"""Input arrays are checked: one clear line if they do not fit."""
 import numpy as np
 import pytest
 from support import room

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Maps as bytes, and what is known in the end."""
+"""Maps as bytes, and the final trajectory."""
 import pytest
 
 import edged

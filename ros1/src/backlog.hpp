@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Leaves out events and frames while the odometry is too slow for them.
+// Drops events and frames while the odometry is too slow for them.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,15 @@
 
 namespace edged::ros1 {
 
-/// What was left out.
+/// Counters of dropped measurements.
 struct BacklogCounters {
   std::size_t events = 0, frames = 0;
 };
 
-/// Late poses are worth less than those from fewer events: while the odometry works and its newest step lies more than
-/// max_age_s behind what comes, events are left out; at twice that frames, which stand for more and cost less. IMU
-/// samples never. While it waits, for a sensor that lags or is silent, nothing is left out. From any thread.
+/// Late poses are worth less than those from fewer events: while the odometry works and its newest step is more than
+/// max_age_s behind the newest measurement, events are dropped; at twice that frames, which have more information and
+/// cost less; IMU samples never. While it waits for a sensor that lags or is silent, nothing is dropped. From any
+/// thread.
 class Backlog {
  public:
   explicit Backlog(double max_age_s);
@@ -27,7 +28,7 @@ class Backlog {
   bool admit(const Measurement& measurement);
   /// The odometry has made a step at t and goes on working.
   void note_step(Timestamp t);
-  /// It has worked up all that it could.
+  /// It has processed all that it could.
   void note_idle();
   BacklogCounters counters() const;
   /// From the newest step to the newest measurement.

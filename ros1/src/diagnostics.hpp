@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How the node is, in one message: status, reason, and what became of everything that came.
+// The diagnostics of the node in one message: status, reason, and counters of measurements.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -17,7 +17,7 @@ namespace edged::ros1 {
 
 struct NodeHealth {
   std::optional<TrackingStatus> status;         ///< of the newest step
-  std::string reason;                           ///< what a start waits for, or what ended the last estimate
+  std::string reason;                           ///< what initialization waits for, or what ended the last estimate
   std::map<std::string, InputCounters> inputs;  ///< by topic
   OdometryCounters odometry;
   BacklogCounters left_out;
@@ -25,7 +25,7 @@ struct NodeHealth {
   std::optional<Duration> age;  ///< from the newest step to the newest measurement
 };
 
-/// Measurements that came and that no packet has: unreadable, unfit, late, left out, without room.
+/// Measurements that are in no packet: unreadable, invalid, late, dropped, without room.
 std::size_t lost_measurements(const NodeHealth& health);
 
 /// A warning unless the status is Good and nothing was newly lost. hardware: the rig's name.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the odometry says, in the messages of ROS.
+// The results of the odometry as ROS messages.
 #pragma once
 
 #include <geometry_msgs/PoseStamped.h>
@@ -26,7 +26,7 @@ ros::Time to_ros(Timestamp t);
 geometry_msgs::Pose to_ros(const SE3& pose);
 
 /// The pose of the body in the world, and its velocities in the body's axes. gyro_B [rad/s]: measured at that time. The
-/// covariance of the pose about the axes of the world, as ROS wants it; zeros are not known.
+/// covariance of the pose about the axes of the world, as ROS wants it; zeros are unknown.
 nav_msgs::Odometry odometry_message(const NavState& state, const Eigen::Vector3d& gyro_B,
                                     const std::optional<PoseCovariance>& covariance, const FrameNames& frames);
 geometry_msgs::PoseWithCovarianceStamped pose_message(const nav_msgs::Odometry& odometry);

@@ -14,7 +14,7 @@
 namespace edged::ros1 {
 namespace {
 
-constexpr std::uint32_t kNoLimit = 0;  // what is too much is left out by the backlog or the odometry, which count it
+constexpr std::uint32_t kNoLimit = 0;  // excess measurements are dropped and counted by the backlog or the odometry
 constexpr unsigned kThreads = 3;       // one a sensor
 constexpr Duration kRecentImu = std::chrono::seconds(2);
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
@@ -46,7 +46,7 @@ Node::Node(const NodeConfig& config, const Calibration& calibration)
   subscribe("imu", Role::Imu, "");
 }
 
-/// Any type is taken: the message says what it is. One topic's messages come one by one, in order.
+/// Any type is accepted: the message has its type. Messages of one topic arrive one by one, in order.
 void Node::subscribe(const std::string& topic, Role role, const std::string& camera) {
   const std::string name = public_.resolveName(topic);
   SensorInput& input = inputs_.try_emplace(name, role, camera).first->second;
@@ -84,7 +84,7 @@ void Node::predict(const ImuSample& sample) {
   }
   if (back > kRecentImu)
     ROS_ERROR_THROTTLE(5, "the clock of the IMU has jumped back by %.1f s: restart the node", to_seconds(back));
-  // A late sample is no news.
+  // A late sample is ignored.
   if (const auto state = odometry_.newest_state(); state && state->t == sample.t)
     outputs_.publish_prediction(*state, sample.gyro_B, covariance);
 }
@@ -111,7 +111,7 @@ void Node::run(const std::function<bool()>& stop) {
   for (const auto& value : publish_diagnostics().values) ROS_INFO("%s: %s", value.key.c_str(), value.value.c_str());
 }
 
-/// Whether there was something to do.
+/// Whether there was work.
 bool Node::make_step() {
   const std::optional<Step> step = odometry_.next();
   if (!step) {

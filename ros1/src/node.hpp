@@ -22,13 +22,13 @@
 
 namespace edged::ros1 {
 
-/// Threads of ROS add what comes and publish the prediction; the one that runs estimates and publishes the rest.
+/// Threads of ROS add measurements and publish the prediction; the thread of run() estimates and publishes the rest.
 class Node {
  public:
   /// Throws InputError when the rig lacks a camera that the mode needs.
   Node(const NodeConfig& config, const Calibration& calibration);
 
-  /// Until `stop` says so or ROS goes down; what came until then is worked up.
+  /// Until `stop` returns true or ROS shuts down; measurements until then are processed.
   void run(const std::function<bool()>& stop);
 
  private:
@@ -37,7 +37,7 @@ class Node {
   void predict(const ImuSample& sample);
   bool make_step();
   void report(const Step& step);
-  NodeHealth health();  ///< what is newly lost in it is so since the last call
+  NodeHealth health();  ///< counters of the last call, to find new losses
   diagnostic_msgs::DiagnosticStatus publish_diagnostics();
   void wait();
 

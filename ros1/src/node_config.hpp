@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the node is told by its private parameters.
+// The configuration of the node, from its private parameters.
 #pragma once
 
 #include <xmlrpcpp/XmlRpcValue.h>

@@ -11,12 +11,12 @@
 
 namespace edged::ros1 {
 
-/// Images, landmarks and the path are made only while somebody listens.
+/// Images, landmarks and the path are made only for subscribers.
 class Outputs {
  public:
   Outputs(ros::NodeHandle& node, const NodeConfig& config);
 
-  /// Of one packet; rig: the cameras of the mode as calibrated so far.
+  /// Of one packet; rig: the cameras of the mode with online calibration.
   void publish(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig);
   /// At an IMU sample; covariance: of the newest packet. From another thread than the rest.
   void publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,

@@ -47,7 +47,7 @@ Measurement SensorInput::decode(const WireMessage& message) {
   }
 }
 
-/// Numbers rise by one. Where they do not rise, nobody counts, or the sender has begun anew.
+/// Numbers rise by one. If they do not rise, the sender does not count, or has restarted.
 void SensorInput::note_number(std::uint32_t number) {
   if (last_number_ && number > *last_number_) {
     const std::lock_guard lock(mutex_);

@@ -15,16 +15,16 @@
 
 namespace edged::ros1 {
 
-/// What came in by one topic.
+/// The counters of one topic.
 struct InputCounters {
   std::size_t messages = 0;
   std::size_t events = 0;      ///< in them
-  std::size_t unreadable = 0;  ///< messages that were left out: damaged, or of a type that is none of the sensor's
+  std::size_t unreadable = 0;  ///< dropped messages: damaged, or of a wrong type
   std::size_t missed = 0;      ///< messages that never came: gaps in the numbers of the headers
   std::string trouble;         ///< with the last unreadable one
 };
 
-/// A message as it came over the wire.
+/// A serialised message.
 struct WireMessage {
   std::string type, md5;
   ByteSpan bytes;
@@ -35,7 +35,7 @@ class SensorInput {
   /// camera: whose events or frames come; of no meaning for the IMU.
   SensorInput(Role role, std::string camera) : role_(role), camera_(std::move(camera)) {}
 
-  /// What the message says; nothing, and counted, where it cannot be read. One thread at a time.
+  /// The measurements of the message; nothing, and counted, if it is unreadable. One thread at a time.
   std::optional<Measurement> read(const WireMessage& message);
   /// From any thread.
   InputCounters counters() const;

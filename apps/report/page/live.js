@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The page of a run that goes on: the same sections, filled by what the program sends, until its report takes their place.
+// The page of a live run: the same sections, filled by updates of the program, until the report replaces them.
 'use strict';
 
 const kLiveSays = {
-  Good: ['It runs, and knows where it is.', 'good'],
+  Good: ['Running, with a good pose.', 'good'],
   Degraded: ['It runs; its poses are less certain now.', 'degraded'],
   Lost: ['It has lost its way, and starts again.', 'lost'],
   Initializing: ['It has not started to estimate yet.', 'initializing'],
 };
 const kPictures = {frame: 'frame', events: 'events, motion-compensated'};
 
-/** A run of which nothing has come yet, in the shape of the report's. */
+/** A run without data, in the format of the report. */
 function emptyRun(about) {
   const columns = ['t', 'status', 'x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'bgx', 'bgy', 'bgz', 'bax', 'bay', 'baz', 'keyframe',
                    'event_tracks', 'frame_tracks', 'landmarks', 'event_track_survival_rate', 'frame_track_survival_rate', 'map_matches', 'map_reach', 'event_rate', 'depth',
@@ -20,7 +20,7 @@ function emptyRun(about) {
           rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], changes: [], pictures: []};
 }
 
-/** Rows and changes that are new; the newest row goes along even where it is not one of those that are kept. */
+/** Adds new rows and changes; also the newest row, even if it is not kept. */
 function takeUpdate(run, update) {
   const rows = run.rows, from = update.rows_from;
   for (const [name, values] of Object.entries(update.rows)) rows[name].splice(from, Infinity, ...values);
@@ -58,7 +58,7 @@ function liveFacts(run, update) {
   ];
 }
 
-/** What it does now; returns the card and what fills it. */
+/** The present state; returns the card and its update function. */
 function liveCard(run) {
   const says = make('p', {class: 'says', role: 'status'}, 'It begins.'), why = make('p', {}), list = make('dl', {class: 'facts'});
   const card = make('article', {class: 'card verdict', id: 'live'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(0)}), fullName(run)), says, why, list);
@@ -73,7 +73,7 @@ function liveCard(run) {
   }];
 }
 
-/** The newest pictures: each is asked for when the one before has come. */
+/** The newest images: each is requested when the one before has arrived. */
 function livePictures() {
   const figures = make('div', {class: 'shots'}), shown = {};
   const card = make('div', {class: 'card'}, make('h3', {}, 'What the cameras see, with tracks'), figures,
@@ -92,7 +92,7 @@ function livePictures() {
   }];
 }
 
-/** The report that the run has left takes the place of all this. */
+/** Replaces the page by the report of the run. */
 async function showReport(say, metrics) {
   try {
     const answer = await fetch('report.html');
@@ -130,7 +130,7 @@ function buildLive(data) {
   });
 }
 
-/** Takes what comes; who is looked at by nobody draws nothing, and asks for no pictures. */
+/** Processes updates; a hidden page draws nothing and requests no images. */
 function watch(run, say, draw) {
   const source = new EventSource('events');
   let newest = null;

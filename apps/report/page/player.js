@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The page of `edged show`: pictures of events that play, beside the frames of their time, over the rate of events.
+// The page of `edged show`: plays event images beside the frames of their time, above the event rate.
 'use strict';
 
 const kSpeeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -12,7 +12,7 @@ function rgb(name) {
   return [value >> 16, value >> 8 & 255, value & 255];
 }
 
-/** Draws one picture on a canvas: the counts lie in it as grey levels, positive ones above the negative ones. */
+/** Draws one image on a canvas: its grey levels are counts, positive ones above the negative ones. */
 class EventScreen {
   constructor(canvas) {
     this.canvas = canvas;
@@ -24,7 +24,7 @@ class EventScreen {
     const image = this.image = new Image();
     image.src = 'data:image/png;base64,' + png;
     await image.decode();
-    if (this.image !== image) return;  // a later one has been asked for
+    if (this.image !== image) return;  // a later one has been requested
     const width = image.naturalWidth, height = image.naturalHeight / 2;
     this.store.canvas.width = this.canvas.width = width;
     this.store.canvas.height = 2 * height;
@@ -47,7 +47,7 @@ class EventScreen {
   }
 }
 
-/** Goes through the time of the page by itself. */
+/** Plays the time of the page. */
 class Playing {
   constructor(button) {
     this.button = button;
@@ -90,7 +90,7 @@ function playerFacts(data) {
   ];
 }
 
-/** The two pictures of the time under the cursor, and what moves it. */
+/** The two images at the cursor's time, and their controls. */
 function playerCard(data) {
   const events = make('canvas', {id: 'events', role: 'img', 'aria-label': 'events'}), eventsCaption = make('figcaption', {});
   const frame = make('img', {alt: 'frame', id: 'frame'}), frameCaption = make('figcaption', {});
@@ -130,7 +130,7 @@ function playerCard(data) {
   });
   slider.addEventListener('input', () => time.point(Number(slider.value)));
   time.listeners.push(show);
-  space = screen;  // what a change of the theme draws anew
+  space = screen;  // redrawn after a change of the theme
   return make('div', {class: 'card player'},
               make('div', {class: 'shots'}, make('figure', {}, events, eventsCaption), data.frames.length ? make('figure', {}, frame, frameCaption) : null),
               slider, make('div', {class: 'tools'}, button, speedLabel, styleLabel),

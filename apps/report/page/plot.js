@@ -34,7 +34,7 @@ class TimeGroup {
     this.view = this.full.slice();
     this.redraw();
   }
-  /** There is more to show; who sees the whole goes on seeing the whole. */
+  /** Extends the time range; a view of the whole range stays one. */
   grow(end) {
     const whole = this.view[0] === this.full[0] && this.view[1] === this.full[1];
     this.full[1] = Math.max(this.full[1], end);

@@ -5,7 +5,7 @@
 
 let report = null, runs = [], time = null, space = null;
 const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false, kept: false, links: true};
-const kLinkedAfter_s = 5;  // what is seen again sooner is near, and no place that one has come back to
+const kLinkedAfter_s = 5;  // matches of younger keyframes are no return to an earlier place
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
 const kSays = {
   'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
@@ -39,10 +39,10 @@ function length(value) {
 }
 const runColour = i => 'run' + i % 6;
 const nameOf = run => runs.filter(other => other.name === run.name).length > 1 ? run.folder : run.name;
-/** What is known of a run as a whole, of one that goes on as well; null of a file. */
+/** The metadata of a run, also of a live one; null for a file. */
 const about = run => run.metrics || run.live || null;
 const runName = run => nameOf(run) + (about(run) && !run.name.includes(about(run).mode) ? ', ' + about(run).mode : '');
-/** With the recording, where the folder's name does not tell it. */
+/** With the recording, if the folder's name does not contain it. */
 const fullName = run => (about(run) && !run.name.includes(about(run).recording) ? about(run).recording + ': ' : '') + runName(run);
 
 function section(title, ...children) {
@@ -60,7 +60,7 @@ const cell = (text, kind) => make('td', kind ? {class: kind} : {}, text === null
 
 // ---- verdict ----
 
-/** What a run amounts to, name by name; null is left out. */
+/** The summary of a run, name by name; null is skipped. */
 function facts(run) {
   const m = run.metrics, e = run.evaluation;
   const list = [];
@@ -77,7 +77,7 @@ function facts(run) {
   list.push(['path', number(e ? e.path_length_m : run.path_m, e ? 'm (true)' : 'm (estimated)', 2)]);
   if (!m) return list;
   const final = m.final_not_causal;
-  if (final && final.ate_rmse_m !== null) list.push(['ATE once all was known', length(final.ate_rmse_m) + ' (final path, not causal)']);
+  if (final && final.ate_rmse_m !== null) list.push(['ATE of the final trajectory', length(final.ate_rmse_m) + ' (not causal)']);
   list.push(['duration', number(m.duration_s, 's', 1)]);
   list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in all', 1)]);
   if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
@@ -118,7 +118,7 @@ function verdictCard(run, i) {
 
 // ---- path and pictures ----
 
-/** From here on the page is about this report. */
+/** Sets the report of the page. */
 function take(data) {
   report = data;
   runs = data.runs;
@@ -134,12 +134,12 @@ function axisOf(flat, k) {
 
 const place = (rows, i) => [rows.x[i], rows.y[i], rows.z[i]];
 
-/** From where the body saw a point again to where the keyframe was made that it belongs to. */
+/** From the pose of a map match to the keyframe of its map point. */
 function linksOf(run) {
   const rows = run.rows, links = [];
   (rows.map_reach || []).forEach((reach, i) => {
     const from = place(rows, i), then = rows.t[i] - reach;
-    if (reach === null || reach < kLinkedAfter_s || then < rows.t[0]) return;  // a keyframe of an earlier run's map has no place on this path
+    if (reach === null || reach < kLinkedAfter_s || then < rows.t[0]) return;  // a keyframe of a loaded map is not on this path
     const to = place(rows, rowAt(rows.t, then));
     if (from[0] !== null && to[0] !== null) links.push({from, to});
   });

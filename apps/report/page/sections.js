@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What stands below the path: plots, timeline, options, calibration, stages; and what puts the page together.
+// The sections below the path: plots, timeline, options, calibration, stages; and the assembly of the page.
 'use strict';
 
 // ---- plots ----
 
-/** One plot of a column, all runs in it; the truth where asked for. Nothing where no run has the column. */
+/** One plot of a column with all runs, and the truth if requested. Nothing if no run has the column. */
 function columnPlot(parent, title, unit, key, more) {
   const series = [];
   let truth = null;
@@ -23,7 +23,7 @@ function columnPlot(parent, title, unit, key, more) {
   new TimePlot(time, {title, unit, series, zero: more && more.zero}, parent);
 }
 
-/** Errors within what the estimator says of them, where there is a truth; else only what it says. */
+/** Errors with their limits by the covariance, if there is a truth; else only the limits. */
 function errorPlots(parent) {
   for (const axis of ['x', 'y', 'z']) {
     const key = 'sigma3_' + axis, series = [];
@@ -41,7 +41,7 @@ function errorPlots(parent) {
   }
 }
 
-/** Samples of height and speed beside the estimate; heights have a zero of their own, and are laid onto it by their median. */
+/** Samples of height and speed beside the estimate; heights have an arbitrary zero, and are shifted by their median difference. */
 function externalPlots(parent) {
   const median = all => [...all].sort((a, b) => a - b)[all.length >> 1];
   const speed = rows => rows.vx.map((v, i) => v === null ? null : Math.hypot(v, rows.vy[i], rows.vz[i]));
@@ -240,7 +240,7 @@ function buildPage(data) {
   time.tell();
 }
 
-/** build(data) fills the page, and whatever it holds follows the theme, the window and the printer. */
+/** build(data) fills the page, which adapts to theme, window and printer. */
 function begin(build) {
   build(JSON.parse(document.getElementById('data').textContent));
   document.getElementById('theme').addEventListener('click', () => { theme = (theme + 1) % 3; applyTheme(); });

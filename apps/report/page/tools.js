@@ -24,7 +24,7 @@ function tickText(value, step) {
   return (value / unit).toFixed(decimals) + name;
 }
 
-/** Four digits that count. */
+/** Four significant digits. */
 function valueText(value) {
   if (value === null || value === undefined) return '–';
   const size = Math.abs(value);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Paths and points in space on a canvas, seen from anywhere: z is up, no perspective, so that lengths compare.
+// Paths and points in space on a canvas, from any direction: z is up, orthographic, so that lengths are comparable.
 'use strict';
 
-/** From right to wrong, told apart by brightness as well. */
+/** From small to large errors, distinguishable by brightness as well. */
 const kErrorColours = [[42, 120, 190], [66, 168, 150], [214, 184, 60], [226, 120, 46], [190, 30, 60]];
 
 function errorColour(share) {
@@ -31,7 +31,7 @@ class SpaceView {
     this.shift = [0, 0];
   }
 
-  /** The box that holds the paths, and where asked for the bulk of the points: some always lie far out. */
+  /** The bounding box of the paths, and if requested of most points, without far outliers. */
   fit(withPoints) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     const hold = (k, values) => values.forEach(value => {
@@ -105,7 +105,7 @@ class SpaceView {
     context.globalAlpha = 1;
   }
 
-  /** Shaded paths are drawn shade by shade: a stroke a segment would be slow. */
+  /** Shaded paths are drawn shade by shade: a stroke per segment would be slow. */
   drawPath(context, path) {
     const kShades = 16, strokes = new Map();
     let before = null;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of the scene depth: which prior a run uses, and how each works.
+// The options of the scene depth: the source of a run, and the parameters of each source.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace edged {
 
 struct DepthFilterConfig {
-  double min_m = 0.15;  ///< measurements outside (min, max) are rejected, the estimate before is held
+  double min_m = 0.15;  ///< measurements outside (min, max) are rejected; the previous estimate is kept
   double max_m = 30.0;
   double time_constant_s = 0.25;  ///< of the smoothing; 0: none
   double max_age_s = 1.0;         ///< an estimate is held that long
@@ -23,7 +23,7 @@ struct LandmarkDepthConfig {
   static constexpr int min_landmarks = 5;  ///< in the region, for a measurement
 };
 
-/// What stands for all depths of the region. The paper takes the mean, which a far background pulls away.
+/// The statistic of the depths of the region. The paper uses the mean, which a far background biases.
 enum class RegionValue { Median, Mean };
 
 struct NetworkDepthConfig {

@@ -12,8 +12,8 @@
 
 namespace edged {
 
-/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated along. Zero holds
-/// that part as it is given.
+/// How far a camera's calibration, and the scale and axes of the IMU, may be off: they are estimated online. Zero keeps
+/// that part fixed.
 struct CalibrationConfig {
   double rotation_sigma_deg = 1.0;
   double time_offset_sigma_ms = 8.0;
@@ -21,10 +21,10 @@ struct CalibrationConfig {
   void visit(ConfigFields& fields);
 };
 
-/// How errors along a track hang together. KLT follows a feature from image to image: what it has drifted by stays. Of
+/// How errors along a track correlate. KLT tracks a feature from image to image: its drift persists. Of
 /// two observations dt apart the errors correlate by correlation * exp(-dt / time_s): a first-order Gauss-Markov
-/// process, and on top of it what each image has of its own. An event frame has more of that: it is rendered anew each
-/// time. And the more is taken for drift, the more what moves slowly is believed.
+/// process, plus an independent error of each image. An event frame has a larger independent part, as it is rendered
+/// anew each time. The larger the assumed drift, the larger the weight of slow motion.
 struct TrackNoise {
   double correlation = 0.95;  ///< on frames
   double event_correlation = 0.8;
@@ -37,9 +37,9 @@ struct LandmarkConfig {
   double min_parallax_deg = 0.6;  ///< a feature becomes a landmark once its rays differ by this
   double min_depth_m = 0.1;
   double max_depth_m = 60.0;
-  double max_residual_sigma = 2.5;    ///< an observation that fits worse is taken out
-  double max_innovation_sigma = 6.0;  ///< so is one that is farther from where the IMU expects it
-  double max_misfit = 2.5;  ///< so is a landmark whose observations together fit so much worse than the others'
+  double max_residual_sigma = 2.5;    ///< an observation with a larger residual is removed
+  double max_innovation_sigma = 6.0;  ///< so is one farther from its prediction by the IMU
+  double max_misfit = 2.5;  ///< so is a landmark whose mean residual is larger than the others' by this factor
   int max_per_camera = 70;  ///< landmarks in the cost, longest seen first
   void visit(ConfigFields& fields);
 };
@@ -50,7 +50,7 @@ struct StandstillConfig {
   double max_accel = 0.25;                       ///< spread of the acceleration's block means [m/s^2]
   static constexpr double max_gyro_mean = 0.15;  ///< a mean rate above this is motion, not bias [rad/s]
   double max_image_motion = 4e-3;  ///< median travel of the features over the window, on the unit plane [rad]
-  static constexpr double quiet_window_s = 0.7;  ///< quiet for so long, the IMU needs no picture
+  static constexpr double quiet_window_s = 0.7;  ///< duration of rest after which the IMU alone suffices
   double quiet_gyro = 0.008;                     ///< spread then, near a sensor's own noise [rad/s]
   double quiet_accel = 0.1;                      ///< [m/s^2]
   void visit(ConfigFields& fields);
@@ -58,7 +58,7 @@ struct StandstillConfig {
 
 /// The residual of Eq. 5.
 enum class DepthResidual : std::uint8_t {
-  Log,    ///< ln rho_bar - ln s - ln rho_source: free of units, what a relative error calls for
+  Log,    ///< ln rho_bar - ln s - ln rho_source: dimensionless, for relative errors
   Paper,  ///< rho_bar - s rho_source [1/m]
 };
 
@@ -67,11 +67,13 @@ struct DepthFactorConfig {
   DepthResidual form = DepthResidual::Log;
   double scale_sigma = 0.5;                   ///< of ln s before anything is known
   static constexpr double scale_walk = 0.02;  ///< [1/sqrt(s)]
-  static constexpr double noise_share = 0.5;  ///< of the source's sigma_ln: what changes with time and s cannot explain
-  static constexpr double min_interval_s = 0.5;  ///< between two factors: what the source gets wrong lasts
-  static constexpr int min_landmarks = 8;        ///< in the region
-  static constexpr double gate = 3.0;            ///< [sigma]
-  static constexpr double cauchy_scale = 1.0;    ///< [sigma]
+  static constexpr double noise_share =
+      0.5;  ///< factor on sigma_ln of the source: errors that change with time, which s does not model
+  static constexpr double min_interval_s =
+      0.5;                                     ///< between two factors: the errors of the source are correlated in time
+  static constexpr int min_landmarks = 8;      ///< in the region
+  static constexpr double gate = 3.0;          ///< [sigma]
+  static constexpr double cauchy_scale = 1.0;  ///< [sigma]
 
   void visit(ConfigFields& fields);
 };
@@ -90,7 +92,7 @@ struct VelocityConfig {
   double sigma_mps = 0.1;              ///< of a sample that has none of its own
   std::string position_m = "0 0 0";    ///< of the sensor in B
   std::string rotation_deg = "0 0 0";  ///< roll, pitch, yaw of its axes in B
-  /// The last two; InputError where they are no three numbers.
+  /// The last two; InputError if they are not three numbers.
   SE3 T_B_S() const;
   void visit(ConfigFields& fields);
 };
@@ -106,26 +108,27 @@ struct EstimatorConfig {
   double accel_bias_sigma = 0.15;
   static constexpr double zero_velocity_sigma = 0.01;
   static constexpr double init_spacing_s = 0.08;  ///< between the views of the start-up buffer, at most
-  static constexpr double init_turn_deg = 5.0;    ///< a turn by this makes the next view sooner
+  static constexpr double init_turn_deg = 5.0;    ///< a rotation by this adds the next view earlier
   static constexpr int init_min_views = 8;
   int init_max_views = 24;
-  double init_max_span_s = 7.0;          ///< tracks last, and biases stay, for so long
-  double init_scale_sigma = 0.08;        ///< of ln scale; a wrong start of too large a scale passes more easily
-  double provisional_scale_sigma = 0.2;  ///< a start that knows it to this is used, but not Good
-  double noise_gain = 0.05;              ///< adaptation of each camera's noise to its residuals, a packet
-  double noise_inflation = 2.0;          ///< sigma over the spread of what each observation adds to the one before
-  double event_noise_inflation = 2.5;    ///< times as much for events beside frames: their drift goes on as it was
+  double init_max_span_s = 7.0;    ///< tracks last, and biases stay, for so long
+  double init_scale_sigma = 0.08;  ///< of ln scale; a wrong start of too large a scale passes more easily
+  double provisional_scale_sigma =
+      0.2;                       ///< sigma of ln scale up to which an initialization is used, as provisional (not Good)
+  double noise_gain = 0.05;      ///< adaptation of each camera's noise to its residuals, a packet
+  double noise_inflation = 2.0;  ///< sigma over the spread of what each observation adds to the one before
+  double event_noise_inflation = 2.5;  ///< further factor for events beside frames, whose drift is unchanged
   static constexpr double min_noise_scale = 0.05;  ///< bounds of the adapted noise over the configured one
   static constexpr double max_noise_scale = 4.0;
-  double max_imu_strain = 0.5;  ///< beyond it (imu_strain()) the cameras are believed less
+  double max_imu_strain = 0.5;  ///< above this imu_strain() the observations have less weight
   double sigma_inflation =
-      1.3;  ///< of what covariance() gives: what features of one image have in common is not modelled
+      1.3;  ///< factor on covariance(): errors common to the features of one image are not modelled
   TrackNoise track_noise;
   CalibrationConfig calibration;
   LandmarkConfig landmarks;
   StandstillConfig standstill;
   DepthFactorConfig depth_factor;
-  HeightConfig height;  ///< the options of these two stand by themselves, not in visit
+  HeightConfig height;  ///< the options of these two are declared apart, not in visit
   VelocityConfig velocity;
   void visit(ConfigFields& fields);
 };

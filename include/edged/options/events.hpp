@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The options of event frames: how events are moved, rendered and enhanced.
+// The options of event frames: how events are warped, rendered and enhanced.
 #pragma once
 
 #include <functional>

@@ -54,7 +54,7 @@ struct OutlierConfig {
   void visit(ConfigFields& fields);
 };
 
-/// What makes a patch in an image count as the stored one.
+/// When a patch in an image matches the stored one.
 struct PatchConfig {
   double min_similarity = 0.8;  ///< normalised cross correlation
   static constexpr int iterations = 10;
@@ -75,7 +75,7 @@ struct TrackerConfig {
   OutlierConfig outliers;
   TemplateConfig templates;
   double forward_backward_px = 1.0;
-  // The appearance of an event frame depends on the motion: at 0.7 its tracks live a third as long.
+  // The appearance of an event frame depends on the motion: at 0.7 its tracks last a third as long.
   double min_correlation = 0.3;
   static constexpr double border_px = 4.0;
   double merge_px = 3.0;
@@ -100,7 +100,7 @@ struct KeyframeConfig {
 };
 
 struct LowLightConfig {
-  double below_range = 80.0;  ///< grey levels between the image's dark and bright ends; fewer are stretched
+  double below_range = 80.0;  ///< images with fewer grey levels between dark and bright quantiles are stretched
   static constexpr double target_range = 160.0;  ///< to so many
   static constexpr double max_gain = 12.0;
   static constexpr double smoothing_px = 1.0;  ///< standard deviation of the blur before it

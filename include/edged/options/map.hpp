@@ -16,9 +16,9 @@ struct KeyframeMapConfig {
   int min_points = 15;  ///< a keyframe with fewer well-observed points is dropped
   int max_points = 60;  ///< kept of a keyframe
   static constexpr double max_depth_error = 0.1;  ///< sigma of a point's inverse depth, as a share of it
-  double min_known_s = 4.0;                 ///< since the start of the estimator: earlier keyframes have a poor scale
-  double min_age_s = 2.0;                   ///< younger keyframes share their points with the window
-  double max_view_angle_deg = 35.0;         ///< between the rays of a point now and then
+  double min_known_s = 4.0;          ///< since the start of the estimator: earlier keyframes have an inaccurate scale
+  double min_age_s = 2.0;            ///< younger keyframes share their points with the window
+  double max_view_angle_deg = 35.0;  ///< between the rays of a point now and then
   static constexpr double max_scale = 1.5;  ///< a point is at most so much nearer or farther than then
   int max_keyframes = 100;                  ///< kept; time and memory of the filter grow with the square
   int candidates = 30;                      ///< nearest keyframes that are searched for an image

@@ -21,8 +21,8 @@ constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;    // on the unit plane, relative to 1 + the radius
 constexpr double kRoundTripTolerance = 1e-6;  // [px], of the pixels tried on construction
 constexpr double kUnitPlaneEnds = 89.0 * kDegree;
-// A lens that sees further than the first is used up to the second only: a pixel at 70 degrees is 4.4 times as long on
-// the unit plane as on the axis, at 80 degrees 12 times.
+// [deg] off the axis. A lens that reaches more than the first angle is used only up to the second: a pixel at 70
+// degrees is 4.4 times as long on the unit plane as on the axis, at 80 degrees 12 times.
 constexpr double kWidest = 86.0 * kDegree, kUsedOfWider = 70.0 * kDegree;
 
 /// What a distortion does to a point of the unit plane, and its derivative.
@@ -239,7 +239,7 @@ std::optional<double> CameraModel::view_limit() const { return limit_ > 0.0 ? st
 
 CameraModel CameraModel::within(double limit_rad) const {
   if (!(limit_rad > 0.0 && limit_rad < kWidest))
-    throw InputError::format("a lens can be used up to more than 0 and less than {:.0f} degrees off its axis, not {:g}",
+    throw InputError::format("the view limit of a lens must be above 0 and below {:.0f} degrees off its axis, not {:g}",
                              kWidest / kDegree, limit_rad / kDegree);
   CameraModel narrower = *this;
   narrower.limit_ =
@@ -263,12 +263,12 @@ CameraModel CameraModel::masked(const std::vector<std::uint8_t>& used) const {
   return narrower;
 }
 
-/// At the pixel and around it: what of a mask is smaller than the border passes between.
+/// Tests the pixel and points around it. Parts of a mask smaller than the border may be missed.
 bool CameraModel::in_mask(const Vector2d& pixel, double border_px) const {
   for (const double dy : {0.0, -border_px, border_px})
     for (const double dx : {0.0, -border_px, border_px}) {
       const long x = std::lround(pixel.x() + dx), y = std::lround(pixel.y() + dy);
-      if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;  // beyond the rim nothing is masked
+      if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;  // outside the image nothing is masked
       if (!uses(static_cast<int>(x), static_cast<int>(y))) return false;
     }
   return true;

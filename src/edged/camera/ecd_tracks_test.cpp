@@ -106,7 +106,7 @@ struct Agreement {
 };
 
 /// Triangulates each track once from all its observations, then reprojects it into the raw image. Tracks drift and some
-/// are lost on the way: nothing is thrown out, the median over all observations is what is judged.
+/// are lost. No observation is removed; the test uses the median over all.
 Agreement agreement(const Tracks& tracks, const Trajectory& poses, const CameraModel& camera, Duration mocap_delay) {
   Agreement result;
   std::vector<double> errors;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How wide a camera sees, and which cameras see through one lens.
+// Field of view of a camera, and which cameras share a lens.
 #pragma once
 
 #include "edged/rig.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Poses of the body turned into poses of the sensor that a user asks for.
+// Converts poses of the body to poses of the sensor that the user chose.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace edged {
 /// The body or one camera, with what turns a body pose into its pose.
 class OutputFrame {
  public:
-  /// name: "body" or a camera of the rig. Throws InputError that lists the names there are.
+  /// name: "body" or a camera of the rig. Throws an InputError that lists the known names.
   OutputFrame(const Rig& rig, const std::string& name);
 
   const std::string& name() const { return name_; }

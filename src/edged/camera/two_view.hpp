@@ -11,7 +11,7 @@
 
 namespace edged {
 
-/// One observation of a point: where the camera stood and where on its unit plane the point was seen.
+/// One observation of a point: the pose of the camera and the point on its unit plane.
 struct View {
   SE3 T_W_C;
   Eigen::Vector2d point;

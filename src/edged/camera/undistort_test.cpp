@@ -144,7 +144,7 @@ TEST(IdealPinhole, LeavesOutWhatTheMaskOfTheLensDoes) {
       if (std::abs(seen.x() - 59.5) > 1.0) {
         EXPECT_EQ(ideal.uses(x, y), seen.x() > 59.5) << x << ' ' << y;
       }
-      EXPECT_EQ(std::isfinite(table.at(x, y).x()), x >= 60) << "an event there is not drawn";
+      EXPECT_EQ(std::isfinite(table.at(x, y).x()), x >= 60) << "an event there is not rendered";
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Degrees, as users give and read them; all inside is in radians.
+// Degrees for input and output; all computations are in radians.
 #pragma once
 
 #include <numbers>

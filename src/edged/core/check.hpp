@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The two kinds of exception: InputError for what a user can mend, a failed EDGED_CHECK for a bug of ours.
+// The two kinds of exception: InputError for what a user can correct, CheckError (EDGED_CHECK) for a bug of ours.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -29,7 +29,7 @@ class CheckError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/// Of what a library says, for the one line of an InputError.
+/// The message of a library, shortened for the one line of an InputError.
 inline std::string first_line(const std::string& text) {
   return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
 }

@@ -50,7 +50,7 @@ Number parse_number(const std::string& key, const std::string& text, const char*
                     const std::string& range) {
   Number value{};
   if (!parse(text, value) || std::isnan(static_cast<double>(value))) {
-    throw InputError::format("option '{}' is '{}', but wants {} ({})", key, text, wanted, range);
+    throw InputError::format("option '{}' is '{}', but must be {} ({})", key, text, wanted, range);
   }
   check_range(key, value, doc);
   return value;
@@ -63,7 +63,7 @@ bool parse_bool(const std::string& key, const std::string& text) {
   for (const char* no : {"false", "off", "no", "0"}) {
     if (text == no) return false;
   }
-  throw InputError::format("option '{}' is '{}', but wants true or false", key, text);
+  throw InputError::format("option '{}' is '{}', but must be true or false", key, text);
 }
 
 /// Levenshtein distance: single-letter edits that turn a into b.
@@ -138,7 +138,7 @@ std::string yaml_comment(const ConfigField& field) {
   return comment;
 }
 
-/// By itself: the yaml library leaks its buffer where the file turns out to be a folder.
+/// A function of its own: the yaml library leaks its buffer if the path is a folder.
 std::string read_text(const std::filesystem::path& file) try {
   std::ifstream in(file);
   if (!in) throw std::ios_base::failure("open", std::error_code(errno, std::generic_category()));
@@ -264,7 +264,7 @@ void ConfigFields::add_choice(std::string_view name, const std::vector<std::stri
       name, choices, doc, false, [get = std::move(get), names] { return names[get()]; },
       [set = std::move(set), names, key, choices](const std::string& text) {
         const auto found = std::find(names.begin(), names.end(), text);
-        if (found == names.end()) throw InputError::format("option '{}' is '{}', but wants {}", key, text, choices);
+        if (found == names.end()) throw InputError::format("option '{}' is '{}', but must be {}", key, text, choices);
         set(static_cast<std::size_t>(found - names.begin()));
       });
 }
@@ -326,7 +326,7 @@ void ConfigFields::load(const std::filesystem::path& file) {
 
 std::string ConfigFields::to_yaml() const {
   std::string yaml;
-  std::vector<std::string> open;  // groups the last line stands in
+  std::vector<std::string> open;  // groups that enclose the last line
   for (const ConfigField& field : fields_) {
     std::vector<std::string> groups = split_key(field.key);
     const std::string name = groups.back();

@@ -34,7 +34,7 @@ struct StreamInfo {
 struct DatasetInfo {
   std::string name;    ///< folder name or simulator preset
   std::string format;  ///< "ecd", "euroc", "simulator", ...
-  /// Whose poses trajectories hold that are to be laid beside its ground truth: the frame of that, "body" without one.
+  /// The frame whose poses are compared with the ground truth: that of the ground truth; "body" without one.
   std::string pose_frame = "body";
   std::optional<Timestamp> begin;  ///< first stamp of any sensor, if known cheaply
   std::optional<Timestamp> end;    ///< last stamp, if known cheaply (for the progress line)
@@ -42,13 +42,13 @@ struct DatasetInfo {
   std::vector<std::string> external;    ///< names of the external sensors that it has, as of `external_sensors()`
   std::vector<StreamInfo> streams;      ///< of formats that name them
   cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known
-  std::string event_camera = "events";  ///< what its batches of events call their camera
-  std::string frame_camera = "frames";  ///< and its frames
+  std::string event_camera = "events";  ///< camera name of its event batches
+  std::string frame_camera = "frames";  ///< camera name of its frames
 };
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
 /// ties broken external samples, IMU, events, frame. Streams: holds a bounded part of the recording in memory at any
-/// time; where that does not suffice, as the sensors' clocks differ by more, the order holds within each sensor only.
+/// time; if the clocks of the sensors differ by more, only each sensor by itself is in order.
 class Dataset {
  public:
   virtual ~Dataset() = default;
@@ -59,8 +59,8 @@ class Dataset {
   /// most a few milliseconds. Throws InputError for what cannot be repaired.
   virtual std::optional<Measurement> next() = 0;
 
-  /// Nobody wants these: from now on next() may leave them out, and so what it takes to decode them. Nothing else
-  /// changes but repairs(), which are those of what is read.
+  /// Declares measurements that are not needed: from now on next() may skip them without decoding. Nothing else
+  /// changes, except that repairs() counts only what is read.
   virtual void leave_out(Modality /*unwanted*/) {}
 
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }

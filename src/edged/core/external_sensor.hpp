@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The one table of external sensors: what readers, writers, checks, flags and bindings need to know of each.
+// The one table of external sensors: the properties of each that readers, writers, checks, flags and bindings use.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,11 @@ struct ExternalNumbers {
 
 /// One alternative of ExternalSample.
 struct ExternalSensor {
-  std::string_view name;                  ///< of its files (NAME.txt), its flag (--NAME), its counters
+  std::string_view name;                  ///< as in its files (NAME.txt), its flag (--NAME), its counters
   std::string_view what;                  ///< what it may be, for help texts
   std::vector<std::string_view> columns;  ///< what it measures
   std::string_view unit;                  ///< of all columns: "m" or "m/s"
-  double largest = 0.0;                   ///< no value is beyond that, either way
+  double largest = 0.0;                   ///< largest absolute value that is accepted
   ExternalSample (*sample)(Timestamp t, const ExternalNumbers& numbers) = nullptr;
   ExternalNumbers (*numbers)(const ExternalSample& sample) = nullptr;
 };

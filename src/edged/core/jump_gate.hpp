@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Keeps one damaged stamp from making all that follows it late.
+// Rejects a damaged stamp in the future, so that the measurements after it do not count as late.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,17 @@
 namespace edged {
 
 /// Items of one stream, T with a `time_of`, within 146 years of zero, go through it one by one. One far
-/// ahead of all before waits until another confirms it; when the next contradicts it, it is dropped.
+/// ahead of all before is held until another confirms it; it is dropped when the next contradicts it.
 template <typename T>
 class JumpGate {
  public:
   static constexpr Duration kJump = std::chrono::seconds(10);
 
-  /// first_waits: the first of all has to be confirmed as well.
+  /// first_waits: the first item also needs a confirmation.
   explicit JumpGate(bool first_waits) : first_waits_(first_waits) {}
 
-  /// pass(T) is given what goes on, drop(T, Timestamp) what is dropped and the stamp that contradicts it.
+  /// Calls pass(T) for each accepted item, and drop(T, Timestamp) for each dropped one with the stamp that contradicts
+  /// it.
   template <typename Pass, typename Drop>
   void push(T item, Pass pass, Drop drop) {
     if (waiting_) {
@@ -42,7 +43,7 @@ class JumpGate {
     }
   }
 
-  /// Many at once: how many of the first go on as they are.
+  /// Of many items, the number of leading ones that pass unchanged.
   std::size_t push_first(std::span<const T> items) {
     std::size_t count = 0;
     for (; count < items.size() && !waiting_ && !is_far_ahead(time_of(items[count])); ++count) {
@@ -51,22 +52,22 @@ class JumpGate {
     return count;
   }
 
-  /// Another stream, on the same clock as far as it is known, has come to t: what waits near it is confirmed, and what
-  /// comes near it is not far ahead.
+  /// Another stream, on the same clock as far as it is known, has reached t: items that are held near t are confirmed,
+  /// and later items near t are not far ahead.
   template <typename Pass>
   void confirm(Timestamp t, Pass pass) {
     heard_ = std::max(heard_, t);
     if (waiting_ && std::chrono::abs(time_of(*waiting_) - t) <= kJump) finish(pass);
   }
 
-  /// Nothing more will come.
+  /// The end of the stream.
   template <typename Pass>
   void finish(Pass pass) {
     if (waiting_) let_through(*std::exchange(waiting_, std::nullopt), pass);
   }
 
   bool waits() const { return waiting_.has_value(); }
-  /// Of what went on.
+  /// The newest stamp of the accepted items.
   std::optional<Timestamp> newest() const { return newest_; }
 
  private:

@@ -17,7 +17,7 @@ struct Item {
 
 Item item(int s) { return {timestamp_from_seconds(s)}; }
 
-/// A gate, and what became of what it was given: "1 2 -3600 3", dropped ones with a minus.
+/// A gate with a log of its items: "1 2 -3600 3", dropped ones with a minus.
 struct Gate {
   JumpGate<Item> gate;
   std::string told = {};

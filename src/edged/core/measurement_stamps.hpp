@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When a measurement was made, and by which sensor.
+// The stamp of a measurement, and the name of its sensor.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ constexpr bool is_plausible(Timestamp t) {
   return t.time_since_epoch() < kLongest && t.time_since_epoch() > -kLongest;
 }
 
-/// The stamp of whatever has one.
+/// The stamp of an item that has one.
 template <typename T>
 Timestamp time_of(const T& item) {
   return item.t;
@@ -46,7 +46,7 @@ inline std::optional<Timestamp> first_stamp(const Measurement& measurement) {
   return batch && !batch->events.empty() ? std::optional(batch->events.front().t) : last_stamp(measurement);
 }
 
-/// The name of the camera that gave it; null for a sample of another sensor.
+/// The name of its camera; null for a sample of another sensor.
 inline const std::string* camera_of(const Measurement& measurement) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) return &batch->camera;
   const auto* frame = std::get_if<Frame>(&measurement);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The state of the body in the odometry frame O: what the estimator knows, before the map moves it.
+// The state of the body in the odometry frame O, as the estimator has it.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace edged {
 
-/// The state of the body B in the odometry frame O (z up) at one instant; NavState has it in the map.
+/// The state of the body B in the odometry frame O (z up) at one instant; NavState is the same in the map frame.
 struct OdomState {
   Timestamp t;  ///< IMU clock
   SE3 T_O_B;

@@ -55,14 +55,14 @@ std::optional<Measurement> RecordingPiece::cut(Measurement measurement) {
   return events.empty() ? std::nullopt : std::optional(std::move(measurement));
 }
 
-/// Those are not waited for at the piece's end.
+/// The end of the piece does not wait for these.
 void RecordingPiece::leave_out(Modality unwanted) {
   whole_->leave_out(unwanted);
   (unwanted == Modality::Events ? left_.events : left_.frames) = false;
 }
 
 std::optional<Measurement> RecordingPiece::next() {
-  // The sensors' clocks may differ, so that one which is past the end says nothing of the others.
+  // The sensors' clocks may differ, so the others may still have measurements before the end.
   while (!all_past()) {
     std::optional<Measurement> measurement = read();
     if (!measurement) break;

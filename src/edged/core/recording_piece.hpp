@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A part of a recording, as if the sensors had been switched on late and off early.
+// A part of a recording, as if it had started later and ended earlier.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ struct PieceBounds {
 /// Each sensor's measurements are kept by their own stamps. The truth keeps a pose on either side of the piece.
 class RecordingPiece final : public Dataset {
  public:
-  /// Where the recording does not know its begin, its first measurement is; it is read here. Throws InputError for
-  /// bounds that hold nothing, here, or in next() where only the recording's end tells.
+  /// If the recording does not know its begin, that is the stamp of its first measurement, which is read here. Throws
+  /// InputError for a range without measurements: here, or in next() if the end of the recording is unknown.
   RecordingPiece(std::unique_ptr<Dataset> whole, const PieceBounds& bounds);
 
   const DatasetInfo& info() const override { return info_; }
@@ -31,7 +31,7 @@ class RecordingPiece final : public Dataset {
 
  private:
   std::optional<Measurement> read();
-  /// The part of it that lies in the piece, if any; notes which sensors are through with it.
+  /// The part of it that lies in the piece, if any; notes which sensors have passed its end.
   std::optional<Measurement> cut(Measurement measurement);
   bool all_past() const { return !(left_.events || left_.frames || left_.imu); }
 
@@ -39,9 +39,9 @@ class RecordingPiece final : public Dataset {
   DatasetInfo info_;
   PieceBounds bounds_;
   Timestamp from_, to_;
-  std::optional<Measurement> first_;  // read for the begin
+  std::optional<Measurement> first_;  // read ahead to find the begin
   Timestamp newest_ = Timestamp::min();
-  bool empty_ = true;  // nothing handed out yet
+  bool empty_ = true;  // next() has returned nothing yet
   struct {
     bool events, frames, imu;
   } left_;  // sensors that have not reached the piece's end

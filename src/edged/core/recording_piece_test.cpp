@@ -140,7 +140,7 @@ TEST(RecordingPiece, RefusesBoundsThatHoldNothing) {
   EXPECT_THROW(piece(0.5, 0.5), InputError);
   EXPECT_THROW(piece(0.5, 0.2), InputError);
   EXPECT_THROW(piece(1.5, std::nullopt), InputError);
-  // Without known bounds only the end tells.
+  // Without known bounds the error comes at the end.
   RecordingPiece unknown = piece(1.5, std::nullopt, false);
   try {
     unknown.next();

@@ -11,15 +11,15 @@
 
 namespace edged {
 
-/// The folders there are of one kind ("rigs", "depth"), best first: the one that the environment names (EDGED_RIGS,
+/// The existing folders of one kind ("rigs", "depth"), best first: the one that the environment names (EDGED_RIGS,
 /// EDGED_DEPTH), share/edged/KIND beside the folder of the running program, and that of the installation that the
 /// library was built for.
 std::vector<std::filesystem::path> resource_folders(std::string_view kind);
 
-/// The files there with this extension (".yaml"), by name; of two of a name the better folder's.
+/// The files with this extension (".yaml") in these folders, by name; of equal names that of the better folder.
 std::vector<std::filesystem::path> resources(std::string_view kind, std::string_view extension);
 
-/// The file of that name without its extension, if there is one.
+/// The file with that name (without extension), if any.
 std::optional<std::filesystem::path> find_resource(std::string_view kind, const std::string& name,
                                                    std::string_view extension);
 

@@ -50,7 +50,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q_in) {
-  const double sign = q_in.w() < 0 ? -1.0 : 1.0;  // q and -q are the same rotation: take the short way
+  const double sign = q_in.w() < 0 ? -1.0 : 1.0;  // q and -q are the same rotation: the shorter one
   const Eigen::Vector3d v = sign * q_in.vec();
   const double w = sign * q_in.w();
   const double n = v.norm();

@@ -9,7 +9,7 @@
 
 namespace edged {
 
-/// Which stream is next, and where its batch has to end if it is that of the events.
+/// The next stream, and the end of its batch if it is the stream of events.
 struct NextStream {
   enum class Stream { None, External, Imu, Events, Frame } stream = Stream::None;
   Timestamp events_end = Timestamp::max();  ///< the batch holds events before this stamp

@@ -28,7 +28,7 @@ bool DepthFilter::add(const DepthEstimate& measured) {
   const auto blend = [a](double now, double before) { return a * now + (1.0 - a) * before; };
   estimate_->t = measured.t;
   estimate_->depth_m = std::exp(blend(std::log(measured.depth_m), std::log(estimate_->depth_m)));
-  // Errors of one source are alike from one measurement to the next: smoothing does not shrink them.
+  // Errors of one source are correlated in time, so smoothing does not reduce them.
   estimate_->sigma_ln = blend(measured.sigma_ln, estimate_->sigma_ln);
   estimate_->spread_ln = blend(measured.spread_ln, estimate_->spread_ln);
   return true;

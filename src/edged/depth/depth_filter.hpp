@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Paper Eq. 4: what is valid of a sequence of depth measurements, smoothed, held and given up with age.
+// Paper Eq. 4: a low-pass filter of valid depth measurements, whose estimate expires with age.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 namespace edged {
 
 /// ln d_t = a ln d + (1 - a) ln d_(t-1), a = 1 - exp(-dt / time_constant): the paper's alpha, for any rate. The first
-/// valid measurement, and the first after one has become too old, starts afresh.
+/// valid measurement, and the first after one has become too old, restarts the filter.
 class DepthFilter {
  public:
   explicit DepthFilter(const DepthFilterConfig& config) : config_(config) {}
 
-  /// True when the measurement was taken.
+  /// True when the measurement was accepted.
   bool add(const DepthEstimate& measured);
 
   std::optional<DepthEstimate> at(Timestamp t) const;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The depth priors: what each takes, where it looks, and how they are put together.
+// The depth sources: their measurements, their region, and their fusion.
 #include "edged/options/depth.hpp"
 
 #include <gtest/gtest.h>
@@ -139,7 +139,7 @@ TEST(NetworkDepthPrior, InItsOwnThreadNeverMakesItsCallerWait) {
   prior.finish();
   EXPECT_GE(prior.inferences(), 1);
   EXPECT_LE(prior.inferences(), 59);
-  EXPECT_EQ(prior.at(at_ms(3000))->t, at_ms(2949)) << "the newest window is never left out";
+  EXPECT_EQ(prior.at(at_ms(3000))->t, at_ms(2949)) << "the newest window is never skipped";
 }
 
 TEST(NetworkDepthPrior, TakesTheMeanOfTheRegionWhenAsked) {

@@ -37,7 +37,8 @@ std::optional<DepthEstimate> FusedDepth::at(Timestamp t) const {
   const std::optional<DepthEstimate> near = landmarks_.at(t);
   std::optional<DepthEstimate> net = network_->at(t);
   if (net) net->depth_m *= std::exp(scale_.ln_scale());
-  // The model's error is mostly its scale: what is known of s replaces it, with what changes from window to window.
+  // The error of the network is mostly its scale: the uncertainty of s replaces it, plus the noise from window to
+  // window.
   if (net) net->sigma_ln = std::min(net->sigma_ln, std::hypot(net->sigma_ln * 0.5, scale_.sigma()));
   if (!near && !net) return constant_.at(t);
   if (!near || !net) return near ? near : net;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Landmarks and network together: the landmarks give the scale, the network carries on where they are missing.
+// Fusion of landmarks and network: the landmarks give the scale, the network serves where they are missing.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ class ScaleEstimate {
 };
 
 /// The mean of ln depth, weighted by inverse variance, of the landmarks and of s times the network; without either, the
-/// constant. s is learned wherever both are there.
+/// constant. s is estimated while both are available.
 class FusedDepth : public DepthPrior {
  public:
   FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network,

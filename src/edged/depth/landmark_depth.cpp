@@ -27,7 +27,7 @@ void LandmarkDepth::add_landmarks(Timestamp t, std::span<const SeenDepth> landma
   }
   if (static_cast<int>(logs.size()) < config_.min_landmarks) return;
   const double middle = median(logs), spread = robust_deviation(logs, middle);
-  // The median of n values is known to 1.25 spread / sqrt(n); a twentieth for what they have in common.
+  // The standard error of the median of n values is 1.25 spread / sqrt(n); a twentieth is added for common errors.
   const double sigma = std::hypot(0.05, 1.25 * spread / std::sqrt(static_cast<double>(logs.size())));
   filter_.add({t, std::exp(middle), sigma, spread});
 }

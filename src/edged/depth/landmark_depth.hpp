@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// The central region of an image on the unit plane of its camera: what lies between two corners.
+/// The central region of an image on the unit plane of its camera, between two corners.
 struct CentralRegion {
   CentralRegion(const CameraModel& camera, double share);  ///< share: of each side of the image
   bool contains(const Eigen::Vector2d& point) const {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A thread that works on the newest window of events only: for live use, where late is worse than missing.
+// A thread that works on the newest window of events only: for live use, where a late result is worse than none.
 #pragma once
 
 #include <condition_variable>
@@ -23,13 +23,13 @@ class LatestWindowThread {
 
   explicit LatestWindowThread(Measure measure);
 
-  /// A window that has not been begun when the next one comes is left out.
+  /// A window that has not been started when the next one arrives is skipped.
   void put(std::vector<Event> window);
 
-  /// What has been measured since the last call, in the order of the windows. Throws what `measure` threw.
+  /// The measurements since the last call, in the order of the windows. Throws what `measure` threw.
   std::vector<DepthEstimate> take();
 
-  /// Waits until nothing is put that has not been measured or left out.
+  /// Waits until all windows have been measured or skipped.
   void finish();
 
  private:
@@ -42,7 +42,7 @@ class LatestWindowThread {
   bool busy_ = false;
   std::vector<DepthEstimate> measured_;
   std::exception_ptr failure_;
-  std::jthread thread_;  // last: it ends before what it uses
+  std::jthread thread_;  // last member: it ends before the members that it uses
 };
 
 }  // namespace edged

@@ -16,7 +16,7 @@ std::vector<Event> window_at(int ms) { return {{Timestamp() + std::chrono::milli
 
 DepthEstimate estimate_of(const std::vector<Event>& window) { return {window.back().t, 2.0, 0.1, 0.0}; }
 
-/// Work that begins and ends when the test says so.
+/// Work that begins and ends on the command of the test.
 struct Gate {
   std::counting_semaphore<> begun{0}, may_end{0};
   std::optional<DepthEstimate> operator()(const std::vector<Event>& window) {
@@ -47,7 +47,8 @@ TEST(LatestWindowThread, LeavesOutWindowsThatAreNoLongerTheNewest) {
   LatestWindowThread thread([&gate](const std::vector<Event>& window) { return gate(window); });
   thread.put(window_at(50));
   gate.begun.acquire();
-  for (const int ms : {100, 150, 200}) thread.put(window_at(ms));  // while the first is in work: nobody waits
+  for (const int ms : {100, 150, 200})
+    thread.put(window_at(ms));  // while the first is being measured: put does not wait
   EXPECT_TRUE(thread.take().empty());
   gate.may_end.release(2);
   thread.finish();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Makes the depth prior that the options name.
+// Makes the scene depth source that the options select.
 #pragma once
 
 #include <memory>

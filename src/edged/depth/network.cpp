@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// OpenCV writes what it throws to the terminal as well; the exception is enough.
+/// OpenCV also prints its exceptions to the terminal; the exception is enough.
 class QuietOpenCv {
  public:
   QuietOpenCv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
@@ -35,8 +35,7 @@ struct DepthNetwork::Runtime {
 
 DepthNetwork::DepthNetwork(const fs::path& onnx) : file_(onnx), runtime_(std::make_unique<Runtime>()) {
   if (!fs::is_regular_file(onnx))
-    throw InputError::format("{}: there is no such file; `edged depth fetch` tells where models come from",
-                             onnx.string());
+    throw InputError::format("{}: there is no such file; `edged depth fetch` lists where to get models", onnx.string());
   model_ = read_depth_model(onnx);
   const QuietOpenCv quiet;
   try {

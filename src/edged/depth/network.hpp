@@ -11,12 +11,12 @@
 
 namespace edged {
 
-/// What the json file beside the model says of it.
+/// The properties of a model, from the json file beside it.
 struct DepthModel {
   std::string name, note;
   int bins = 5;
-  int shrink = 1;         ///< the network sees the mean of shrink x shrink pixels of the grid
-  int multiple = 8;       ///< sides of what it sees are multiples of this
+  int shrink = 1;         ///< the network input is the mean of shrink x shrink pixels of the grid
+  int multiple = 8;       ///< sides of its input are multiples of this
   double d_max_m = 80.0;  ///< depth = d_max exp(-alpha (1 - output))
   double alpha = 3.70378;
   double focal_px = 0.0;   ///< of the camera it was trained with; 0: not known, depths are not scaled
@@ -30,8 +30,8 @@ struct DepthModel {
   std::vector<State> states;  ///< empty: not recurrent
 };
 
-/// NAME (core/resources.hpp: depth/NAME.onnx) or the path of an ONNX file. Throws InputError that lists the models
-/// there are.
+/// NAME (core/resources.hpp: depth/NAME.onnx) or the path of an ONNX file. Throws an InputError that lists the known
+/// models.
 std::filesystem::path find_depth_model(const std::string& name_or_path);
 
 /// Reads MODEL.json for MODEL.onnx. Throws InputError naming the file and key.
@@ -46,11 +46,11 @@ class DepthNetwork {
   const DepthModel& model() const { return model_; }
 
   /// z-depth [m], CV_32FC1, of every pixel of a normalised grid (events/voxel_grid.hpp) of any size that is at least
-  /// `shrink` times `multiple` on both sides. A recurrent network goes on from the state of the window before, unless
-  /// the size changed.
+  /// `shrink` times `multiple` on both sides. A recurrent network continues from the state of the previous window,
+  /// unless the size changed.
   cv::Mat infer(const cv::Mat& grid);
 
-  /// Forgets the state.
+  /// Resets the state.
   void reset() { states_.clear(); }
 
  private:

@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kForgetAfter = std::chrono::seconds(5);  // a recurrent network starts afresh
+constexpr Duration kForgetAfter = std::chrono::seconds(5);  // a recurrent network is reset
 
 DepthFilterConfig with_time_constant(DepthFilterConfig filter, double time_constant_s) {
   filter.time_constant_s = time_constant_s;
@@ -45,7 +45,7 @@ NetworkDepth::NetworkDepth(const CameraModel& camera, double region_share, const
   const int least = network_.model().shrink * network_.model().multiple;
   if (seen_.width < least || seen_.height < least)
     throw InputError::format(
-        "option 'network.margin_px' leaves {} x {} pixels to the depth network, which wants {} x {}", seen_.width,
+        "option 'network.margin_px' leaves {} x {} pixels to the depth network, which needs {} x {}", seen_.width,
         seen_.height, least, least);
   if (network_.model().focal_px > 0.0) scale_ = camera.mean_focal() / network_.model().focal_px;
   if (inference == Inference::OwnThread)

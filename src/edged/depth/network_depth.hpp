@@ -16,8 +16,8 @@
 namespace edged {
 
 /// Cuts the events into windows of the model's length and runs the network at the end of each. Only the pixels around
-/// the central region reach it. Depths are scaled by the ratio of the focal lengths, for which an image looks the same.
-/// In its own thread, a depth counts from the first add_events after it is there; its stamp is that of its events.
+/// the central region reach it. Depths are scaled by the ratio of the focal lengths, at which the images are equal. In
+/// its own thread, a depth takes effect at the first add_events after it is computed; its stamp is that of its events.
 class NetworkDepth : public DepthPrior {
  public:
   /// Throws InputError when the model cannot be used or the image is too small for it.
@@ -30,9 +30,9 @@ class NetworkDepth : public DepthPrior {
   const DepthModel& model() const { return network_.model(); }
   /// The last measurement, before validity and smoothing.
   const std::optional<DepthEstimate>& measured() const { return measured_; }
-  /// Windows the network has seen.
+  /// Number of windows that the network has processed.
   int inferences() const { return inferences_; }
-  /// Waits for a network in its own thread, and takes what it has measured.
+  /// Waits for a network in its own thread, and takes its measurements.
   void finish();
 
  private:
@@ -50,7 +50,7 @@ class NetworkDepth : public DepthPrior {
   DepthFilter filter_;
   int inferences_ = 0;
   std::optional<Timestamp> seen_until_;       // by measure
-  std::optional<LatestWindowThread> thread_;  // last: it runs measure
+  std::optional<LatestWindowThread> thread_;  // last member: it runs measure
 };
 
 }  // namespace edged

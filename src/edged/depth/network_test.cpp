@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Networks through cv::dnn against what torch computed (tools/depth/make_test_models.py), and what is said of bad
-// files.
+// Networks through cv::dnn against what torch computed (tools/depth/make_test_models.py), and the errors for bad files.
 #include "edged/depth/network.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +38,7 @@ std::vector<std::vector<double>> expected_of(const std::string& name) {
   return nlohmann::json::parse(file).at("expected").get<std::vector<std::vector<double>>>();
 }
 
-/// Largest difference of the normalised log depth from torch's, on the pixels that were noted down.
+/// Largest difference of the normalised log depth from torch's, on the recorded pixels.
 double difference(const cv::Mat& depth, const DepthModel& model, const std::vector<double>& expected) {
   double worst = 0.0;
   std::size_t i = 0;

@@ -16,16 +16,16 @@ using Eigen::Vector3d;
 using Chosen = StartSolver::Chosen;
 
 constexpr std::size_t kMinTracks = 10;
-constexpr std::size_t kPatchTracks = 12;  // of which a hypothesis is made
+constexpr std::size_t kPatchTracks = 12;  // of which a hypothesis consists
 constexpr double kPatches = 8.0;
 constexpr int kIterations = 12, kPatchIterations = 4;
-constexpr double kFits = 0.6;      // [sigma] of a track that fits
-constexpr double kOneWorld = 0.8;  // so large a share that fits is the world
-constexpr double kHopeless = 0.4;  // what explains less than this share of the best is given up
+constexpr double kFits = 0.6;      // [sigma] of an inlier track
+constexpr double kOneWorld = 0.8;  // at this share of inliers the motion is relative to the static scene
+constexpr double kHopeless = 0.4;  // a hypothesis with less than this share of the best one's support is dropped
 constexpr int kBiasRounds = 2;
 constexpr double kCell_rad = 0.25;
 
-/// A start, the tracks that fit it, and how much of the view they are.
+/// An initialization, its inlier tracks, and the share of the view that they cover.
 struct Hypothesis {
   Start x;
   Chosen fit;
@@ -38,8 +38,8 @@ Chosen all_of(const StartSolver& solver) {
   return all;
 }
 
-/// What tells one start from another. What moves by itself fills a part of the view with features, the world all of it:
-/// the tracks of one direction share one vote.
+/// The weight of a hypothesis. A dynamic object fills a part of the view with features, the static scene all of it: the
+/// tracks of one direction share one vote.
 class Judge {
  public:
   explicit Judge(const StartSolver& solver) {
@@ -68,7 +68,7 @@ class Judge {
     return static_cast<double>(hypothesis.fit.size()) > kOneWorld * static_cast<double>(votes_.size());
   }
 
-  /// Tracks in the middle of patches that share the view.
+  /// Tracks at the centres of patches that divide the view.
   Chosen centres() const {
     const double of_a_patch = std::max(1.0, std::accumulate(votes_.begin(), votes_.end(), 0.0) / kPatches);
     Chosen centres;
@@ -86,7 +86,7 @@ class Judge {
   std::vector<double> votes_;
 };
 
-/// The tracks around one.
+/// The tracks around one track.
 Chosen patch(const StartSolver& solver, std::size_t centre) {
   Chosen nearest = all_of(solver);
   const Vector3d there = solver.direction(centre);
@@ -103,7 +103,7 @@ std::optional<RefinedStart> started(const StartSolver& solver, const Chosen& cho
   return linear ? solver.refine(chosen, *linear, iterations) : std::nullopt;
 }
 
-/// The start that the tracks of a patch make, then those that fit it; nothing where they explain less than wanted.
+/// The initialization from the tracks of a patch, refined with its inliers; nothing if its support is too small.
 std::optional<Hypothesis> grown(const StartSolver& solver, const Judge& judge, const Chosen& seed, double wanted) {
   const std::optional<RefinedStart> start = started(solver, seed, kPatchIterations);
   if (!start) return std::nullopt;
@@ -113,7 +113,7 @@ std::optional<Hypothesis> grown(const StartSolver& solver, const Judge& judge, c
   return better ? std::optional(judge.judged(solver, better->x)) : std::nullopt;
 }
 
-/// The best motion of a gyro bias.
+/// The best motion for a gyro bias.
 struct Found {
   Vector3d gyro_bias;
   StartSolver solver;
@@ -142,13 +142,13 @@ std::vector<InitFrame> without(std::vector<InitFrame> frames, const std::set<Fea
   return frames;
 }
 
-/// Looks for the motion of the world in a start-up buffer.
+/// Estimates the motion relative to the static scene from a start-up buffer.
 class MotionSearch {
  public:
   MotionSearch(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise, double accel_bias_sigma)
       : frames_(frames), rig_(rig), noise_(noise), accel_bias_sigma_(accel_bias_sigma) {}
 
-  /// What walks by turns the gyro bias too: where some do, the bias is that of the features that fit, or at first none.
+  /// Dynamic objects bias the gyro bias too: if there are some, it is estimated from the inliers, or is zero at first.
   std::optional<Found> best() {
     std::optional<Found> best = best_at(align_gyro_bias(frames_, rig_, noise_));
     if (!best || judge_->fits_nearly_all(best->best)) return best;
@@ -160,7 +160,7 @@ class MotionSearch {
     return better(other, best) ? std::move(other) : std::move(best);
   }
 
-  /// Of what was found, the share that an estimate at the last frame explains.
+  /// The share of the support that an estimate at the last frame explains, too.
   double explained(const Found& found, const OdomState& running) const {
     const double support = judge_->judged(found.solver, found.solver.start_of(running)).support;
     return std::min(1.0, support / found.best.support);
@@ -178,8 +178,8 @@ class MotionSearch {
     return Found{*bias, std::move(solver), std::move(best)};
   }
 
-  /// Where one motion does not fit nearly all tracks, some of them move by themselves, and least squares lie between:
-  /// then the motion that explains the largest part of the view, one patch after the other making a hypothesis.
+  /// If one motion does not fit nearly all tracks, some are on dynamic objects and least squares are biased: then each
+  /// patch makes a hypothesis, and the motion that explains the largest part of the view is chosen.
   Hypothesis best_hypothesis(const StartSolver& solver, const Start& of_all) const {
     Hypothesis best = judge_->judged(solver, of_all);
     if (judge_->fits_nearly_all(best)) {
@@ -197,7 +197,7 @@ class MotionSearch {
   const Rig& rig_;
   const ImuNoise& noise_;
   double accel_bias_sigma_;
-  std::optional<Judge> judge_;  ///< one for all biases, made of the first
+  std::optional<Judge> judge_;  ///< the same for all biases, made from the first one
 };
 
 }  // namespace

@@ -1,20 +1,18 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Visual-inertial alignment: starts the estimator in mid-motion, from feature tracks and IMU alone.
+// Visual-inertial alignment: initializes the estimator in motion, from feature tracks and IMU alone.
 //
 // 1. The gyro bias is the one whose rotations make the feature rays of each pair of views coplanar with some baseline
 //    (the coplanarity of Kneip and Lynen, "Direct optimization of frame-to-frame rotation", ICCV 2013, here with the
-//    rotations tied together by the gyro).
+//    rotations coupled by the gyro).
 // 2. With rotations known, landmark positions, the first velocity and gravity are linear in the rays (Martinelli,
 //    "Closed-form solution of visual-inertial structure from motion", IJCV 2014); landmarks are eliminated one by one,
-//    and the length of gravity is imposed exactly. The scale is metric from the start.
+//    and the magnitude of gravity is a constraint. The scale is metric from the start.
 // 3. Feature noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow,
-// over
-//    the accelerometer bias too. Their normal equations tell how well the scale is known.
-// 4. A walker is as good a world as the room: seen from him the room walks, and the IMU knows no velocity. Where one
-// motion
-//    does not fit nearly all features, patches of the view make hypotheses, and the one that explains most of the view
-//    wins.
+//    with the accelerometer bias. Their normal equations give the uncertainty of the scale.
+// 4. A dynamic object fits as well as the static scene: the motion relative to it is consistent, too, and the IMU does
+//    not measure velocity. If one motion does not fit nearly all features, patches of the view make hypotheses, and
+//    the one that explains most of the view is chosen.
 #pragma once
 
 #include <optional>
@@ -30,11 +28,11 @@ namespace edged {
 
 struct Alignment {
   std::vector<OdomState> states;  ///< one a frame; O z-up, origin and yaw at the first body pose
-  double gravity_error = 0.0;     ///< |g| found without imposing it, relative to 9.81: a measure of trust
-  double scale_sigma = 0.0;  ///< standard deviation of the longest baseline over its length, as the features tell it
-  std::set<FeatureId> outliers;  ///< features of dynamic objects
-  /// Of what it explains of the views, the share that a running estimate explains, 0 to 1: does that one follow the
-  /// world, or something that moves in it?
+  double gravity_error = 0.0;     ///< |g| estimated without the constraint, relative to 9.81: a check of the solution
+  double scale_sigma = 0.0;       ///< standard deviation of the longest baseline over its length, from the features
+  std::set<FeatureId> outliers;   ///< features of dynamic objects
+  /// Of the observations that it explains, the share that a running estimate explains too, 0 to 1: small if that one
+  /// follows a dynamic object.
   double explained = 1.0;
 };
 
@@ -43,8 +41,8 @@ std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& fra
                                                const ImuNoise& noise);
 
 /// States of all frames. accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2]. running: an
-/// estimate at the time of the last frame, to be judged, or null. Nothing when the linear system is not determined (too
-/// few tracks, no translation).
+/// estimate at the time of the last frame, to be checked, or null. Nothing when the linear system is not determined
+/// (too few tracks, no translation).
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
                                double accel_bias_sigma, const OdomState* running = nullptr);
 

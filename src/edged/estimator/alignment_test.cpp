@@ -64,7 +64,7 @@ double worst_gyro_bias_error(double speed) {
 // Of a bias of 0.1 rad/s, through features half a pixel off.
 TEST(AlignGyroBias, FindsTheBiasInMotion) { EXPECT_LT(worst_gyro_bias_error(1.0), 4e-3); }        // 2.0e-3
 TEST(AlignGyroBias, FindsTheBiasInPureRotation) { EXPECT_LT(worst_gyro_bias_error(0.0), 5e-3); }  // 2.5e-3
-// Parallax as small as the noise of the features tells turning from moving less well.
+// With a parallax as small as the noise of the features, rotation and translation are hard to separate.
 TEST(AlignGyroBias, FindsMostOfTheBiasInSlowMotion) { EXPECT_LT(worst_gyro_bias_error(0.05), 0.02); }  // 0.011
 
 TEST(AlignGyroBias, SaysNothingWithoutCommonCorners) {
@@ -125,7 +125,7 @@ TestWorldOptions with_walker(std::uint64_t seed, double begin_s) {
   return {.bias_accel = {0, 0, 0}, .walker = 65, .walker_comes_s = begin_s, .seed = seed};
 }
 
-// Seen from the walker the room walks: least squares over all features lie between, 1 m/s off.
+// Relative to the dynamic object the scene moves: least squares over all features are 1 m/s off.
 TEST(Align, FollowsTheRoomThoughMostCornersWalk) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Every camera at every state of a window.
+// The pose of every camera at every state of a window.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Where the cameras stand, worked out once for all that is seen from there.
+/// Camera poses, computed once for all observations.
 class CameraViews {
  public:
   /// At the present values.

@@ -11,7 +11,7 @@
 namespace edged {
 namespace {
 
-/// The inverse depths that factors hold: each ties several together.
+/// The inverse depths in factors: each factor couples several.
 std::set<FeatureId> coupled_depths(const std::vector<std::shared_ptr<const Factor>>& factors) {
   std::set<FeatureId> coupled;
   for (const auto& factor : factors) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The list of terms that a window gives.
+// The list of terms of a window.
 #include "edged/estimator/cost.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(Cost, IsOfTheBlocksOfItsTermsButForDepthsThatCanBeEliminated) {
     EXPECT_TRUE(blocks.contains({BlockKind::Motion, id}));
   }
   EXPECT_TRUE(blocks.contains({BlockKind::Calibration, 0}) && blocks.contains({BlockKind::Calibration, 1}));
-  EXPECT_EQ(blocks.size(), 2 * window.states().size() + 3U);  // and the IMU's
+  EXPECT_EQ(blocks.size(), 2 * window.states().size() + 3U);  // and those of the IMU
 }
 
 TEST(Cost, HoldsEveryObservationOfALandmarkThatTwoCamerasSeeOnce) {

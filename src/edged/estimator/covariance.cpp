@@ -20,7 +20,7 @@ std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<B
   const Eigen::VectorXd scale = unit_diagonal_scale(H);
   EnvelopeCholesky cholesky;
   if (!cholesky.factorise(scale.asDiagonal() * H * scale.asDiagonal())) return std::nullopt;
-  // The information that the blocks have of their own.
+  // The information of the blocks before the coupling to others.
   const Eigen::MatrixXd L = cholesky.last_of_L(m);
   const Eigen::MatrixXd root =
       L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(m, m)) * scale.tail(m).asDiagonal();

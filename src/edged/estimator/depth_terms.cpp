@@ -10,8 +10,8 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kMostLandmarks = 12;  // in one factor: they are coupled by it, which costs time
-constexpr double kNearestShare = 0.01;      // of the anchor depth: nearer is too close to being behind the camera
+constexpr std::size_t kMostLandmarks = 12;  // landmarks in one factor, which couples them and so costs time
+constexpr double kNearestShare = 0.01;      // share of the anchor depth: nearer landmarks are almost behind the camera
 constexpr double kLeastSigma = 0.05;
 
 struct Middle {
@@ -24,7 +24,7 @@ SE3 T_B_E(const Window& window, const RegionDepth& depth) {
   return window.calibrated(window.camera_index(depth.camera)).T_B_C;
 }
 
-/// The landmarks the state sees in the region, those in the middle by depth; nothing when they are too few.
+/// The landmarks that the state observes in the region, those of medium depth; nothing if they are too few.
 std::optional<Middle> middle_landmarks(const Window& window, StateId state, const RegionDepth& region) {
   const SE3 T_E_O = (window.states().at(state).T_O_B() * T_B_E(window, region)).inverse();
   std::vector<std::pair<double, FeatureId>> seen;  // ln 1/z
@@ -49,8 +49,8 @@ std::optional<Middle> middle_landmarks(const Window& window, StateId state, cons
   return middle;
 }
 
-/// Standard deviation of the residual in logarithms, s apart: what the source gets wrong from time to time, and how
-/// well so many landmarks stand for the whole region (docs/math.md, D4).
+/// Standard deviation of the residual in logarithms, without s: the time-varying error of the source, and the sampling
+/// error of so many landmarks of the region (docs/math.md, D4).
 double sigma_ln(const DepthFactorConfig& config, const RegionDepth& depth, std::size_t landmarks) {
   const double sampling = 1.25 * depth.spread_ln / std::sqrt(static_cast<double>(landmarks));
   return std::max(kLeastSigma, std::hypot(config.noise_share * depth.sigma_ln, sampling));
@@ -67,7 +67,7 @@ std::shared_ptr<const Factor> depth_factor(const Window& window, StateId state, 
         {id, window.calibrated(anchor.camera).T_B_C, feature.observations.at(anchor).point, anchor.state});
   }
   double weight = 1.0 / sigma_ln(window.depth_config(), depth, middle.in_region);
-  // The paper's residual is in 1/m; its error is a share of s rho, taken where the solution is now.
+  // The paper's residual is in 1/m; its error is relative to s rho, at the present solution.
   if (window.depth_config().form == DepthResidual::Paper) weight *= depth.depth_m / std::exp(*window.block(scale));
   const DepthMeasurement measured{window.depth_config().form,        state, T_B_E(window, depth), depth.depth_m, weight,
                                   window.depth_config().cauchy_scale};

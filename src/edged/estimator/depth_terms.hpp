@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Depth in the window (paper Eq. 5): which landmarks stand for a region, the factors on them, and the scale s.
+// Depth in the window (paper Eq. 5): the landmarks that represent a region, the factors on them, and the scale s.
 //
-// s is what the source's depths are too large by: inverse depth of the scene = s * (1 / depth of the source). It is
-// held as ln s, one value for the whole window; its random walk acts at the window's old end, where a keyframe leaves.
+// s is the factor by which depths of the source are too large: inverse depth of the scene = s * (1 / depth of the
+// source). It is estimated as ln s, one value for the whole window; its random walk acts at the oldest keyframe, when
+// that is marginalized.
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@
 
 namespace edged {
 
-/// Whether it is time for another depth, that of the newest state.
+/// Whether a depth factor is due at the newest state.
 bool depth_due(const Window& window);
 
 /// The factor of every state with a depth and enough landmarks in its region. A median has no derivative: the factor

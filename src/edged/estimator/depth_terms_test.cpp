@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Eq. 5 in the estimator: what a depth source adds where the motion does not show the scale, and what it must leave
-// alone.
+// Eq. 5 in the estimator: what a depth source adds where the motion does not determine the scale, and what it must not
+// change.
 #include "edged/estimator/depth_terms.hpp"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kStep_s = 0.05;
 
-/// A source whose depths of the whole view are the true median times `bias`. A copy of the world: its noise goes on as
-/// if nobody had looked.
+/// A source whose depths of the whole view are the true median times `bias`. Uses a copy of the world, whose noise is
+/// the same as without this call.
 RegionDepth depth_of_view(TestWorld world, double t, double bias, double sigma_ln) {
   const RigCamera& camera = world.rig().cameras.front();
   const SE3 T_C_O = (world.T_W_B(t) * camera.T_B_C).inverse();
@@ -106,8 +106,8 @@ TEST(DepthTerms, ASourceThatIsFarOffLeavesAWellConditionedRunAlone) {
   }
 }
 
-// Started in slow motion: the accelerometer bias hides the scale for seconds. The cameras are known to be where they
-// are said to be: a turned one hides it too. The start waits until it knows the scale, so that a source buys time, not
+// Initialized in slow motion: the accelerometer bias hides the scale for seconds. The camera rotations are fixed, as an
+// error of them hides it too. Initialization waits until the scale is known, so a depth source gains time, not
 // accuracy.
 TEST(DepthTerms, AGoodSourceTellsTheScaleOfSlowMotionSooner) {
   constexpr double kPatience_s = 12.0;
@@ -124,7 +124,7 @@ TEST(DepthTerms, AGoodSourceTellsTheScaleOfSlowMotionSooner) {
     with_error += with.scale_error / 4.0;
   }
   EXPECT_LT(with_s, 0.9 * without_s) << "good after " << with_s << " s, without the factor " << without_s;
-  EXPECT_LT(with_error, 0.25);  // of the length of a path as slow as the jitter on it
+  EXPECT_LT(with_error, 0.25);  // of the length of a path whose speed is that of its jitter
 }
 
 TEST(DepthTerms, AStartInMotionFarFromWhatTheSourceSaysIsNotBelieved) {

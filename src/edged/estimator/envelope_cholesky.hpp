@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// H = L L^T without the zeros in front of each row, which L has in the same places. A window's motions are tied to
-// their neighbours only: put first, they leave a third of the products.
+// H = L L^T without the zeros in front of each row, which L has in the same places. The motion blocks of a window are
+// coupled to their neighbours only: ordered first, they leave a third of the products.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace edged {
 
 class EnvelopeCholesky {
  public:
-  /// Of H + damping I; of H the lower triangle counts. False when that is not positive definite.
+  /// Factorizes H + damping I; only the lower triangle of H is read. False if that is not positive definite.
   bool factorise(const Eigen::MatrixXd& H, double damping = 0.0);
   /// H^-1 b
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;

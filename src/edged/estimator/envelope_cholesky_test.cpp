@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-/// A chain, each link tied to the next one, and last some rows that are tied to all.
+/// A chain whose links are coupled to the next one, then some rows coupled to all.
 Eigen::MatrixXd chain_and_border(Eigen::Index chain, Eigen::Index border) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(-1.0, 1.0);

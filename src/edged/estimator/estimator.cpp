@@ -16,30 +16,31 @@ namespace {
 
 constexpr double kMaxSpeed = 60.0, kMaxGyroBias = 0.5, kMaxAccelBias = 3.0;  // [m/s], [rad/s], [m/s^2]
 constexpr double kDoubtGain = 0.25;                                          // a packet
-constexpr double kSameVelocity = 0.25, kSameVelocity_mps = 0.03;  // of two starts that agree: share, and [m/s] more
-constexpr Duration kUncontradicted = std::chrono::milliseconds(1000);  // for so long, a start needs no second one
-// A start that explains less of the views than this share of what another motion does follows something that moves by
-// itself.
+constexpr double kSameVelocity = 0.25,
+                 kSameVelocity_mps = 0.03;  // of two initializations that agree: relative, and [m/s] absolute
+constexpr Duration kUncontradicted =
+    std::chrono::milliseconds(1000);  // after this time an initialization needs no second one
+// An initialization whose support is below this share of that of another motion follows a dynamic object.
 constexpr double kContradicted = 0.65;
-constexpr double kBetterStart = 0.8;          // a start that takes the place of another knows the scale so much better
-constexpr double kStartSigmaInflation = 1.5;  // of what a start has been told since
-// [m/s]: what the estimate says is faster is not at rest, unless the IMU is sure.
+constexpr double kBetterStart = 0.8;  // an initialization replaces another if its scale is more certain by this factor
+constexpr double kStartSigmaInflation = 1.5;  // of the information since the initialization
+// [m/s]: a body that is faster by the estimate is not at rest, unless the IMU alone detects a standstill.
 constexpr double kMaxStandstillSpeed = 0.15;
-// [rad/s], where the IMU is sure: a body at rest turns no faster, so that what the gyro reads is its bias.
+// [rad/s], where the IMU alone detects a standstill: a body at rest turns no faster, so the gyro measures its bias.
 constexpr double kRestGyroBiasSigma = 5e-4;
-// Times an observation's sigma, where the gyro is beyond its range: images blur, features are followed without its
-// word, and what those of an image have in common, which the gyro outweighs else, turns the body.
+// Times an observation's sigma, where the gyro is saturated: images blur, features are tracked without its prediction,
+// and errors common to an image, which the gyro otherwise outweighs, rotate the estimate.
 constexpr double kUnseenTurnNoise = 6.0;
 // Of sigmas, events alone, times that of the options: dynamic objects mislead them more easily.
 constexpr double kEventsAloneInflation = 1.4;
 
-/// Biases no sensor of this kind has, a speed no body it is made for reaches, or numbers that are none.
+/// Biases beyond those of such sensors, a speed beyond the intended use, or values that are not finite.
 bool plausible(const OdomState& state) {
   return state.T_O_B.translation().allFinite() && state.v_O.norm() < kMaxSpeed &&
          state.bias_gyro.norm() < kMaxGyroBias && state.bias_accel.norm() < kMaxAccelBias;
 }
 
-/// Whether two estimates of one instant, in frames of their own, are of one motion: they have the same velocity in B.
+/// Whether two estimates at one instant, each in its own frame, agree on the motion: on the velocity in B.
 bool agrees(const OdomState& a, const OdomState& b) {
   const Eigen::Vector3d v_a = a.T_O_B.rotation().conjugate() * a.v_O, v_b = b.T_O_B.rotation().conjugate() * b.v_O;
   return (v_a - v_b).norm() < kSameVelocity * std::max(v_a.norm(), v_b.norm()) + kSameVelocity_mps;
@@ -50,7 +51,7 @@ bool sees_frames(const Window& window) {
                              [](const WindowCamera& camera) { return camera.given.modality == Modality::Frames; });
 }
 
-/// As good as they are while the gyro is clipped.
+/// The observations, with the noise that they have while the gyro is saturated.
 std::vector<CameraObservations> of_unseen_turn(std::vector<CameraObservations> observations) {
   for (CameraObservations& view : observations) {
     for (FeatureObservation& feature : view.features) feature.sigma *= kUnseenTurnNoise;
@@ -94,7 +95,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   return result;
 }
 
-/// The start, or while it is provisional another in its place. True when there was one.
+/// Initializes, or replaces a provisional initialization. True if it did.
 bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   if (initialized_ && !provisional()) return false;
   const double wanted = !initialized_ ? config_.provisional_scale_sigma : (agreed_ ? kBetterStart : 1.0) * scale_sigma_;
@@ -121,7 +122,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   return true;
 }
 
-/// What a provisional start has seen since may have told it the scale.
+/// The measurements since a provisional initialization may have determined the scale.
 void Estimator::update_scale(const EstimatorInput& input) {
   if (!provisional() || !input.keyframe) return;
   scale_sigma_ = std::min(scale_sigma_, kStartSigmaInflation * scale_sigma(window_));
@@ -182,7 +183,7 @@ void Estimator::append(const EstimatorInput& input) {
       motion_prior({BlockKind::Motion, id}, motion_block(rest), {config_.zero_velocity_sigma, bias_sigma, kFree}));
 }
 
-/// The input's depth, where one is due and it is believable. True when it is in the window.
+/// Adds the depth of the input, if one is due and it passes the gate. True if it is in the window.
 bool Estimator::take_depth(const EstimatorInput& input) {
   if (!input.keyframe || !input.depth || !depth_due(window_)) return false;
   const auto error = depth_error_sigmas(window_, window_.newest_id(), *input.depth, depth_scale_);
@@ -209,10 +210,10 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   }
 }
 
-/// Each camera's noise follows its residuals. Where the window strains the IMU, the cameras agree among themselves on
-/// what is not so: something that moves, or errors they have in common. What each observation on an event frame adds
-/// tells less of the drift than on a frame: it goes on as it was, with the look of an edge under the motion. Beside
-/// frames, which do not drift like that, events count by so much less.
+/// Adapts the noise of each camera to its residuals. A large IMU strain means that the cameras agree on a wrong motion:
+/// that of a dynamic object, or errors in common. On event frames the innovations of the observations show less of the
+/// drift than on frames: the drift continues with the appearance of an edge under the motion. Beside frames, which do
+/// not drift like that, events get a lower weight.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
   const bool frames = sees_frames(window_);
@@ -229,7 +230,7 @@ void Estimator::adapt_noise(double imu_strain) {
 
 std::vector<KeyframeRecord> Estimator::slide() {
   std::vector<KeyframeRecord> marginalized_keyframes;
-  // The state that is no longer recent: kept as a keyframe, or its IMU joined to its successor's.
+  // The oldest of the newest states: kept as a keyframe, or dropped with its IMU interval joined to the next.
   if (window_.states().size() > static_cast<std::size_t>(config_.recent_states)) {
     const auto aged = std::prev(window_.states().end(), config_.recent_states + 1);
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The sliding-window visual-inertial estimator: from the start on it holds the window, solves it and lets it slide.
+// The sliding-window visual-inertial estimator: after initialization it maintains, solves and slides the window.
 #pragma once
 
 #include <optional>
@@ -20,41 +20,40 @@ namespace edged {
 
 struct EstimatorResult {
   std::string waiting_for;          ///< while not initialised: what is missing, with numbers
-  std::vector<FeatureId> outliers;  ///< tracks that are wrong and should end
+  std::vector<FeatureId> outliers;  ///< outlier tracks, which should end
   std::string started;              ///< the estimator has started with this input: how, with numbers
   std::vector<Landmark> landmarks;  ///< in the cost
-  int landmarks_seen = 0;           ///< of them, seen by the newest state
+  int landmarks_seen = 0;           ///< of them, observed by the newest state
   double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
   std::vector<KeyframeRecord>
-      marginalized_keyframes;  ///< keyframes that have left the window with this input, in its frame
+      marginalized_keyframes;  ///< keyframes that were marginalized with this input, in its frame
   bool standstill = false;
-  bool velocity_observed = false;  ///< by an external sensor, within the last moment
+  bool velocity_observed = false;  ///< the velocity was measured recently, by an external sensor
   bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
-  bool provisional = false;        ///< the start does not know the scale well enough yet
-  bool plausible = true;  ///< false: the solution has broken down (not finite, or biases and speed beyond reason)
+  bool provisional = false;        ///< the scale is not certain enough yet
+  bool plausible = true;           ///< false: the solution has diverged (not finite, or implausible biases or speed)
 };
 
 class Estimator {
  public:
-  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already.
+  /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock.
   Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config);
 
   /// Inputs in time order.
   EstimatorResult add(const EstimatorInput& input);
 
   bool initialized() const { return initialized_; }
-  /// The start is used, but its scale is not known to init_scale_sigma yet, or no later one has found the same: a start
-  /// that followed a dynamic object seldom finds the same velocity twice.
+  /// The initialization is used, but its scale is not known to init_scale_sigma yet, or no later one has confirmed it:
+  /// initializations on a dynamic object seldom agree on the velocity.
   bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
   /// The newest state; meaningful once initialised.
   OdomState newest() const { return window_.newest().nav(); }
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 
-  /// Of the newest state: see covariance() of a window; inflated, so that errors keep within it. Nothing before the
-  /// start.
+  /// Of the newest state: see covariance() of a window; inflated to be consistent. Nothing before initialization.
   std::optional<Matrix15d> covariance() const;
-  /// Of what a camera's calibration is off by (CalibrationBlock); inflated in the same way.
+  /// Of the calibration correction of a camera (CalibrationBlock); inflated in the same way.
   std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
 
   /// z-depth of a landmark in a camera at the newest state [m].
@@ -82,7 +81,7 @@ class Estimator {
   Initializer initializer_;
   bool initialized_ = false;
   double scale_sigma_ = kFree;  ///< of ln scale
-  bool agreed_ = false;         ///< two starts have, or nothing has contradicted one until agreed_by_itself_
+  bool agreed_ = false;         ///< two initializations agree, or nothing has contradicted one until agreed_by_itself_
   Timestamp agreed_by_itself_;
   LogScale depth_scale_;
 };

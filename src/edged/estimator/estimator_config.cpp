@@ -20,7 +20,7 @@ Eigen::Vector3d three_numbers(const std::string& text, std::string_view key) {
   Eigen::Vector3d numbers;
   std::string rest;
   if (!(in >> numbers.x() >> numbers.y() >> numbers.z()) || in >> rest || !numbers.allFinite()) {
-    throw InputError(fmt::format("{}: '{}' is no three numbers such as \"0.1 0 -0.05\"", key, text));
+    throw InputError(fmt::format("{}: '{}' is not three numbers such as \"0.1 0 -0.05\"", key, text));
   }
   return numbers;
 }

@@ -38,7 +38,7 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     if (!result.initialized) {
       result.initialized = true;
       result.started_at = t;
-      // Yaw and position are free: take them from the start.
+      // Yaw and position are not observable: aligned at the start.
       const Eigen::Matrix3d R = truth.R() * state.T_O_B.R().transpose();
       const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());
       T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * state.T_O_B.translation());
@@ -60,7 +60,7 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
   return result;
 }
 
-/// Of what the newest state has seen [on the unit plane].
+/// Of the observations of the newest state [on the unit plane].
 double mean_sigma(const Window& window) {
   double sum = 0.0;
   int n = 0;
@@ -121,7 +121,7 @@ TEST(Estimator, StartsInMotionAndFindsScaleAndGravity) {
     ASSERT_TRUE(result.initialized) << result.waiting_for;
     EXPECT_LT(result.started_at, 2.0);
     EXPECT_LT(result.max_tilt_error, 0.06);
-    // The accelerometer bias shows only with time: until then the scale is a few percent off.
+    // The accelerometer bias becomes observable only with time: until then the scale is a few percent off.
     EXPECT_NEAR(result.travelled_ratio, 1.0, 0.05);
     EXPECT_LT((result.bias_accel - options.bias_accel).norm(), 0.04);
   }
@@ -158,7 +158,7 @@ TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
   EXPECT_GT(keyframes, 12U);
   EXPECT_GT(left, seen / 2) << "landmarks are fewer than features";
   EXPECT_LT(depth_error, 0.03 * static_cast<double>(left));
-  EXPECT_GT(depth_sigma, 0.5 * depth_error) << "as well known as it says";
+  EXPECT_GT(depth_sigma, 0.5 * depth_error) << "as certain as its covariance";
 }
 
 TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
@@ -194,7 +194,7 @@ TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
 TEST(Estimator, FindsWhatScaleAndAxesOfTheGyroAreOffBy) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
-    // Symmetric: the rest is a turn of the gyro, which cannot be told from one of the camera.
+    // Symmetric part only: the rest is a rotation of the gyro, which cannot be separated from one of the camera.
     options.gyro_error << 6e-3, 2e-3, -3e-3, 2e-3, -5e-3, 1e-3, -3e-3, 1e-3, 4e-3;
     TestWorld world(options);
     Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
@@ -213,7 +213,7 @@ TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
 }
 
-/// Of the body's velocity in its own frame, over seeds and time: mean square error over what is reported, and its root.
+/// Of the velocity in the body frame, over seeds and time: mean square error over reported variance, and RMS error.
 struct VelocityErrors {
   double nees = 0.0, rms = 0.0;
 };
@@ -248,7 +248,7 @@ VelocityErrors velocity_errors(const TestWorldOptions& world_options, const Esti
 }
 
 TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
-  // Without a rest: one that tells the gyro's bias makes up for a part of it.
+  // Without a rest: one determines the gyro bias, which compensates for a part of it.
   const TestWorldOptions drifting{.pixel_noise = 0.05, .pixel_walk = 0.3};
   EstimatorConfig config;
   config.sigma_inflation = 1.0;
@@ -257,7 +257,7 @@ TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   config.track_noise.correlation = config.track_noise.event_correlation = 0.0;
   const VelocityErrors without = velocity_errors(drifting, config);
   EXPECT_LT(with.rms, 0.85 * without.rms);
-  EXPECT_GT(with.nees, 0.3);  // noise_inflation squared is 4, where it counts for all
+  EXPECT_GT(with.nees, 0.3);  // noise_inflation squared is 4, for all cameras
   EXPECT_LT(with.nees, 1.0);
 }
 

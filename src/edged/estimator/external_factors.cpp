@@ -13,18 +13,18 @@
 namespace edged {
 namespace {
 
-constexpr double kGate = 4.0;         // [sigma], what the window does not know included
+constexpr double kGate = 4.0;         // [sigma], with the uncertainty of the window included
 constexpr double kBiasSigma_m = 1e3;  // of the level of a height sensor before its first sample
-constexpr Duration kNewLevel = std::chrono::milliseconds(1000);  // heights refused for so long are of another level
-constexpr Duration kObserved =
-    std::chrono::milliseconds(500);  // a velocity keeps the estimate from drifting for so long
+constexpr Duration kNewLevel =
+    std::chrono::milliseconds(1000);  // after this time of rejected heights the level is assumed to have changed
+constexpr Duration kObserved = std::chrono::milliseconds(500);  // time for which a velocity sample bounds the drift
 
 Preintegration until(const Preintegration& imu, Timestamp t) {
   return {slice_imu(imu.samples(), imu.begin(), t), imu.bias_gyro(), imu.bias_accel(), imu.noise()};
 }
 
-/// How far a measurement is from what the window expects. Its covariance is only asked where the measurement's own
-/// sigma does not explain the difference.
+/// Innovation of a measurement in the window. The covariance of the window is computed only if the sigma of the
+/// measurement does not explain the difference.
 bool believable(const Window& window, const Factor& factor) {
   std::vector<const double*> values;
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> by_block;
@@ -78,7 +78,7 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   }
   if (bias && !height_refused_since_) height_refused_since_ = sample.t;
   if (bias && sample.t - *height_refused_since_ < kNewLevel) return;
-  // The first, or the first to be believed after a step.
+  // The first sample, or the first accepted one after a step of the level.
   if (bias) forget_walk(window, BlockKind::HeightBias);
   height_refused_since_.reset();
   const WindowState& state = window.states().at(from);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// From samples of external sensors to factors of the window: which are believed, and where they are put.
+// Turns samples of external sensors into factors of the window: gating and placement.
 #pragma once
 
 #include <optional>
@@ -17,10 +17,10 @@ class ExternalFactors {
   ExternalFactors(const HeightConfig& height, const VelocityConfig& velocity) : height_(height), velocity_(velocity) {}
 
   /// Puts samples of the IMU interval from a state on into the window, in time order. imu: that interval; samples
-  /// outside it, and those too far from what the window expects, are left out.
+  /// outside it, and those that fail the gate, are dropped.
   void add(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
 
-  /// Whether a velocity sample of the last moment before t is in the window.
+  /// Whether a velocity sample from just before t is in the window.
   bool velocity_observed(Timestamp t) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Height and velocity in the estimator: what they hold where nothing is seen, and what their errors may not do.
+// Height and velocity in the estimator: how they bound the drift without vision, and the effect of their errors.
 #include "edged/estimator/external_factors.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ constexpr double kHeightSigma = 0.1, kVelocitySigma = 0.05;
 struct Flight {
   TestWorldOptions world = {.rest_s = 1.0};
   bool height = false, velocity = false;
-  double blind_from = 5.0, blind_to = 13.0, end = 13.0;  ///< [s] nothing is seen in between
+  double blind_from = 5.0, blind_to = 13.0, end = 13.0;  ///< [s] without vision in between
   double level = 0.0, step = 0.0, step_at = 0.0;         ///< [m] of the height sensor
   double scale = 1.0;                                    ///< of the velocity sensor
   double outliers = 0.0;                                 ///< share
@@ -29,8 +29,8 @@ struct Flight {
 
 struct Errors {
   double position = 0.0, height = 0.0;  ///< the largest since the start [m]
-  double level = 0.0;                   ///< found of the height sensor, over the start of the body
-  double observed_share = 0.0;          ///< of the packets in which nothing was seen
+  double level = 0.0;                   ///< estimate of the height sensor, relative to the start of the body
+  double observed_share = 0.0;          ///< of the packets without vision
   bool plausible = true;
 };
 

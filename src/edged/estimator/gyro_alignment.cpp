@@ -18,7 +18,7 @@ constexpr std::size_t kMinPairCorners = 10;
 constexpr double kBiasPrior = 0.15;  // [rad/s]
 constexpr double kPairNoise = 5e-3;  // [rad]
 
-/// A feature seen in two frames, as rays in the body frame's orientation at each.
+/// A feature observed in two frames, as rays with the orientation of the body frame at each.
 struct RayPair {
   Vector3d ray_0, ray_1;
 };
@@ -73,8 +73,8 @@ std::vector<RotationPair> rotation_pairs(const std::vector<InitFrame>& frames, c
   return out;
 }
 
-/// The baseline that a pair's features agree on best under the rotation R. Noise turns every normal f_0 x R f_1 about
-/// its rays only: C is the covariance it leaves, without which the baseline leans towards the optical axis.
+/// The baseline that fits the features of a pair best under the rotation R. Noise turns every normal f_0 x R f_1 about
+/// its rays only: C is their covariance, without which the baseline is biased towards the optical axis.
 Vector3d baseline_of(const RotationPair& pair, const Matrix3d& R) {
   Matrix3d M = Matrix3d::Zero(), C = Matrix3d::Zero();
   for (const RayPair& rays : pair.rays) {
@@ -86,7 +86,7 @@ Vector3d baseline_of(const RotationPair& pair, const Matrix3d& R) {
 }
 
 /// One Gauss-Newton term: the angle of each feature's ray to the plane of its partner and the baseline; the baseline,
-/// two angles a pair, is eliminated.
+/// two angles per pair, is eliminated.
 void add_coplanarity(const RotationPair& pair, const Vector3d& bg, Matrix3d& H, Vector3d& g) {
   const Matrix3d R = pair.imu.dR(bg).toRotationMatrix();
   const Matrix3d d_phi_d_bg =

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a start is made of: views with the IMU between them, and how long gravity is.
+// The input of initialization: views with the IMU between them, and the magnitude of gravity.
 #pragma once
 
 #include <optional>

@@ -21,17 +21,19 @@ constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
 constexpr int kStartIterations = 25, kRefineIterations = 8;
 constexpr std::ptrdiff_t kMinStartLandmarks = 15;
 constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleration at rest
-constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: calm is not quite rest
-constexpr double kMaxFreeGravityError = 0.3;  // of a start in motion, when gravity's length is left free
+constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: a calm IMU may still move a little
+constexpr double kMaxFreeGravityError = 0.3;  // of an initialization in motion, with the magnitude of gravity left free
 constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
-constexpr double kMaxStartRms = 2.0;          // [sigma] of the start-up window's observations: more is a wrong start
+constexpr double kMaxStartRms =
+    2.0;  // [sigma] of the observations in the start-up window: above it the initialization is wrong
 // The noise of the start-up window's observations over the spread of their residuals, and the least of it over the
 // configured one.
 constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
-constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias by itself makes it 0.9
+constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias alone causes 0.9
 constexpr double kMaxBiasSigmas = 4.0;     // of the accelerometer bias
 constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
-constexpr double kAlignmentSlack = 1.5;  // the solved window may know the scale better than the alignment
+constexpr double kAlignmentSlack =
+    1.5;  // the scale of the solved window may be more certain than that of the alignment
 
 void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) {
   // The first sample of a packet repeats the last one of the packet before.
@@ -55,7 +57,7 @@ double visual_rms(const Window& window) {
   return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / (2.0 * n));
 }
 
-/// Angle that the body has turned over the samples, one way and back counted both [rad].
+/// Total angle of the body's rotation over the samples, back and forth both counted [rad].
 double turned_rad(const std::vector<ImuSample>& imu) {
   double angle = 0.0;
   for (std::size_t i = 1; i < imu.size(); ++i) angle += imu[i].gyro_B.norm() * to_seconds(imu[i].t - imu[i - 1].t);
@@ -63,7 +65,7 @@ double turned_rad(const std::vector<ImuSample>& imu) {
 }
 
 std::string scale_text(double sigma, double most) {
-  return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % wanted",
+  return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % required",
                      100.0 * std::min(sigma, 9.99), 100.0 * most);
 }
 
@@ -95,7 +97,7 @@ StartResult Initializer::add(const EstimatorInput& input, const StandstillDetect
   if (rest != nullptr && rest->still()) {
     const double gravity = rest->mean_accel_B().norm();
     if (std::abs(gravity - kGravity) > kMaxGravityError) {
-      return {{}, fmt::format("an accelerometer in m/s^2: it reads {:.2f} of 9.81 at rest", gravity)};
+      return {{}, fmt::format("an accelerometer in m/s^2: it measures {:.2f} of 9.81 at rest", gravity)};
     }
     return {StartWindow{start_at_rest(input, *rest)}};
   }
@@ -107,7 +109,7 @@ StartResult Initializer::add(const EstimatorInput& input, const StandstillDetect
   return {{}, rest == nullptr ? motion_lacks_ : fmt::format("rest ({}) or {}", rest->reason(), motion_lacks_)};
 }
 
-/// Keeps the input as a view when it is time for the next. True when it was.
+/// Keeps the input as a view if the next one is due. True if it did.
 bool Initializer::buffer_view(const EstimatorInput& input) {
   append_imu(pending_imu_, input.motion.samples());
   if (to_seconds(input.t - pending_imu_.front().t) > kMaxPendingImu_s) {
@@ -123,14 +125,14 @@ bool Initializer::buffer_view(const EstimatorInput& input) {
   return true;
 }
 
-/// In a fast turn a feature crosses the view within a tenth of a second: views must follow it.
+/// In a fast rotation a feature crosses the view within a tenth of a second, so views must be close.
 bool Initializer::view_due(const EstimatorInput& input) const {
   return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s) ||
          turned_rad(pending_imu_) > config_.init_turn_deg * kDegree;
 }
 
-/// Slow motion needs time to tell the scale, fast motion close views. Of a full buffer that view goes that is closest
-/// to its neighbours for its age, so that views stand the farther apart the older they are.
+/// Slow motion needs time to determine the scale, fast motion needs close views. When the buffer is full, the view
+/// closest to its neighbours relative to its age is removed, so that older views are farther apart.
 void Initializer::make_room() {
   const Timestamp newest = buffer_.back().t;
   if (to_seconds(newest - buffer_.front().t) > config_.init_max_span_s) {
@@ -182,7 +184,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomStat
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma, running);
-  if (!alignment) return {{}, "features that last for three views"};
+  if (!alignment) return {{}, "features tracked over three views"};
   StartResult result = start_from(*alignment, most_scale_sigma);
   result.explained = alignment->explained;
   return result;
@@ -191,7 +193,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomStat
 StartResult Initializer::start_from(const Alignment& alignment, double most_scale_sigma) {
   if (std::abs(alignment.gravity_error) > kMaxFreeGravityError) {
     const double seen = kGravity * (1.0 + alignment.gravity_error);
-    return {{}, fmt::format("motion that fits gravity: it says {:.2f} of 9.81 m/s^2", seen)};
+    return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
   }
   if (!(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
@@ -215,7 +217,7 @@ void Initializer::solve_start(Window& window) const {
   }
 }
 
-/// What an observation is worth is told by how well the solved window fits it.
+/// The noise of observations is estimated from their residuals in the solved window.
 void Initializer::weigh_observations(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Newness::Any);
@@ -224,7 +226,7 @@ void Initializer::weigh_observations(Window& window) const {
   }
 }
 
-/// What speaks against a solved window, empty when nothing does.
+/// The reason to reject a solved window; empty to accept it.
 std::string Initializer::doubt_about(const Window& window, double most_tilt_deg) const {
   const auto landmarks = std::count_if(window.features().begin(), window.features().end(),
                                        [](const auto& entry) { return entry.second.anchor.has_value(); });
@@ -235,13 +237,13 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   }
   const double tilt_deg = tilt_sigma(window) / kDegree;
   if (!(tilt_deg <= most_tilt_deg)) {
-    return fmt::format("motion that tells gravity: known to {:.1f} deg, {:.1f} wanted", tilt_deg, most_tilt_deg);
+    return fmt::format("motion that determines gravity: known to {:.1f} deg, {:.1f} required", tilt_deg, most_tilt_deg);
   }
   const OdomState state = window.newest().nav();
   const double most_bias = kMaxBiasSigmas * config_.accel_bias_sigma;
   if (state.bias_accel.norm() > most_bias) {
     const double bias = state.bias_accel.norm();
-    return fmt::format("an accelerometer bias one can believe: {:.2f} of {:.2f} m/s^2", bias, most_bias);
+    return fmt::format("a plausible accelerometer bias: {:.2f} of {:.2f} m/s^2", bias, most_bias);
   }
   if (worst_depth_error(window, {0.0, config_.depth_factor.scale_sigma}) > config_.depth_factor.gate) {
     return "motion whose scale the depth source agrees with";
@@ -249,7 +251,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   return "";
 }
 
-/// The buffer's views as keyframes where the alignment puts them.
+/// The views of the buffer as keyframes at the poses of the alignment.
 Window Initializer::aligned_window(const Alignment& alignment) const {
   Window window = empty_window();
   for (std::size_t i = 0; i < buffer_.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The start of the estimator: from rest when the IMU and the cameras say rest, else by visual-inertial alignment in
-// motion.
+// Initialization of the estimator: at rest if IMU and cameras detect a standstill, else in motion by visual-inertial
+// alignment.
 #pragma once
 
 #include <optional>
@@ -19,22 +19,21 @@
 
 namespace edged {
 
-/// A window to go on from: its newest state is that of the packet.
+/// The initial window: its newest state is that of the packet.
 struct StartWindow {
   Window window;
-  double scale_sigma = 0.0;           ///< of ln scale; 0 from rest, where nothing has been scaled yet
+  double scale_sigma = 0.0;           ///< of ln scale; 0 at rest, where no landmark has been scaled yet
   std::set<FeatureId> outliers = {};  ///< features of dynamic objects
 };
 
-/// What a packet brought the start.
+/// The result of initialization for a packet.
 struct StartResult {
   std::optional<StartWindow> start;
   std::string waiting_for = {};  ///< else what is missing, with numbers
   double explained = 1.0;        ///< see Alignment
 };
 
-/// Standard deviation of ln scale, as the way from the origin (the place of the start) to the window's farthest state
-/// tells it.
+/// Standard deviation of ln scale, from the distance between the origin (the start) and the window's farthest state.
 double scale_sigma(const Window& window);
 
 class Initializer {
@@ -42,9 +41,9 @@ class Initializer {
   Initializer(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
       : rig_(rig), noise_(noise), config_(config) {}
 
-  /// Inputs in time order. rest, which knows the input already: for a start from rest; null where that is not wanted. A
-  /// start in motion must know the scale to most_scale_sigma. running: the estimate at the input, where there is one
-  /// already.
+  /// Inputs in time order. rest, which has processed the input already: for an initialization at rest; null to disable
+  /// that. An initialization in motion must have a scale sigma of at most most_scale_sigma. running: the estimate at
+  /// the input, where there is one already.
   StartResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
                   const OdomState* running = nullptr);
 
@@ -66,8 +65,8 @@ class Initializer {
   EstimatorConfig config_;
   std::vector<InitFrame> buffer_;                    ///< views
   std::vector<ImuSample> pending_imu_;               ///< since the last view
-  Timestamp next_solve_;                             ///< a refused window is not solved anew with every view
-  std::string motion_lacks_ = "features to follow";  ///< what kept the last view from starting in motion
+  Timestamp next_solve_;                             ///< a rejected window is not solved again with every view
+  std::string motion_lacks_ = "features to follow";  ///< why the last view did not initialize in motion
 };
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The start in all the ways a recording can begin, against the truth of the analytic world.
+// Initialization for all kinds of begin of a recording, against the ground truth of the analytic world.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 struct Started {
   double after_s = 0.0;      ///< since the beginning
-  double scale_error = 0.0;  ///< spread of the window's positions over the true one, less one
+  double scale_error = 0.0;  ///< spread of the window's positions over the true one, minus 1
   double tilt_deg = 0.0;
   double speed_error = 0.0, speed = 0.0;  ///< [m/s], in the body frame
 };
@@ -28,7 +28,7 @@ double spread(const std::vector<Eigen::Vector3d>& points) {
   return std::sqrt(sum);
 }
 
-/// Runs the estimator from begin_s until it has started for good; nothing when it does not within patience_s.
+/// Runs the estimator from begin_s until it has converged; nothing if it does not within patience_s.
 std::optional<Started> start(const TestWorldOptions& options, double begin_s, double patience_s,
                              std::vector<std::string>* waited_for = nullptr) {
   TestWorld world(options);
@@ -129,7 +129,7 @@ TEST(Initializer, WaitsForMotionThatTellsTheScale) {
   std::vector<std::string> waited_for;
   EXPECT_FALSE(start({.tempo = 0.15}, 2.0, 4.0, &waited_for));
   EXPECT_THAT(waited_for.back(), testing::HasSubstr("motion that determines the scale: known to"));
-  EXPECT_THAT(waited_for.back(), testing::HasSubstr("% wanted"));
+  EXPECT_THAT(waited_for.back(), testing::HasSubstr("% required"));
 }
 
 TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
@@ -144,7 +144,7 @@ TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
     result = estimator.add(input);
   }
   EXPECT_FALSE(estimator.initialized());
-  EXPECT_THAT(result.waiting_for, testing::HasSubstr("it reads 1.0"));
+  EXPECT_THAT(result.waiting_for, testing::HasSubstr("it measures 1.0"));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Tr
 }
 
 /// A residual at the weight of its loss, and its Jacobians: by the poses of the anchor, of the observation and of the
-/// one before; by the calibrations of the anchor's camera and of another that observes; by the inverse depth.
+/// one before; by the calibrations of the anchor's camera and of another observing camera; by the inverse depth.
 struct WeightedResidual {
   Vector2d r;
   Transposed<6> anchor, seen, before;
@@ -54,7 +54,7 @@ WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& er
   return out;
 }
 
-/// The entry of the block at a place, which is added where there is none.
+/// The entry of the block at a column, added if missing.
 template <typename Coupling>
 std::size_t entry_of(Index global, std::vector<Coupling>& couplings) {
   const auto found = std::ranges::find(couplings, global, &Coupling::global);
@@ -168,7 +168,7 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
   depth_.g += J.depth.dot(J.r);
 }
 
-/// Of the anchor and its camera's calibration, which all residuals share.
+/// Of the anchor and the calibration of its camera, common to all residuals.
 void LandmarkEquations::add_own() {
   const Index anchor = depth_.poses.front().global, calibration = depth_.calibrations.front().global;
   equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());

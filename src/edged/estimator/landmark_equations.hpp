@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What landmarks add to the normal equations and to the cost.
+// The part of landmarks in the normal equations and in the cost.
 #pragma once
 
 #include "edged/estimator/camera_views.hpp"
@@ -9,7 +9,7 @@
 
 namespace edged {
 
-/// Adds one landmark after the other.
+/// Adds landmarks one by one.
 class LandmarkEquations {
  public:
   /// All three must outlive this.
@@ -31,16 +31,16 @@ class LandmarkEquations {
   CameraViews present_, taken_;
   bool at_present_;  ///< the two are the same
   ceres::LossFunction* loss_;
-  std::vector<Eigen::Index> poses_, calibrations_;  ///< global places, by a state's place and a camera's index
+  std::vector<Eigen::Index> poses_, calibrations_;  ///< global columns, by the index of a state and of a camera
 
-  // Of the landmark at hand. Columns: the anchor's pose, the calibration of its camera.
+  // Of the present landmark. Columns: the anchor's pose, the calibration of its camera.
   Eigen::Matrix<double, 10, 10> H_;
   Eigen::Matrix<double, 10, 1> g_, coupling_;
   DepthEquation depth_;
-  std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its place in depth_
+  std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its index in depth_
 };
 
-/// Half the sum of its squares, the loss applied; infinite where it is behind a camera.
+/// Half the sum of its squared residuals, with the loss; infinite if it is behind a camera.
 double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss);
 
 }  // namespace edged

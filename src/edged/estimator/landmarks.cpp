@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-/// That of the oldest keyframe that sees the feature.
+/// The observation of the oldest keyframe that observes the feature.
 std::optional<ObservationKey> oldest_view(const Window& window, const Feature& feature) {
   for (const auto& [view, observation] : feature.observations) {
     if (window.states().at(view.state).keyframe) return view;
@@ -21,7 +21,7 @@ std::optional<ObservationKey> oldest_view(const Window& window, const Feature& f
   return std::nullopt;
 }
 
-/// Two views of one camera fit nearly any point: three must agree, or two cameras at one instant, whose baseline is
+/// Two views of one camera fit almost any point, so three must agree, or two cameras at one instant, whose baseline is
 /// known.
 bool can_be_judged(const Feature& feature) {
   const auto same_instant = [](const auto& a, const auto& b) { return a.first.state == b.first.state; };
@@ -48,14 +48,14 @@ void triangulate_feature(Window& window, FeatureId id, const Feature& feature, c
   if (inverse_depth) window.make_landmark(id, {*anchor, *inverse_depth});
 }
 
-/// How well observations fit the window as it stands.
+/// Residuals of observations in the present window.
 class Fit {
  public:
   explicit Fit(const Window& window) : views_(window) {
     for (const auto& [id, state] : window.states()) place_.emplace(id, place_.size());
   }
 
-  /// Where a landmark is expected less where it was seen, on the unit plane; false when it is behind the camera.
+  /// Predicted minus observed position of a landmark on the unit plane; false if it is behind the camera.
   bool error(const Feature& feature, const ObservationKey& view, Eigen::Vector2d& e) const {
     const CameraView anchor = at(*feature.anchor);
     const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).point, feature.inverse_depth);
@@ -69,7 +69,7 @@ class Fit {
     return e.norm() / feature.observations.at(view).sigma;
   }
 
-  /// Root mean square of a landmark's residuals [sigma]; nothing when it has too few observations to be judged by.
+  /// Root mean square of a landmark's residuals [sigma]; nothing if it has too few observations.
   std::optional<double> rms_sigmas(const Feature& feature) const {
     constexpr std::size_t kFewestObservations = 4;
     if (!feature.anchor || feature.observations.size() < kFewestObservations) return std::nullopt;
@@ -96,10 +96,10 @@ std::vector<ObservationKey> bad_observations(const Fit& fit, const Feature& feat
   return bad;
 }
 
-/// One a camera: what the landmarks anchored in it may be off by, over all their views [sigma].
+/// Per camera: the limit for the RMS residual of the landmarks anchored in it [sigma].
 std::vector<double> misfit_limits(const Window& window, const Fit& fit, double max_misfit) {
   constexpr std::size_t kMinLandmarks = 12;
-  constexpr double kLeastMedian = 0.2;  // [sigma]: the best of fits condemns nothing
+  constexpr double kLeastMedian = 0.2;  // [sigma] lower bound of the limit
   std::vector<std::vector<double>> rms(window.cameras().size());
   for (const auto& [id, feature] : window.features()) {
     if (const auto value = fit.rms_sigmas(feature)) rms[feature.anchor->camera].push_back(*value);
@@ -133,7 +133,7 @@ void LandmarkConfig::visit(ConfigFields& fields) {
 
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
   const bool ended_too = tracks == Tracks::All;
-  // Landmarks out of sight still hold the window together, but must not take the places of those in view.
+  // Landmarks that are no longer observed still constrain the window, but must not take the budget of observed ones.
   std::vector<int> landmarks(window.cameras().size(), 0), total(window.cameras().size(), 0);
   const auto count = [&](const Feature& feature) {
     for (const auto& [camera, last_seen] : feature.last_seen) {
@@ -193,7 +193,7 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   std::vector<std::pair<FeatureId, ObservationKey>> taken_out;
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
-    // Before its worst observations are taken out: that it has some says more about it than those that are left.
+    // Before its worst observations are removed: these say more about it than the remaining ones.
     const bool misfit = !depth_in_bounds(feature.inverse_depth, config) ||
                         fit.rms_sigmas(feature).value_or(0.0) > limits[feature.anchor->camera];
     const auto bad = misfit ? std::vector<ObservationKey>() : bad_observations(fit, feature, config.max_residual_sigma);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The life of landmarks: triangulated from tracks, judged after each solve, moved to a younger anchor.
+// The life of landmarks: triangulation from tracks, outlier rejection after each solve, move to a new anchor.
 #pragma once
 
 #include <optional>
@@ -14,29 +14,28 @@ namespace edged {
 
 enum class Tracks { Alive, All };
 
-/// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those that go on, or at a
-/// start in motion also those that have ended, as they are what its first views have seen.
+/// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those of live tracks, and
+/// at an initialization in motion also those of ended tracks, which its first views have observed.
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks = Tracks::Alive);
 
-/// Takes out what the newest state sees of landmarks far from where its predicted pose expects them: on something that
-/// moves, or wrong. Where that is most of what a camera sees, the prediction is doubted instead. Returns the features:
-/// their tracks should end.
+/// Removes observations of the newest state that are far from their prediction by its predicted pose: they are on a
+/// dynamic object, or wrong. If these are most observations of a camera, the prediction is assumed wrong instead.
+/// Returns the features: their tracks should end.
 std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
 
-/// Takes out observations that do not fit the solved window, and landmarks that over all their views fit worse than the
-/// rest of the scene: what moves by itself bends a little everywhere. Returns the features whose newest observation was
-/// taken out: their tracks are wrong and should end.
+/// Removes observations that do not fit the solved window, and landmarks whose residuals over all views are larger than
+/// those of the rest of the scene: those of dynamic objects are a little too large everywhere. Returns the features
+/// whose newest observation was removed: their tracks are outliers and should end.
 std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& config);
 
 enum class Newness { Newest, Any };
 
-/// Spread of what one camera's observations, in the newest state or in any, are off by beyond what the observation
-/// before tells (track_steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with
-/// too few of them.
+/// Spread of the innovations of one camera's observations, in the newest state or in any, given the observation before
+/// (track_steps): the standard deviation of one coordinate by the median length, in sigmas; nothing with too few of
+/// them.
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness = Newness::Newest);
 
-/// The inverse depth at which a point of the world would be anchored in a view [1/m]; nothing
-/// out of the depth bounds.
+/// The inverse depth of a point in O if it were anchored in a view [1/m]; nothing outside the depth bounds.
 std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config);
 

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// More of a flight: keyframes at the true poses, 0.2 s apart, with what the cameras see.
+/// More of a flight: keyframes at the true poses, 0.2 s apart, with their observations.
 struct Leg {
   int states = 6;
   bool keyframes = true;
@@ -61,11 +61,11 @@ int count_landmarks(const Window& window) {
 constexpr LandmarkConfig kGenerous = [] {
   LandmarkConfig config;
   config.max_per_camera = 500;
-  config.max_misfit = 1000.0;  // observations are judged one by one
+  config.max_misfit = 1000.0;  // observations are tested one by one
   return config;
 }();
 
-/// A feature that all six states of such a window see, and a landmark there.
+/// A feature that all six states of such a window observe, and a landmark for it.
 FeatureId lasting_corner(TestWorld& world) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
@@ -96,7 +96,7 @@ TEST(TriangulateFeatures, PlacesWhatTwoCamerasSeeAtOneInstant) {
   triangulate_features(window, kGenerous);
   EXPECT_GT(count_landmarks(window), 20);
   for (const auto& [id, feature] : window.features()) {
-    EXPECT_TRUE(!feature.anchor || feature.observations.size() == 2) << "one camera tells no depth";
+    EXPECT_TRUE(!feature.anchor || feature.observations.size() == 2) << "one camera alone has no depth";
     if (!feature.anchor) continue;
     EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 1e-6) << id;
   }
@@ -106,7 +106,7 @@ TEST(TriangulateFeatures, WaitsForParallax) {
   TestWorld world({.speed = 0.0, .pixel_noise = 0.0});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
-  // The camera sits 4 cm off the body's axis, so that turning alone shifts it, by less than the limit.
+  // The camera sits 4 cm off the body's axis, so that rotation alone shifts it, by less than the limit.
   EXPECT_EQ(count_landmarks(window), 0);
 }
 
@@ -196,7 +196,7 @@ TEST(RemoveOutliers, DropsALandmarkThatFitsWorseThanTheRestInNoObservationAlone)
   Window window = window_at_truth(world, 3);
   triangulate_features(window, kGenerous);
   const int landmarks = count_landmarks(window);
-  // It walks: to and fro by less than any one observation is taken out for.
+  // It moves back and forth, by less than the limit for a single observation.
   for (const double sigmas : {4.0, -4.0, 4.0}) {
     fly(window, world, {.states = 1, .spoil = shift(id, 0.0, sigmas / 200.0)});
   }
@@ -229,7 +229,7 @@ TEST(RemoveOutliers, DropsALandmarkOutOfBoundsAndReportsItWhileItIsTracked) {
   EXPECT_FALSE(window.features().contains(ended));
 }
 
-/// Another state, in which `count` landmarks are seen 20 px off. How many there were.
+/// Adds a state in which `count` landmarks are observed 20 px off. Returns their number.
 int fly_on_with_some_off(Window& window, TestWorld& world, int count) {
   int moved = 0;
   fly(window, world, {.states = 1, .spoil = [&](CameraObservations& view) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Normal equations over blocks: where they are taken, how terms are added, what has been eliminated from them.
+// Normal equations over blocks: linearization points, sums of terms, eliminated landmarks.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,30 +13,30 @@
 
 namespace edged {
 
-/// Where each block's tangent begins: those that leave in front, the motions first, which know their neighbours only
-/// (EnvelopeCholesky), each part in the order of the keys.
+/// The first column of each block's tangent: marginalized blocks in front; motions first, as they are coupled to their
+/// neighbours only (EnvelopeCholesky); each part in the order of the keys.
 struct Layout {
   explicit Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& leaving = {});
 
   std::map<BlockKey, Eigen::Index> offset;
   std::vector<BlockKey> staying;
-  Eigen::Index leaving = 0;  ///< columns of all that leaves
+  Eigen::Index leaving = 0;  ///< columns of the marginalized blocks
   Eigen::Index size = 0;
 };
 
-/// A block's place in a term's own equations and in those of the window.
+/// The column of a block in the equations of a term, and in those of the window.
 struct Placed {
   Eigen::Index local, size, global;
 };
 
-/// H d = -g over the tangent steps d. Of H the lower triangle counts.
+/// H d = -g over the tangent steps d. Only the lower triangle of H is used.
 struct NormalEquations {
   explicit NormalEquations(Eigen::Index size) : H(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
 
-  /// A term's own equations; `blocks` in the order of their local places.
+  /// The equations of one term; `blocks` in the order of their local columns.
   void add(const Eigen::Ref<const Eigen::MatrixXd>& term_H, const Eigen::Ref<const Eigen::VectorXd>& term_g,
            std::span<const Placed> blocks);
-  /// What ties the block at `row` to that at `column`.
+  /// The coupling of the block at `row` to that at `column`.
   template <int Rows, int Columns>
   void add(Eigen::Index row, Eigen::Index column, const Eigen::Matrix<double, Rows, Columns>& part) {
     if (row >= column) {
@@ -50,12 +50,12 @@ struct NormalEquations {
   Eigen::VectorXd g;
 };
 
-/// Where Jacobians are taken; residuals always at the present values. FirstEstimates: at the
-/// Window::linearisation_point of each block, so that directions the measurements cannot see stay unseen; d then counts
-/// from there.
+/// The linearization point of Jacobians; residuals are always at the present values. FirstEstimates: at the
+/// Window::linearisation_point of each block, so that unobservable directions stay unobservable; d is then relative to
+/// that point.
 enum class Linearisation { Present, FirstEstimates };
 
-/// How a landmark's inverse depth and the pose of one of its views go together.
+/// The coupling of a landmark's inverse depth and the pose of one of its views.
 struct DepthByPose {
   Eigen::Index global = 0;
   Vector6d coupling = Vector6d::Zero();
@@ -71,15 +71,15 @@ struct DepthByCalibration {
 struct DepthEquation {
   std::uint64_t landmark = 0;  ///< FeatureId
   double h = 0.0, g = 0.0;
-  std::vector<DepthByPose> poses;                ///< each once: the anchor's, then the others that see it
+  std::vector<DepthByPose> poses;                ///< each once: the anchor's, then those of other observing states
   std::vector<DepthByCalibration> calibrations;  ///< each once, in the same order
 };
 
-/// S with ones on the diagonal of S H S, zero where nothing was measured: positions, angles and biases differ in
+/// S with ones on the diagonal of S H S, zero where H is zero: positions, angles and biases differ in
 /// information by ten orders of magnitude.
 Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H);
 
-/// A diagonal entry of H below this was not measured at all.
+/// A diagonal entry of H below this has no information.
 inline constexpr double kNoInformation = 1e-9;
 
 }  // namespace edged

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 constexpr double kRankTolerance = 1e-10;  // of a matrix with unit diagonal
 
-/// Schur complement of the leaving blocks, with the directions nothing has measured left out.
+/// Schur complement of the marginalized blocks, without directions that have no information.
 void eliminate(Eigen::Index leaving, NormalEquations& eq) {
   const Eigen::Index m = leaving, n = eq.g.size() - m;
   if (m == 0) return;
@@ -35,9 +35,9 @@ struct Root {
   VectorXd r;
 };
 
-/// R^T R = H and R^T r = g, by Cholesky with the largest pivot of what is left first, so that the rank shows: a pivot
-/// that only rounding has left is some 1e-15. (Eigen's LDLT picks pivots from a diagonal that it does not keep up to
-/// date; behind small ones they are noise of any size.)
+/// R^T R = H and R^T r = g, by Cholesky with the largest remaining pivot first, which reveals the rank: pivots of
+/// rounding errors are about 1e-15. (Eigen's LDLT picks pivots from a diagonal that it does not keep up to date; behind
+/// small ones they are noise of any size.)
 Root root_of(MatrixXd H, VectorXd g) {
   const Eigen::Index n = g.size();
   Root root{MatrixXd(n, n), VectorXd(n)};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Marginalisation: turns factors and the blocks that leave into a prior on the blocks that stay.
+// Marginalization: turns the factors of removed blocks into a prior on the remaining blocks.
 #pragma once
 
 #include <set>
@@ -10,8 +10,8 @@
 namespace edged {
 
 /// Linearises `cost` (Linearisation::FirstEstimates) and eliminates by Schur complement the blocks in `leaving` and all
-/// inverse depths that it is of. Returns the prior on the remaining blocks, at their linearisation points; `cost` must
-/// hold every term that touches a leaving block, the old prior included.
+/// inverse depths in it. Returns the prior on the remaining blocks, at their linearisation points; `cost` must
+/// hold every term of a block in `leaving`, the old prior included.
 LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<BlockKey>& leaving);
 
 }  // namespace edged

@@ -25,7 +25,7 @@ TEST(Marginalize, LeavesTheSolutionOfTheRemainingStatesWhereItWas) {
   std::erase_if(touching.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
   window.drop_oldest(marginalize(window, touching, leaving));
 
-  // Start elsewhere: the prior alone must bring the states back.
+  // Start from other values: the prior alone must bring the states back.
   for (const auto& [id, state] : window.states()) {
     window.move({BlockKind::Pose, id}, std::array{0.02, 0.02, 0.02, 0.0, 0.0, 0.0});
     window.move({BlockKind::Motion, id}, std::vector<double>(9, 0.01));

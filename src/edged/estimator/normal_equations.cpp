@@ -59,7 +59,7 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
   return true;
 }
 
-/// The window's prior, whose J^T J is known: only turns take its derivatives away from those at its own place.
+/// The window's prior, whose J^T J is known: only rotations change its derivatives away from its linearization point.
 void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at,
                NormalEquations& equations) {
   MatrixXd H = prior.information;

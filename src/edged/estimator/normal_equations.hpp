@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// From the terms of a window to its normal equations: the same for solving, marginalising and covariance.
+// The normal equations of a window's terms, for solving, marginalization and covariance.
 #pragma once
 
 #include "edged/estimator/cost.hpp"
@@ -8,9 +8,9 @@
 
 namespace edged {
 
-/// Linearises the terms. Robust losses act with their present weight; what is not defined at the present values (a
-/// landmark behind a camera) counts nothing. Inverse depths that the layout does not hold are eliminated, and what
-/// their steps follow from is added to `eliminated` if there is one.
+/// Linearises the terms. Robust losses act with their present weight; terms that are not defined at the present values
+/// (a landmark behind a camera) are skipped. Inverse depths that are not in the layout are eliminated, and added to
+/// `eliminated`, if given, for their steps.
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
                                  std::vector<DepthEquation>* eliminated = nullptr);
 

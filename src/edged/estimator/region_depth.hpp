@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a depth source says of a part of the view (paper Eq. 5).
+// The depth of a region of the view, from a depth source (paper Eq. 5).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ struct RegionDepth {
   std::string camera;
   Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< features on the unit plane
   double depth_m = 0.0;                                                           ///< median z-depth
-  double sigma_ln = 0.0;   ///< of ln depth_m, what the source's scale is off included
+  double sigma_ln = 0.0;   ///< of ln depth_m, with the scale error of the source
   double spread_ln = 0.0;  ///< of ln depth within the region
 };
 

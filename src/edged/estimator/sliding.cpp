@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kRestStretch = 10.0;
 
-/// The youngest keyframe takes over the landmarks that it still sees; its observation and later ones are kept for that.
+/// The youngest keyframe becomes the new anchor of landmarks that it observes; its observation and later ones are kept
+/// for that.
 StateId youngest_keyframe(const Window& window) {
   StateId youngest = window.oldest_id();
   for (const auto& [state, content] : window.states()) {
@@ -22,8 +23,8 @@ StateId youngest_keyframe(const Window& window) {
   return youngest;
 }
 
-/// The landmarks anchored in the oldest state, and the observation in which those that the youngest keyframe still sees
-/// are anchored anew: that of the same camera where there is one.
+/// The landmarks anchored in the oldest state, and the observation that becomes the new anchor of those that the
+/// youngest keyframe observes: that of the same camera if there is one.
 using Inherited = std::map<FeatureId, std::optional<ObservationKey>>;
 
 Inherited inherited_landmarks(const Window& window) {
@@ -40,11 +41,11 @@ Inherited inherited_landmarks(const Window& window) {
   return inherited;
 }
 
-/// The terms that go into the prior when the oldest state leaves. Of landmarks anchored in younger keyframes only an
-/// observation goes; of those that go on, what is seen up to the new anchor.
+/// The terms that go into the prior when the oldest state is marginalized. Landmarks anchored in younger keyframes lose
+/// only an observation; of those with a new anchor, the observations before it are marginalized.
 Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const Inherited& inherited) {
   const StateId oldest = window.oldest_id();
-  // States that are no keyframes will be dropped, not marginalised: the prior must not know them.
+  // States that are no keyframes will be dropped, not marginalized: the prior must not depend on them.
   Cost cost = cost_of(window, Observations::OfKeyframes);
   std::erase_if(cost.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
   std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor.state != oldest; });
@@ -58,8 +59,8 @@ Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const
   return cost;
 }
 
-/// A landmark as one of its views sees it. The errors of a track are a walk, so that of its depth the view that is
-/// farthest from the anchor's tells nearly all.
+/// A landmark in one of its views. The errors of a track are a random walk, so the view farthest from the anchor has
+/// almost all information on its depth.
 KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
   const SE3 T_O_A = window.T_O_C(*feature.anchor);
   const Eigen::Vector3d p_O = window.position(feature);
@@ -75,7 +76,7 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
   return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
 }
 
-/// Keyframes that stay keep what they saw of a landmark whose observations there go.
+/// Remaining keyframes keep a record of a landmark whose observations there are marginalized.
 void keep_points(Window& window, FeatureId id, const Feature& feature, const std::optional<ObservationKey>& anchor) {
   for (const auto& [view, observation] : feature.observations) {
     if (view.state == feature.anchor->state || (anchor && view.state >= anchor->state)) continue;
@@ -108,7 +109,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto state = window.states().find(id), next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
   const bool rested = state->second.rested && next->second.rested;
-  // Where a rest begins and where it ends is worth keeping: an interval that is half of it would forget the rest.
+  // The begin and the end of a standstill are kept: an interval joined across one would lose the standstill factor.
   const bool between = state->second.rested != next->second.rested;
   if (between || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
     window.make_keyframe(id);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of factors, observations and landmarks when a state leaves.
+// Factors, observations and landmarks when a state leaves the window.
 #include "edged/estimator/sliding.hpp"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST_F(Sliding, JoinsTheImuOfAStateThatIsDroppedToTheNext) {
   EXPECT_EQ(joined[0], (BlockKey{BlockKind::Pose, passing_ - 1}));
   EXPECT_EQ(joined[2], (BlockKey{BlockKind::Pose, passing_ + 1}));
   EXPECT_NEAR(window_.states().at(passing_ + 1).imu.dt(), 2 * kTrackedPeriod_s, 1e-9);
-  EXPECT_NEAR(imu_strain(window_), strain, 0.3) << "the joined interval is of the motion that there was";
+  EXPECT_NEAR(imu_strain(window_), strain, 0.3) << "the joined interval has the whole motion";
 }
 
 TEST_F(Sliding, MakesAKeyframeOfAStateBetweenLongIntervals) {
@@ -117,7 +117,7 @@ TEST_F(Sliding, AsksAFactorWhatBecomesOfItWhenItsStateIsDropped) {
   EXPECT_EQ(factors_of<PositionFactor>(window_).size(), 2U) << "one has ended";
   window_.drop_state(passing_ + 1, window_.states().at(passing_ + 1).imu.joined(window_.states().at(passing_ + 2).imu));
   const auto left = factors_of<PositionFactor>(window_);
-  ASSERT_EQ(left.size(), 1U) << "one is now of the same state as another";
+  ASSERT_EQ(left.size(), 1U) << "two factors of one state have merged";
   EXPECT_EQ(left[0]->measurements(), 2 + 4);
 }
 

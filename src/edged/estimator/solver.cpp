@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Of a matrix with ones on its diagonal. Close to Gauss-Newton: more leaves the scale, which many blocks share, far
-// from converged.
+// Of a matrix with ones on its diagonal. Close to Gauss-Newton: with more damping the scale, common to many blocks,
+// does not converge.
 constexpr double kDamping = 1e-9, kMoreDamping = 1e3;
-constexpr double kConverged = 1e-6;  // a step that gains less of the cost is the last
+constexpr double kConverged = 1e-6;  // a step with a smaller relative decrease of the cost is the last
 
-/// The window around its present values: its linear system, and the way to another point and back.
+/// The linear system of the window at its present values, with steps and their undo.
 class Neighbourhood {
  public:
   Neighbourhood(Window& window, const Cost& cost)
@@ -41,7 +41,7 @@ class Neighbourhood {
     return d.allFinite();
   }
 
-  /// Moves the window; restore() takes it back.
+  /// Moves the window; restore() undoes it.
   void move(const VectorXd& d) {
     before_ = window_.estimates();
     for (const auto& [key, offset] : layout_.offset) {
@@ -82,7 +82,7 @@ SolveSummary solve(Window& window, int max_iterations) {
   Neighbourhood around(window, cost);
   VectorXd d;
   double damping = kDamping;
-  bool fresh = false;  // linearised where the window stands
+  bool fresh = false;  // linearised at the present values
   while (summary.iterations < max_iterations) {
     ++summary.iterations;
     if (!fresh) around.linearise();
@@ -94,7 +94,7 @@ SolveSummary solve(Window& window, int max_iterations) {
       if (!(value < summary.final_cost)) around.restore();
     }
     if (!(value < summary.final_cost)) {
-      if (std::isfinite(value) && value - summary.final_cost <= kConverged * value) break;  // nothing more to gain
+      if (std::isfinite(value) && value - summary.final_cost <= kConverged * value) break;  // converged
       damping *= kMoreDamping;
       continue;
     }

@@ -60,7 +60,7 @@ class PoseManifold final : public ceres::LocalParameterization {
 };
 #endif
 
-/// The window's blocks, for Ceres to change.
+/// The blocks of the window, as parameters of Ceres.
 class CeresBlocks {
  public:
   explicit CeresBlocks(const Window& window) : window_(window) {}
@@ -121,7 +121,7 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
   for (const auto& [id, state] : window.states()) {
     problem.AddParameterBlock(all.at({BlockKind::Pose, id}), 7, &manifold);
   }
-  for (const auto& factor : cost.factors) {  // the problem leaves what it does not own as it is
+  for (const auto& factor : cost.factors) {  // the problem does not delete what it does not own
     std::vector<double*> blocks;
     for (const BlockKey& key : factor->blocks()) blocks.push_back(all.at(key));
     problem.AddResidualBlock(const_cast<Factor*>(factor.get()), const_cast<ceres::LossFunction*>(factor->loss()),
@@ -140,7 +140,7 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
   return summary.final_cost;
 }
 
-/// Landmarks and IMU, off by some; the errors of a track correlate, calibrations are free.
+/// Perturbed landmarks and IMU; errors of a track correlate, calibrations are free.
 Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
   Window window = tracked_window(world, options);
   triangulate_features(window, {});
@@ -176,7 +176,7 @@ TEST(Solve, ComesToWhereCeresComes) {
     for (const auto& [id, state] : window.states()) {
       Vector6d difference;
       tangent_difference(BlockKind::Pose, state.pose.data(), blocks.at({BlockKind::Pose, id}), difference.data());
-      EXPECT_LT(difference.norm(), 3e-4) << id;  // the one stops where a step gains 1e-6 of the cost
+      EXPECT_LT(difference.norm(), 3e-4) << id;  // ours stops at a relative decrease of 1e-6 of the cost
     }
     for (const auto& [id, feature] : window.features()) {
       if (feature.anchor) {
@@ -209,7 +209,7 @@ TEST(Solve, IsNotUsableWithALandmarkBehindItsCamera) {
   EXPECT_EQ(window.estimates(), turned);
 }
 
-/// The gradient that the normal equations have against differences of the cost.
+/// The gradient of the normal equations against differences of the cost.
 class NormalEquationsOf : public testing::TestWithParam<bool> {};
 
 TEST_P(NormalEquationsOf, TheWindowHaveTheGradientOfTheCost) {

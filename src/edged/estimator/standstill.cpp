@@ -13,10 +13,10 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kBlocks = 8;      // the window's readings are averaged in blocks: white noise goes, motion stays
-constexpr std::size_t kMinCorners = 8;  // fewer common features say nothing about image motion
-constexpr double kGlideStretch = 3.0;   // of the quiet window, where the whole picture glides
-constexpr double kGlideShare = 0.7;     // of the features, that travel as their median does
+constexpr std::size_t kBlocks = 8;  // the samples are averaged in blocks, which removes white noise and keeps motion
+constexpr std::size_t kMinCorners = 8;  // fewer common features do not determine the image motion
+constexpr double kGlideStretch = 3.0;   // of the quiet window, where the whole image moves
+constexpr double kGlideShare = 0.7;     // of the features, those that move as their median does
 
 Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
   std::vector<double> x, y;
@@ -123,7 +123,7 @@ bool StandstillDetector::imu_quiet(double window_s) {
   return true;
 }
 
-/// How far the features that the window's first and last views share have travelled on the unit plane.
+/// Displacement on the unit plane of the features common to the window's first and last views.
 std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
   std::vector<Eigen::Vector2d> travels;
   for (const auto& [id, point] : views_.back().points) {
@@ -133,8 +133,8 @@ std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
   return travels;
 }
 
-/// Whether nearly all features travel alike: steady motion, which an IMU cannot feel, looks so; walkers and lamps
-/// seldom do.
+/// Whether nearly all features move alike: so they do in uniform motion, which an IMU cannot measure; on dynamic
+/// objects seldom.
 bool StandstillDetector::image_glides() const {
   const std::vector<Eigen::Vector2d> all = travels();
   if (all.size() < kMinCorners) return false;
@@ -151,7 +151,7 @@ bool StandstillDetector::image_still() {
   for (const Eigen::Vector2d& travel : travels()) lengths.push_back(travel.norm());
   if (lengths.size() < kMinCorners) {
     const bool quiet = std::all_of(views_.begin(), views_.end(), [](const View& v) { return v.events_quiet; });
-    reason_ = fmt::format("{} of {} features to tell rest from steady motion", lengths.size(), kMinCorners);
+    reason_ = fmt::format("{} of {} features to distinguish rest from uniform motion", lengths.size(), kMinCorners);
     return quiet;
   }
   const double middle = median(std::move(lengths));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Tells whether the body rests. The IMU's word alone counts where it has been as quiet as its own noise for a while: a
-// camera at rest may see nothing but dynamic objects (walkers, a lamp). Where the IMU has only been calm, for a
-// shorter time, a still picture must confirm it.
+// Detects a standstill of the body. The IMU alone suffices if it has been as quiet as its own noise for a while, as a
+// camera at rest may show only dynamic objects. If the IMU has only been calm, for a shorter time, still images must
+// confirm it.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,21 +22,21 @@ class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
-  /// Takes one packet: its IMU, its features, and whether the event camera is quiet (nothing moves in its view).
+  /// Takes one packet: its IMU, its features, and whether the event camera is quiet (static view).
   void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet);
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
-  /// True when the IMU alone is sure of it, whatever the cameras see and the estimate says.
+  /// True when the IMU alone detects it, independent of cameras and estimate.
   bool still_by_imu() const { return quiet_; }
-  /// What keeps it from being called rest, with numbers; empty when still.
+  /// Why it is no standstill, with numbers; empty at standstill.
   const std::string& reason() const { return reason_; }
   /// Means over the window; meaningful when still.
   const Eigen::Vector3d& mean_gyro_B() const { return mean_gyro_; }
   const Eigen::Vector3d& mean_accel_B() const { return mean_accel_; }
 
  private:
-  /// The means of the readings over the last part of the window, and how far those of its blocks spread.
+  /// Means of the samples over the last part of the window, and the spread of its block means.
   struct Spread {
     double covered_s = 0.0;
     double gyro = 0.0, accel = 0.0;  ///< [rad/s], [m/s^2]

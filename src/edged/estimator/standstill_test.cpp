@@ -18,7 +18,7 @@ using testing::IsEmpty;
 
 constexpr double kImuRate = 200.0, kPacket_s = 0.05;
 
-/// What the sensors of a body read at time t [s].
+/// The measurements of the sensors at time t [s].
 struct Readings {
   std::function<Vector3d(double)> gyro = [](double) { return Vector3d(0.01, -0.02, 0.015); };
   std::function<Vector3d(double)> accel = [](double) { return Vector3d(0.05, -0.1, 9.83); };
@@ -118,7 +118,7 @@ TEST(StandstillDetector, SeesAPush) {
 }
 
 TEST(StandstillDetector, TakesTheVibrationOfMotorsForRest) {
-  // 80 Hz, 1 m/s^2 and 0.05 rad/s: a tenth of a pixel. The block means must not see it, whatever its phase.
+  // 80 Hz, 1 m/s^2 and 0.05 rad/s: a tenth of a pixel. The block means must not contain it, whatever its phase.
   for (int phase = 0; phase < 8; ++phase) {
     Bench bench;
     bench.run(1.0, {.gyro = [&](double t) { return Vector3d(0.05 * std::sin(503.0 * t + phase), 0, 0); },
@@ -166,7 +166,7 @@ TEST(StandstillDetector, ACalmHandIsNoQuietImu) {
 }
 
 TEST(StandstillDetector, NeedsTheWholeWindowQuiet) {
-  // An IMU that is calm, but not quiet enough to be believed alone.
+  // An IMU that is calm, but not quiet enough to suffice alone.
   const auto swaying = [](double t) { return Vector3d(0.008 * std::sin(9.0 * t), 0, 0); };
   Bench bench;
   bench.run(1.0, {.gyro = swaying, .features = 0, .events_quiet = true});
@@ -187,7 +187,7 @@ TEST(StandstillDetector, ForgetsMotionAfterItsWindow) {
   EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
 }
 
-/// A body at rest for good; returns the estimator after duration_s.
+/// A body permanently at rest; returns the estimator after duration_s.
 Estimator at_rest(TestWorld& world, double duration_s, bool with_corners) {
   Estimator estimator(world.rig(), world.noise(), {});
   for (int i = 1; i * kPacket_s <= duration_s; ++i) {
@@ -210,7 +210,7 @@ TEST(Standstill, KeepsTheEstimateWhereItIs) {
     const Vector3d bias_error = state.bias_gyro - TestWorldOptions{}.bias_gyro;
     EXPECT_LT(bias_error.head<2>().norm(), 1e-3);  // 1e-4
     EXPECT_LT(std::abs(bias_error.z()),
-              with_corners ? 1e-3 : 0.02);  // without features nothing but its prior holds yaw
+              with_corners ? 1e-3 : 0.02);  // without features only the prior constrains yaw
   }
 }
 

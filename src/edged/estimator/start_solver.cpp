@@ -59,7 +59,7 @@ std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames
   return motion;
 }
 
-/// The directions in which a start is free: gravity keeps its length.
+/// The free directions of an initialization: the magnitude of gravity is fixed.
 Eigen::Matrix<double, 9, 8> free_directions(const Start& x) {
   const Vector3d up = -x.segment<3>(3).normalized(), tangent = up.unitOrthogonal();
   Eigen::Matrix<double, 9, 8> free = Eigen::Matrix<double, 9, 8>::Zero();
@@ -70,7 +70,7 @@ Eigen::Matrix<double, 9, 8> free_directions(const Start& x) {
   return free;
 }
 
-/// How a point's place on the unit plane changes with the point, seen from a camera of rotation R at p_C.
+/// Derivative of a point's projection on the unit plane of a camera with rotation R at p_C.
 Eigen::Matrix<double, 2, 3> d_seen_d_point(const Matrix3d& R_O_C, const Vector3d& p_C) {
   Eigen::Matrix<double, 2, 3> d;
   d << 1, 0, -p_C.x() / p_C.z(), 0, 1, -p_C.y() / p_C.z();
@@ -152,7 +152,7 @@ std::vector<View> StartSolver::views(const StartTrack& track, const Start& x) co
   return views;
 }
 
-/// One Gauss-Newton term around x, the track's point at its best place and eliminated.
+/// One Gauss-Newton term around x, with the point of the track optimized and eliminated.
 void StartSolver::add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const {
   const std::vector<View> seen_from = views(track, x);
   const auto point = triangulate(seen_from, kRayNoise);

@@ -29,7 +29,8 @@ struct StartTrack {
   std::vector<StartObservation> observations;
 };
 
-/// What is unknown once rotations are: first velocity, gravity, both in the first body frame, and accelerometer bias.
+/// The unknowns once rotations are known: first velocity, gravity, both in the first body frame, and accelerometer
+/// bias.
 using Start = Eigen::Matrix<double, 9, 1>;
 using StartMatrix = Eigen::Matrix<double, 9, 9>;
 
@@ -58,7 +59,7 @@ struct RefinedStart {
   StartMatrix covariance;
 };
 
-/// Tracks of a start-up buffer, and the starts that some of them make. Tracks are named by their place in tracks().
+/// Tracks of a start-up buffer, and initializations from some of them. Tracks are given by their index in tracks().
 class StartSolver {
  public:
   using Chosen = std::vector<std::size_t>;
@@ -67,24 +68,24 @@ class StartSolver {
   StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
               const ImuNoise& noise, double accel_bias_sigma);
 
-  /// Features seen in three views or more.
+  /// Features observed in three views or more.
   const std::vector<StartTrack>& tracks() const { return tracks_; }
-  /// One a frame.
+  /// One per frame.
   const std::vector<RelativeMotion>& motion() const { return motion_; }
 
-  /// The linear solution, |g| imposed and the accelerometer bias zero; free_length: |g| without that. Nothing when it
-  /// is not determined.
+  /// The linear solution, |g| imposed and the accelerometer bias zero; free_length: |g| without that. Nothing if it is
+  /// not determined.
   std::optional<Start> linear(const Chosen& chosen, double* free_length) const;
 
-  /// Noise makes the linear solution too small, points too near: this minimises the reprojection error itself, |g|
-  /// kept, the accelerometer bias held near zero.
+  /// Noise makes the linear solution too small and points too near: this minimises the reprojection error itself, with
+  /// |g| fixed and a prior of zero on the accelerometer bias.
   std::optional<RefinedStart> refine(const Chosen& chosen, Start x, int iterations) const;
 
-  /// The start from which the IMU leads to a state at the time of the last view.
+  /// The initialization from which the IMU propagates to a given state at the time of the last view.
   Start start_of(const OdomState& last) const;
 
-  /// Root mean square of a track's reprojection errors under a start, its point at its best place [sigma]; infinite
-  /// where it has none.
+  /// Root mean square of a track's reprojection errors under an initialization, with its point optimized [sigma];
+  /// infinite if that fails.
   double misfit(std::size_t track, const Start& x) const;
 
   /// Standard deviation of the longest baseline over its length.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A world of points, an analytic motion and the exact measurements of both: the truth the estimator is tested against.
+// A world of points, an analytic motion and exact measurements of both: the ground truth of the estimator's tests.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace edged {
 
 struct TestWorldOptions {
   double rest_s = 0.0;               ///< at the beginning
-  int cameras = 1;                   ///< 2: one more, "events", turned and shifted against "frames"
-  bool shared_ids = false;           ///< all cameras call a point the same: they observe it together
+  int cameras = 1;                   ///< 2: one more, "events", rotated and shifted relative to "frames"
+  bool shared_ids = false;           ///< a point has the same id in all cameras
   double speed = 1.0;                ///< scales the amplitude of the motion; 0: rotation only
   double turn = 1.0;                 ///< scales the amplitude of the rotation
-  double tempo = 1.0;                ///< how fast the motion runs
+  double tempo = 1.0;                ///< speed factor of the motion
   double turn_only_s = 0.0;          ///< no translation before this, at full speed a second later
   double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< of scale and axes: measured = (I + E) true + bias
@@ -31,14 +31,14 @@ struct TestWorldOptions {
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
   double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
-  int walker = 0;               ///< so many of the 120 features are of a body of half a metre that passes by
+  int walker = 0;               ///< number of the 120 features on a dynamic object of half a metre that passes by
   double walker_comes_s = 0.0;  ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
 class TestWorld {
  public:
-  static constexpr FeatureId kWalkerId = 700;  ///< the walker's features are from here to 999
+  static constexpr FeatureId kWalkerId = 700;  ///< features of the dynamic object are from here to 999
 
   explicit TestWorld(const TestWorldOptions& options) : options_(options), random_(options.seed) {
     rig_.name = "test";
@@ -63,7 +63,7 @@ class TestWorld {
   const Rig& rig() const { return rig_; }
   const ImuNoise& noise() const { return noise_; }
 
-  /// The body looks along W's z (upwards: the texture is on the ceiling).
+  /// The camera axis is along W's z (upwards: the texture is on the ceiling).
   SE3 T_W_B(double t) const {
     const double s = motion_time(t);
     const Eigen::Vector3d phi(0.2 * std::sin(1.3 * s), 0.25 * std::sin(0.9 * s), 0.3 * std::sin(0.7 * s));
@@ -97,7 +97,7 @@ class TestWorld {
             Eigen::Vector3d::Constant(sigma)};
   }
 
-  /// Point i of the world; camera c calls it i + 1 + 1000 c.
+  /// Point i of the world; its id in camera c is i + 1 + 1000 c.
   const Eigen::Vector3d& point_W(FeatureId id) const { return points_W_.at((id - 1) % 1000); }
 
   /// The visible points at t, 120 at most.
@@ -152,7 +152,7 @@ class TestWorld {
     return x * x * x * (10.0 + x * (6.0 * x - 15.0));
   }
 
-  /// How far a track has drifted from its point [px].
+  /// Drift of a track from its point [px].
   const Eigen::Vector2d& drifted(FeatureId id, double t) {
     Drift& drift = drift_[id];
     const double step = options_.pixel_walk * std::sqrt(std::max(t - drift.t, 0.0));
@@ -209,7 +209,7 @@ inline void stretch_depths(Window& window, double factor) {
 
 enum class Gauge { Held, Free };
 
-/// Four states, their IMU factors, a gauge and hand-set priors: a problem that is nearly linear close to its solution.
+/// Four states, their IMU factors, a gauge and initial priors: a problem that is nearly linear close to its solution.
 inline Window inertial_window(TestWorld& world, Gauge gauge = Gauge::Held) {
   Window window(world.rig(), 1.0);
   for (int i = 0; i < 4; ++i) {
@@ -238,7 +238,7 @@ inline Window inertial_window(TestWorld& world, Gauge gauge = Gauge::Held) {
 
 inline constexpr double kTrackedPeriod_s = 0.2;
 
-/// Keyframes at the true poses, velocities and biases, with their IMU and what the cameras see; the gauge is held.
+/// Keyframes at the true poses, velocities and biases, with IMU and observations; the gauge is fixed.
 inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, int states = 6) {
   Window window(world.rig(), 1.0);
   world.packet(1.0 - kTrackedPeriod_s, kTrackedPeriod_s, true);

@@ -10,7 +10,7 @@ namespace edged {
 LinearPrior WalkingScalar::begin_piece(double dt_s) {
   const auto [id, value] = *pieces_.rbegin();
   pieces_.emplace(id + 1, value);
-  // Without any walk a piece is the one before, up to what numbers can hold.
+  // Without a random walk a piece equals the one before, up to rounding.
   const double sigma = std::max(1e-4, walk_per_root_s_ * std::sqrt(dt_s));
   LinearPrior walk;
   walk.blocks = {{kind_, id}, {kind_, id + 1}};

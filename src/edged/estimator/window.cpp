@@ -15,8 +15,8 @@ namespace {
 
 bool is_calibration(BlockKey key) { return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics; }
 
-/// A block near what it is now, by one sigma for each of its numbers. One that is held gets a sigma too small to move
-/// by.
+/// A prior on a block at its present value, with one sigma for each of its numbers. A fixed block gets a negligible
+/// sigma.
 LinearPrior near_present(BlockKey key, std::span<const double> present, const Eigen::VectorXd& sigmas) {
   constexpr double kHeld = 1e-9;
   LinearPrior prior;
@@ -148,7 +148,7 @@ StateId Window::add_state(WindowState state, const std::vector<CameraObservation
   return next_state_++;
 }
 
-/// What a camera sees at the newest state.
+/// The observations of a camera at the newest state.
 void Window::observe(const CameraObservations& view) {
   const std::size_t index = camera_index(view.camera);
   WindowCamera& camera = cameras_[index];
@@ -271,7 +271,7 @@ void Window::add_soft_prior(LinearPrior prior) {
 
 void Window::check(const Factor& factor) const {
   for (const BlockKey& key : factor.blocks()) {
-    // Not of inverse depths either: landmarks come and go without asking for factors.
+    // Not of inverse depths either: landmarks are added and removed without regard to factors.
     EDGED_CHECK(block(key) != nullptr && key.kind != BlockKind::InverseDepth,
                 "a factor of block {} of kind {}, which does not stay in the window", key.id,
                 static_cast<int>(key.kind));
@@ -340,7 +340,7 @@ void Window::move(BlockKey key, std::span<const double> step) {
   const auto size = static_cast<std::size_t>(tangent_size(key.kind));
   EDGED_CHECK(values != nullptr, "block {} of kind {} is not in the window", key.id, static_cast<int>(key.kind));
   EDGED_CHECK(step.size() == size, "a step of {} numbers in a tangent space of {}", step.size(), size);
-  plus(key.kind, const_cast<double*>(values), step.data());  // our own: block() looks as others do
+  plus(key.kind, const_cast<double*>(values), step.data());  // not const: our own blocks
 }
 
 template <typename Self, typename Visit>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The sliding window: states, features and the prior that stands for what has left.
+// The sliding window: states, features and the prior of marginalization.
 #pragma once
 
 #include <ceres/loss_function.h>
@@ -34,9 +34,9 @@ struct WindowState {
   bool keyframe = false;
   bool rested = false;  ///< the body did not move since the state before this one
   Preintegration imu;   ///< from the state before this one; of the window's first state unused
-  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();        ///< the reading at t [rad/s]
-  std::optional<RegionDepth> depth;                        ///< of a keyframe: what a depth source says
-  std::map<std::size_t, std::vector<KeyframePoint>> kept;  ///< by camera: what it saw of landmarks that have left
+  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();        ///< gyro sample at t [rad/s]
+  std::optional<RegionDepth> depth;                        ///< of a keyframe: the depth from a depth source
+  std::map<std::size_t, std::vector<KeyframePoint>> kept;  ///< by camera: its records of marginalized landmarks
 
   SE3 T_O_B() const { return pose_of(pose.data()); }
   OdomState nav() const;
@@ -46,17 +46,17 @@ struct WindowState {
 MotionBlock motion_block(const OdomState& state);
 WindowState window_state(const OdomState& nav, const Eigen::Vector3d& gyro_B, Preintegration imu, bool keyframe);
 
-/// Names an image: that of a camera at a state.
+/// Identifies an image: that of a camera at a state.
 struct ObservationKey {
   StateId state = 0;
   std::size_t camera = 0;  ///< index into Window::cameras()
   auto operator<=>(const ObservationKey&) const = default;
 };
 
-/// What cameras have tracked under one id and, once triangulated, the landmark behind it.
+/// The observations under one id and, once triangulated, their landmark.
 struct Feature {
   std::map<ObservationKey, FeatureObservation> observations;  ///< in the window
-  /// By camera that has seen it: the newest state that did, even if that has been dropped since.
+  /// By observing camera: the newest state that observed it, even if that has been dropped since.
   std::map<std::size_t, StateId> last_seen;
   std::optional<ObservationKey> anchor;  ///< set when it is a landmark: an observation from a keyframe
   double inverse_depth = 0.0;            ///< [1/m] along z of the anchor camera
@@ -65,28 +65,28 @@ struct Feature {
   bool seen_at(StateId state) const;
 };
 
-/// Where a landmark is anchored from now on.
+/// The new anchor of a landmark.
 struct NewAnchor {
   ObservationKey key;
   double inverse_depth;
 };
 
-/// A camera of the rig, and what the window knows of it.
+/// A camera of the rig, with its estimated calibration and noise.
 struct WindowCamera {
   RigCamera given;
-  CalibrationBlock calibration{};  ///< what `given` is off by: Window::calibrated() has both
-  double noise_scale = 1.0;        ///< multiplies the sigma of its observations as they come in
+  CalibrationBlock calibration{};  ///< correction of `given`: Window::calibrated() has both
+  double noise_scale = 1.0;        ///< multiplies the sigma of its new observations
   StateId last_image = 0;          ///< the newest state with an image of it
 };
 
-/// All may look, and only its own functions change it: each leaves it whole. Times and ids of its states grow; features
-/// are seen by states and anchored in keyframes that it holds, and factors are of blocks that it holds. What would
-/// break that is a bug (EDGED_CHECK). O is here the frame of this start (S of pipeline/world_frame): what is measured
-/// in the world must be moved there first.
+/// Read access for all; only its own functions change it, and each keeps its invariants: times and ids of states grow;
+/// features are observed in states of the window and anchored in its keyframes; factors are of blocks in the window. A
+/// violation is a bug (EDGED_CHECK). O is here the frame of this start (S of pipeline/world_frame): measurements in the
+/// world frame must be transformed to it first.
 class Window {
  public:
-  /// The rig's time offsets are those left over: packets are stamped on the clock of the IMU already. Calibrations are
-  /// held as given until free_calibration().
+  /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock. Calibrations are fixed
+  /// until free_calibration().
   Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
 
   const std::map<StateId, WindowState>& states() const { return states_; }
@@ -95,11 +95,11 @@ class Window {
   const WindowState& newest() const { return states_.rbegin()->second; }
   const std::map<FeatureId, Feature>& features() const { return features_; }
   const std::vector<WindowCamera>& cameras() const { return cameras_; }
-  /// What marginalisation has left; empty at first.
+  /// The prior of marginalization; empty at first.
   const std::shared_ptr<const LinearPriorFactor>& prior() const { return prior_; }
-  /// Hand-set: gauge, biases, zero velocity, calibrations.
+  /// Initial priors: gauge, biases, zero velocity, calibrations.
   const std::vector<std::shared_ptr<LinearPriorFactor>>& soft_priors() const { return soft_priors_; }
-  /// Of measurements, in the order of their states. Landmarks and depths of the scene are apart (cost.hpp).
+  /// Of measurements, in the order of their states. Landmarks and scene depths are not among them (cost.hpp).
   const std::vector<std::shared_ptr<Factor>>& factors() const { return factors_; }
   const TrackNoise& track_noise() const { return track_noise_; }
   const DepthFactorConfig& depth_config() const { return depth_config_; }
@@ -107,70 +107,70 @@ class Window {
 
   /// Index into cameras(); the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
-  /// The camera by what has been seen: its rotation against the body, and the time offset that is left over.
+  /// The camera with its estimated rotation relative to the body and its residual time offset.
   RigCamera calibrated(std::size_t camera) const;
   SE3 T_O_C(const ObservationKey& image) const;
-  /// True while the newest image of a camera that sees it still showed the feature. Not every state has an image of
+  /// True while the newest image of a camera that observes the feature still shows it. Not every state has an image of
   /// every camera.
   bool alive(const Feature& feature) const;
   bool alive(const Feature& feature, std::size_t camera) const;
-  /// The landmark's position in the world; the feature must have an anchor.
+  /// The landmark's position in O; the feature must have an anchor.
   Eigen::Vector3d position(const Feature& feature) const;
 
-  /// Appends a state later than all, the factors of its IMU and rest, and what the cameras see there.
+  /// Appends a state later than all, its IMU and standstill factors, and its observations.
   StateId add_state(WindowState state, const std::vector<CameraObservations>& observations = {});
-  /// What a depth source says at the newest state.
+  /// The depth from a depth source at the newest state.
   void set_depth(const RegionDepth& depth);
   void make_keyframe(StateId id) { state(id).keyframe = true; }
   /// A measurement of blocks that the window holds.
   void add(std::shared_ptr<Factor> factor);
-  /// A state between two others that is no keyframe leaves; `joined` is what the IMU felt from the one to the other.
-  /// Its factors say what becomes of them.
+  /// Drops a state between two others that is no keyframe; `joined` is the IMU interval from the one to the other. Its
+  /// factors define their own replacement.
   void drop_state(StateId id, Preintegration joined);
-  /// A keyframe keeps what it saw of a landmark that leaves.
+  /// A keyframe keeps a record of a landmark that is marginalized.
   void keep_point(const ObservationKey& image, const KeyframePoint& point);
-  /// The oldest state leaves, and with it the landmarks anchored there, but for those with a new anchor: they go on by
-  /// what is seen from that state on. `prior` stands for all that has left.
+  /// Removes the oldest state and the landmarks anchored there, except those with a new anchor, which keep the
+  /// observations from that state on. `prior` has the information of all that was removed.
   void drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>& inherited = {});
 
-  /// A feature seen by that camera in a keyframe is a landmark from now on.
+  /// Makes a feature observed by that camera in a keyframe a landmark.
   void make_landmark(FeatureId id, const NewAnchor& anchor);
-  /// Takes out an observation, not the anchor's.
+  /// Removes an observation, not the anchor's.
   void forget_observation(FeatureId id, const ObservationKey& image);
   void forget_feature(FeatureId id) { features_.erase(id); }
-  /// Tracks that ended before they became landmarks.
+  /// Removes tracks that ended before they became landmarks.
   void forget_ended_tracks();
 
-  /// Multiplies the sigmas of what the camera sees from now on.
+  /// Multiplies the sigmas of the camera's future observations.
   void set_noise_scale(std::size_t camera, double scale) { cameras_.at(camera).noise_scale = scale; }
-  /// Multiplies the sigmas of all that the camera has seen, and of what it will see.
+  /// Multiplies the sigmas of all past and future observations of the camera.
   void rescale_noise(std::size_t camera, double factor);
   /// Without it errors along a track are independent.
   void set_track_noise(const TrackNoise& noise) { track_noise_ = noise; }
-  /// From now on calibrations are estimated along, each near what it is. Not before scale is known: in slow motion a
-  /// turned camera looks like another scale.
+  /// Starts to estimate calibrations, with priors at their present values. Not before scale is known: in slow motion a
+  /// rotation of the camera resembles a scale error.
   void free_calibration(const CalibrationConfig& config);
-  /// Gauge, biases, zero velocity: until a block of it leaves, when marginalisation has taken it into the prior.
+  /// Gauge, biases, zero velocity: until one of its blocks is marginalized, when it is absorbed into the prior.
   void add_soft_prior(LinearPrior prior);
 
-  /// From now on there is a scalar of that kind. ln s (Eq. 5) is there from the first with depth factors.
+  /// Adds a scalar of that kind. With depth factors ln s (Eq. 5) exists from the start.
   void begin_walk(BlockKind kind, double value, const Walk& walk);
-  /// The present piece of such a scalar, if there is one; of all that there are.
+  /// The present piece of such a scalar, if there is one; those of all scalars.
   std::optional<BlockKey> walking(BlockKind kind) const;
   std::vector<BlockKey> walking() const;
-  /// WalkingScalar::begin_piece. The piece before leaves with the oldest state, what stays is of the new one.
+  /// WalkingScalar::begin_piece. The old piece leaves with the oldest state; remaining factors refer to the new one.
   LinearPrior begin_piece(BlockKind kind, double dt_s) { return walking_.at(kind).begin_piece(dt_s); }
-  /// It goes, with its factors; `prior` stands for what marginalisation has left without it.
+  /// Removes it with its factors; `prior` is the prior of marginalization without it.
   void end_walk(BlockKind kind, LinearPrior prior);
 
   /// The present values of a block, null when it is not in the window.
   const double* block(BlockKey key) const;
-  /// First-estimate linearisation point of a block: its place in the prior, else its present value. Calibrations are
-  /// linearised anew: they can be observed, and are far off at first.
+  /// First-estimate linearisation point of a block: its point in the prior, else its present value. Calibrations are
+  /// relinearised: they are observable, and far off at first.
   const double* linearisation_point(BlockKey key) const;
   /// Moves a block by a step in its tangent space.
   void move(BlockKey key, std::span<const double> step);
-  /// The values of all blocks, for restore() to bring them back while the window holds the same ones.
+  /// The values of all blocks. restore() sets them again while the window holds the same blocks.
   std::vector<double> estimates() const;
   void restore(const std::vector<double>& estimates);
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The window's bookkeeping, and its solution from poses and landmarks that are off.
+// The window's bookkeeping, and its solution from perturbed poses and landmarks.
 #include "edged/estimator/window.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ WindowState state_at(double t) {
   return state;
 }
 
-/// As marginalisation would leave one of a pose.
+/// A prior on a pose, as marginalization makes it.
 LinearPrior prior_of(const Window& window, BlockKey pose) {
   LinearPrior prior = gauge_prior(pose, window.states().at(pose.id).pose, 1e-3, 1e-3);
   prior.information = prior.J.transpose() * prior.J;
@@ -81,7 +81,7 @@ TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
   const FeatureId id = window.features().begin()->first;
   add(1.05, 1);
   EXPECT_TRUE(window.alive(window.features().at(id)));
-  add(3.0, 0);  // far along: some have left the view
+  add(3.0, 0);  // late: some have left the view
   int ended = 0;
   for (const auto& [feature_id, feature] : window.features()) ended += window.alive(feature) ? 0 : 1;
   EXPECT_GT(ended, 0);
@@ -158,7 +158,7 @@ TEST(Window, ScalesTheNoiseOfOneCamera) {
     const auto& [view, observation] = *feature.observations.begin();
     EXPECT_DOUBLE_EQ(observation.sigma, (view.camera == 1 ? 3.0 : 1.0) / 200.0);
   }
-  window.set_noise_scale(1, 2.0);  // of what comes
+  window.set_noise_scale(1, 2.0);  // of future observations
   window.add_state(state_at(3.0), {world.observe(3.0, 1)});
   int old = 0, anew = 0;
   for (const auto& [id, feature] : window.features()) {
@@ -172,7 +172,7 @@ TEST(Window, ScalesTheNoiseOfOneCamera) {
   EXPECT_GT(anew, 10);
 }
 
-/// What the window holds to, whatever it is told.
+/// Invariants of the window, whatever its input.
 void expect_whole(const Window& window) {
   Timestamp before = Timestamp::min();
   for (const auto& [id, state] : window.states()) {

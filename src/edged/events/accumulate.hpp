@@ -11,7 +11,7 @@
 
 namespace edged {
 
-/// Draws event frames of one camera, reusing its buffers. Polarity is ignored. The scaling does not depend on the
+/// Renders event frames of one camera, reusing its buffers. Polarity is ignored. The scaling does not depend on the
 /// content, so that brightness is constant from frame to frame.
 class EventFrameRenderer {
  public:
@@ -22,7 +22,8 @@ class EventFrameRenderer {
   cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
                      const DepthGrid* depths = nullptr);
 
-  /// accumulate, then blur and scale to CV_8UC1; a new image each time. weight: so many events each stands for.
+  /// accumulate, then blur and scale to CV_8UC1; a new image each time. weight: the number of events that each one
+  /// represents.
   cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth,
                  const DepthGrid* depths = nullptr, double weight = 1.0);
 

@@ -10,7 +10,7 @@
 namespace edged {
 namespace {
 
-// OpenCV's kernels are not normalised: what a slope of one grey level per pixel gives.
+// OpenCV's kernels are not normalised: their response to a slope of one grey level per pixel.
 constexpr double kSobelPerSlope = 8.0, kScharrPerSlope = 32.0;
 
 cv::Mat gaussian(const cv::Mat& image, double sigma_px) {
@@ -153,8 +153,7 @@ void EnhanceConfig::validate(const std::function<std::string(std::string_view)>&
          "{0} with {1} = clahe: there is no edge map to thin; set {0} = 0 or take sobel, scharr or laplacian",
          "erosion_px", "method");
   refuse(method == EdgeMethod::Canny && canny_low > canny_high,
-         "{} is above {}: every edge that starts must be one that can be followed; swap them", "canny_low",
-         "canny_high");
+         "{} is above {}: an edge must continue above the lower one; swap them", "canny_low", "canny_high");
   refuse(method == EdgeMethod::Clahe && clahe_clip <= 0.0,
          "{} = clahe with {} = 0: the equalisation is off; raise clahe_clip or set method = none", "method",
          "clahe_clip");

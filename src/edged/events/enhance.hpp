@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Enhancement of event frames (paper Algorithm 1): blur, equalise, sharpen, find edges, thin them, blend. All gains are
-// fixed: nothing is scaled by what the frame holds, so that brightness stays constant for the tracker.
+// fixed and do not depend on the content of the frame, so that brightness stays constant for the tracker.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -21,8 +21,8 @@ struct EnhanceStage {
   cv::Mat image;     ///< CV_8UC1
 };
 
-/// Every image on the way, in order: event_frame, blur, clahe, sharpened, edge, eroded, result. Steps that are off are
-/// left out; EdgeMethod::None gives event_frame and result.
+/// The image after each step, in order: event_frame, blur, clahe, sharpened, edge, eroded, result. Steps that are off
+/// are left out; EdgeMethod::None gives event_frame and result.
 std::vector<EnhanceStage> enhancement_stages(const cv::Mat& event_frame, const EnhanceConfig& config);
 
 }  // namespace edged

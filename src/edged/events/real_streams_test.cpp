@@ -34,7 +34,8 @@ EventFrameConfig sharp_config(WarpInterpolation interpolation) {
   return config;
 }
 
-/// Variance after a blur that makes it blind to whether events sit on pixel centres (raw) or between them (warped).
+/// Variance after a blur that makes it independent of whether events lie on pixel centres (raw) or between them
+/// (warped).
 double blurred_variance(const cv::Mat& sum) {
   cv::Mat blurred;
   cv::GaussianBlur(sum, blurred, cv::Size(), 1.0);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Sharpness of an event frame: well compensated events pile up on edges and raise the contrast
+// Sharpness of an event frame: well compensated events accumulate on edges and raise the contrast
 // (Gallego, Rebecq, Scaramuzza, "A Unifying Contrast Maximization Framework for Event Cameras", CVPR 2018).
 #pragma once
 

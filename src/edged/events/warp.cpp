@@ -65,7 +65,7 @@ class MotionCurve {
   std::vector<Segment> segments_;
 };
 
-/// From first to last: the corners in between, and steps of at most the bin length. At least two stamps.
+/// From first to last: the knots in between, and steps of at most the bin length. At least two stamps.
 std::vector<Timestamp> bin_edges(const MotionCurve& curve, Timestamp first, Timestamp last) {
   last = std::max(last, first + Duration(1));
   if (curve.at_rest()) return {first, last};
@@ -145,7 +145,7 @@ EventWarp::EventWarp(const CameraModel& ideal, const CameraMotion& motion, const
 }
 
 void EventWarp::warp(const Bin& bin, Block& block) {
-  const Bin b = bin;  // no other's memory: the loop is made of vectors of events
+  const Bin b = bin;  // restrict: no aliasing, so the loop is vectorized
   for (std::size_t k = 0; k < block.count; ++k) {
     const float x = block.x[k], y = block.y[k], a = block.a[k], nearer = block.nearer[k];
     const auto row = [&](int r) {

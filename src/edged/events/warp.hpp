@@ -33,7 +33,7 @@ struct CameraMotion {
   SE3 at(Timestamp t, WarpInterpolation interpolation) const;
 };
 
-/// The motion of body poses T_W_B as seen by a camera: T_ref_t = T_C_B * T_W_B(ref)^-1 * T_W_B(t) * T_B_C, with the
+/// The motion of a camera from body poses T_W_B: T_ref_t = T_C_B * T_W_B(ref)^-1 * T_W_B(t) * T_B_C, with the
 /// poses' stamps on the clock of its events: t_pose = t_event + time_offset.
 CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C,
                            Duration time_offset = Duration(0));
@@ -46,7 +46,7 @@ struct WarpSettings {
 /// Eq. 2 for one event: x' = pi(K', T_ref_t * (Z * K'^-1 x)). With the one depth Z it is the homography
 /// H(t) = K' (R + t e_z^T / Z) K'^-1 of undistorted pixels. H is computed exactly on a grid in time (the knots, and
 /// between them steps of at most 0.5 ms) and linear in between: below 0.02 px off at 20 rad/s. With a depth Z_i per
-/// event, K' t (1/Z_i - 1/Z) is added to what H gives.
+/// event, K' t (1/Z_i - 1/Z) is added to the result of H.
 class EventWarp {
  public:
   /// Serves events with stamps in [first, last]. `ideal` is the undistorted camera K'. CheckError when depth is not
@@ -54,8 +54,8 @@ class EventWarp {
   EventWarp(const CameraModel& ideal, const CameraMotion& motion, const WarpSettings& settings, Timestamp first,
             Timestamp last);
 
-  /// Calls sink(float x, float y) with the warped position [px] of each event, in order. Events in time order. Left
-  /// out: events outside the table or what is used of the lens, and points that come to lie behind the camera.
+  /// Calls sink(float x, float y) with the warped position [px] of each event, in order. Events in time order. Skipped:
+  /// events outside the table or the used part of the lens, and points that end up behind the camera.
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, Sink&& sink) const {
     visit(
@@ -123,7 +123,7 @@ class EventWarp {
   }
 
   float inverse_depth_;    ///< 1/Z, of the depth that H holds
-  std::vector<Bin> bins_;  ///< in time order without holes; the last ends never
+  std::vector<Bin> bins_;  ///< in time order without gaps; the last has no end
 };
 
 }  // namespace edged

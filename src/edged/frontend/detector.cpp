@@ -16,7 +16,8 @@ namespace edged {
 namespace {
 
 constexpr double kReferenceWidth_px = 240.0;
-constexpr std::size_t kCandidatesPerCell = 4;  // spares for a cell whose best corner lies too close to a neighbour's
+constexpr std::size_t kCandidatesPerCell =
+    4;  // further candidates for a cell whose best corner is too close to one of a neighbouring cell
 constexpr int kSameCorner_px = 4;
 constexpr int kHarrisHalf = 3;  // 7x7 block, as ORB
 constexpr double kHarrisK = 0.04;
@@ -217,7 +218,7 @@ void refine_positions(const cv::Mat& image, std::vector<Corner>& corners) {
                    cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.02));
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d refined(points[i].x, points[i].y);
-    // Further away it has left for another corner.
+    // Further away it is another corner.
     if ((refined - corners[i].pixel).cwiseAbs().maxCoeff() < kRefinementHalf) corners[i].pixel = refined;
   }
 }

@@ -43,7 +43,7 @@ KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig&
   const double parallax = median(since.tracks.parallax_rad);
   if (parallax > config.parallax_deg * kDegree) return KeyframeReason::Parallax;
   if (since.rotation_rad > config.rotation_deg * kDegree) return KeyframeReason::Rotation;
-  // At standstill keyframes in time would push those with a baseline out of the window.
+  // At standstill, keyframes by time would replace those with a baseline in the window.
   if (age_s > config.max_interval_s && parallax > config.still_parallax_deg * kDegree) return KeyframeReason::Time;
   return KeyframeReason::None;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When an instant becomes a keyframe: a pure function of what happened since the last one.
+// When an instant becomes a keyframe: a pure function of the changes since the last one.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace edged {
 
-/// What became of the last keyframe's corners in one camera.
+/// The tracks of one camera since the last keyframe.
 struct KeyframeTracks {
-  int at_keyframe = 0;               ///< tracks the keyframe had
-  std::vector<double> parallax_rad;  ///< of each that is still alive, with the rotation taken out
+  int at_keyframe = 0;               ///< number of tracks at the keyframe
+  std::vector<double> parallax_rad;  ///< of each live track, after rotation compensation
 
   int alive() const { return static_cast<int>(parallax_rad.size()); }
 };

@@ -22,7 +22,7 @@ class ImagePyramid {
   const std::vector<cv::Mat>& levels() const { return levels_; }
 
  private:
-  std::vector<cv::Mat> levels_;  // image, gradient, image, gradient, ... as OpenCV wants them
+  std::vector<cv::Mat> levels_;  // image, gradient, image, gradient, ... the layout of OpenCV
 };
 
 struct Flow {
@@ -35,8 +35,8 @@ struct Flow {
 Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<cv::Point2f>& points,
             const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config);
 
-/// Normalised cross-correlation in [-1, 1] of the 11x11 patches around a in image_a and b in image_b: blind to gain and
-/// offset. 0 when one of them is flat.
+/// Normalised cross-correlation in [-1, 1] of the 11x11 patches around a in image_a and b in image_b: independent of
+/// gain and offset. 0 when one of them is flat.
 double patch_correlation(const cv::Mat& image_a, const cv::Point2f& a, const cv::Mat& image_b, const cv::Point2f& b);
 
 }  // namespace edged

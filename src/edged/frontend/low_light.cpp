@@ -11,7 +11,7 @@ namespace edged {
 namespace {
 
 constexpr double kDarkEnd = 0.02, kBrightEnd = 0.98;  // quantiles
-constexpr double kHoldGain = 1.3;                     // the gain follows the light when it is off by this factor
+constexpr double kHoldGain = 1.3;                     // the gain is updated when it is off by this factor
 constexpr double kHoldBlack = 0.15;                   // the black level by this share of the target range
 constexpr double kFloor = 16.0;                       // grey level of the dark end: noise below it is not clipped
 
@@ -42,7 +42,7 @@ void LowLightConfig::visit(ConfigFields& fields) {
 }
 
 cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {
-  if (image.empty() || image.type() != CV_8UC1) return image;  // the tracker says what it wants
+  if (image.empty() || image.type() != CV_8UC1) return image;  // the tracker reports the error
   const Range range = grey_range(image);
   const double width = std::max(range.bright - range.dark, 1.0);
   if (width >= config_.below_range) {

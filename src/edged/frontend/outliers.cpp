@@ -25,7 +25,7 @@ namespace sac_problems = opengv::sac_problems::relative_pose;
 constexpr double kConfidence = 0.999;
 constexpr std::size_t kMinPairsTranslation = 6;
 constexpr std::size_t kMinPairsFivePoint = 12;
-// A rotation that explains this share of what a full motion explains is the simpler truth.
+// A rotation with this share of the inliers of a full motion is preferred, as the simpler model.
 constexpr double kRotationPreference = 0.9;
 
 struct Rays {
@@ -41,7 +41,7 @@ Rays make_rays(std::span<const Correspondence> pairs) {
   return rays;
 }
 
-// Angle between each pair of rays once the rotation is taken out [rad].
+// Angle between each pair of rays after rotation compensation [rad].
 std::vector<double> rotation_residuals(std::span<const Correspondence> pairs, const Eigen::Matrix3d& R_ref_cur) {
   std::vector<double> angles;
   angles.reserve(pairs.size());
@@ -71,7 +71,7 @@ std::optional<typename Problem::model_t> ransac(const std::shared_ptr<Problem>& 
 double epipolar_score(double distance_rad) { return 2.0 * (1.0 - std::cos(0.5 * distance_rad)); }
 
 // Pairs that fit the motion, together with those too far away to have parallax: there the triangulated depth, and so
-// OpenGV's score, is decided by noise.
+// OpenGV's score, is dominated by noise.
 template <typename Problem>
 std::vector<char> motion_inliers(Problem& problem, const typename Problem::model_t& model,
                                  std::span<const Correspondence> pairs, double threshold_rad) {

@@ -20,7 +20,7 @@ struct Correspondence {
 
 enum class OutlierModel {
   None,          ///< too few pairs, or no model with enough support: nothing is rejected
-  RotationOnly,  ///< the parallax is too small to see a translation
+  RotationOnly,  ///< the parallax is too small to estimate a translation
   Translation,   ///< rotation given, direction of translation found from two pairs
   FivePoint,     ///< rotation and direction of translation from five pairs
 };
@@ -29,12 +29,12 @@ struct OutlierResult {
   OutlierModel model = OutlierModel::None;
   std::vector<char> inlier;          ///< one per pair; all 1 with OutlierModel::None
   int inliers = 0;                   ///< how many of them are 1
-  double median_parallax_rad = 0.0;  ///< angle left after the given rotation is taken out; 0 without one
+  double median_parallax_rad = 0.0;  ///< remaining angle after compensation of the given rotation; 0 without one
 };
 
 /// Which pairs fit one rigid motion. R_ref_cur, from the gyro, turns rays of the current camera into the reference
 /// camera's axes; without it (gyro saturated) five-point RANSAC (Nister 2004) is used, and also when the given rotation
-/// finds less support than fallback_share. focal_px turns the thresholds into angles. RANSAC by OpenGV (Kneip and
+/// has less support than fallback_share. focal_px turns the thresholds into angles. RANSAC by OpenGV (Kneip and
 /// Furgale 2014) with a fixed seed: same input, same result.
 OutlierResult find_inliers(std::span<const Correspondence> pairs, const std::optional<Eigen::Matrix3d>& R_ref_cur,
                            double focal_px, const OutlierConfig& config);

@@ -22,7 +22,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1.0p-53;
 }
 
-// Points at 1..6 m, two pictures of a 240x180 camera with uniform noise of +-noise_px, and wrong matches anywhere.
+// Points at 1..6 m, two images of a 240x180 camera with uniform noise of +-noise_px, and wrong matches anywhere.
 Scene make_scene(const SE3& T_ref_cur, int right, int wrong, double noise_px, std::uint64_t seed = 7) {
   std::mt19937_64 random(seed);
   const auto noise = [&] { return uniform(random, -noise_px, noise_px) / kFocal; };
@@ -58,7 +58,7 @@ double rejected_wrong(const Scene& scene, const OutlierResult& result) {
 const SE3 kMotion(so3::exp({0.05, -0.08, 0.1}), {0.25, 0.05, 0.1});
 const SE3 kTurn(so3::exp({0.05, -0.2, 0.1}), Eigen::Vector3d::Zero());
 
-// Averages over many scenes: a wrong match lies on its epipolar line by chance now and then.
+// Averages over many scenes: a wrong match lies on its epipolar line by chance at times.
 struct Quality {
   double kept = 0, rejected = 0;
 };

@@ -10,12 +10,12 @@
 namespace edged {
 namespace {
 
-// What is compared: the patch without its rim, which is there for the gradients.
+// The compared part: the patch without its rim, which serves the gradients.
 constexpr int kInner = Patch::kSize - 2;
 constexpr int kSamples = kInner * kInner;
 using Samples = Eigen::Matrix<float, kSamples, 1>;
 
-/// Of the inner pixels' places in the patch, from its middle.
+/// Positions of the inner pixels in the patch, relative to its centre.
 struct Offsets {
   std::array<float, kSamples> x, y;
   constexpr Offsets() : x(), y() {
@@ -34,7 +34,7 @@ float bilinear(const cv::Mat& image, double x, double y) {
   return above + fy * (below - above);
 }
 
-/// Without mean, of length one; false where all is of one grey.
+/// Removes the mean and normalizes to length one; false for a uniform patch.
 bool normalise(Samples& samples) {
   samples.array() -= samples.mean();
   const float norm = samples.norm();
@@ -43,7 +43,7 @@ bool normalise(Samples& samples) {
   return true;
 }
 
-/// The patch as it is compared, and how that changes as it moves.
+/// The normalized patch and its derivative with respect to its position.
 struct Template {
   Samples grey;
   Eigen::Matrix<float, kSamples, 2> gradient;
@@ -65,15 +65,15 @@ std::optional<Template> template_of(const Patch& patch) {
   return made;
 }
 
-/// What the image shows in the patch's place; false where that is outside, or of one grey. This is where alignment and
-/// map spend their time: three plain loops, the first and the last of which the compiler makes into four at a time.
+/// Samples the image at the place of the patch; false where that is outside, or uniform. Alignment and map spend most
+/// of their time here: three plain loops, the first and the last of which the compiler vectorizes.
 bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, Samples& samples) {
   const Eigen::Vector2d reach = 0.5 * (kInner - 1) * A.cwiseAbs().rowwise().sum();
-  constexpr double kRounding = 1e-4;  // of the places below [px]
+  constexpr double kRounding = 1e-4;  // of the positions below [px]
   if (!((middle - reach).minCoeff() >= kRounding) || !(middle.x() + reach.x() < image.cols - 1 - kRounding) ||
       !(middle.y() + reach.y() < image.rows - 1 - kRounding))
     return false;
-  const Eigen::Vector2d first = (middle - reach).array() - kRounding;  // all places lie right of and below it
+  const Eigen::Vector2d first = (middle - reach).array() - kRounding;  // all positions lie right of and below it
   const int left = static_cast<int>(first.x()), top = static_cast<int>(first.y());
   const Eigen::Vector2f m = (middle - Eigen::Vector2d(left, top)).cast<float>();
   const Eigen::Matrix2f a = A.cast<float>();
@@ -100,7 +100,7 @@ bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Ma
   return normalise(samples);
 }
 
-/// The whole pixel within the radius where the image is most like the patch.
+/// The integer pixel within the radius with the best correlation.
 std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& image, const Eigen::Vector2d& expected,
                                       const Eigen::Matrix2d& A, double radius_px) {
   const int reach = static_cast<int>(std::ceil(radius_px));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The look of a corner, kept to find it again.
+// The reference patch of a corner, and its alignment to later images.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct Patch {
   static constexpr int kSize = 14;
   std::array<std::uint8_t, kSize * kSize> pixels{};
 
-  /// One of the four around the corner.
+  /// One of the four pixels around the corner.
   std::uint8_t middle() const { return pixels[(kSize / 2) * kSize + kSize / 2]; }
 };
 
@@ -30,9 +30,9 @@ struct PatchMatch {
   double similarity;  ///< normalised cross correlation
 };
 
-/// Looks for the patch around `expected`, up to radius_px from there: first pixel by pixel, then to a fraction of one
-/// by inverse-compositional alignment, whatever the image's gain and offset. A: pixels of the image by pixels of the
-/// patch (2x2). Nothing where it is not found, or the look leaves the image.
+/// Searches for the patch within radius_px of `expected`: first in whole pixels, then with subpixel accuracy by
+/// inverse-compositional alignment, independent of gain and offset of the image. A: pixels of the image by pixels of
+/// the patch (2x2). Nothing if there is no match, or the patch leaves the image.
 std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, const Eigen::Vector2d& expected,
                                       const Eigen::Matrix2d& A, double radius_px, const PatchConfig& config);
 

@@ -9,9 +9,10 @@ namespace edged {
 namespace {
 
 constexpr double kNeighbour_px = 4.0;
-constexpr double kFarthest_px = 1.0;  // from where flow has found it: beyond, it is something else
+constexpr double kFarthest_px = 1.0;  // from the result of the optical flow: farther away it is another corner
 constexpr double kLeastArea = 0.4,
-                 kMostArea = 2.5;  // of the patch in the image over that then: else it shows too little
+                 kMostArea =
+                     2.5;  // contrast of the patch in the image over that of the reference patch: less is not enough
 constexpr double kMinDepth_m = 0.05;
 
 }  // namespace
@@ -51,7 +52,7 @@ void Templates::note(FeatureId id, bool fits) {
   if (known != looks_.end()) known->second.fits = fits;
 }
 
-/// Pixels of the newest image by pixels of the patch; nothing where they are too different in size.
+/// Pixels of the newest image by pixels of the patch; nothing if the scales differ too much.
 std::optional<Eigen::Matrix2d> Templates::warp(const Look& look, const Eigen::Vector3d& p_C) const {
   const double depth = (look.T_cur_look.inverse() * p_C).z();
   if (!(depth > kMinDepth_m)) return std::nullopt;

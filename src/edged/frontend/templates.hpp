@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The reference patches of corners. Optical flow follows a corner from image to image, and what it drifts by adds up;
-// aligned to its reference patch, warped as the camera has moved since, it stays.
+// The reference patches of corners. The drift of optical flow accumulates from image to image. Alignment to the
+// reference patch, warped by the motion of the camera since, removes it.
 #pragma once
 
 #include <map>
@@ -20,26 +20,26 @@ class Templates {
  public:
   Templates(const CameraModel& camera, const PatchConfig& config) : camera_(camera), config_(config) {}
 
-  /// The camera has moved on to another image. T_cur_prev: camera at the image before to camera now.
+  /// Moves on to the next image. T_cur_prev: camera at the image before to camera now.
   void move(const SE3& T_cur_prev);
-  /// Takes the look, in the newest image, of the tracks that have none or whose own no longer fits; forgets those of
-  /// tracks that have ended.
+  /// Takes reference patches from the newest image for tracks without one or whose patch no longer matches; drops those
+  /// of ended tracks.
   void take(const cv::Mat& image, std::span<const Track> tracks);
-  /// Where near `pixel` the newest image looks as the corner did at first, whatever gain and offset; nothing where it
-  /// has no look, or looks otherwise by now. p_C: where the corner is expected in the camera [m]: its neighbours are
-  /// taken for as deep as it is.
+  /// The position near `pixel` where the newest image matches the reference patch, independent of gain and offset;
+  /// nothing without a reference patch or a match. p_C: the expected position of the corner in the camera [m]; its
+  /// neighbourhood is assumed at the same depth.
   std::optional<Eigen::Vector2d> align(FeatureId id, const cv::Mat& image, const Eigen::Vector2d& pixel,
                                        const Eigen::Vector3d& p_C) const;
-  /// Whether the newest image looks as the corner did at first.
+  /// Whether the newest image matches the reference patch.
   void note(FeatureId id, bool fits);
   void clear() { looks_.clear(); }
 
  private:
   struct Look {
     Patch patch;
-    SE3 T_cur_look;                        ///< camera at the look to camera now
-    Eigen::Vector2d corner, right, below;  ///< on the unit plane: the corner and two of its neighbours
-    bool fits = true;                      ///< as last noted
+    SE3 T_cur_look;                        ///< camera at the reference patch to camera now
+    Eigen::Vector2d corner, right, below;  ///< on the unit plane: the corner and two neighbouring points
+    bool fits = true;                      ///< at the last call of match
   };
   std::optional<Eigen::Matrix2d> warp(const Look& look, const Eigen::Vector3d& p_C) const;
 

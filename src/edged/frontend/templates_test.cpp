@@ -11,7 +11,7 @@ namespace {
 
 class ReferencePatches : public testing::Test {
  protected:
-  /// A corner of the scene as seen from identity, and its look.
+  /// A corner of the scene as seen from identity, and its reference patch.
   Track corner(const Eigen::Vector2d& pixel) {
     Track track;
     track.id = 7;
@@ -45,7 +45,7 @@ TEST_F(ReferencePatches, AreFoundWhereTheyAreAfterTurnsAndLightChanges) {
 TEST_F(ReferencePatches, StayUntilTheyNoLongerFit) {
   Track track = corner({130.4, 88.7});
   templates_.take(scene_.image(SE3()), std::span(&track, 1));
-  // A look that fits is not taken anew, however wrong the track has become.
+  // A patch that matches is kept, however wrong the track has become.
   const cv::Mat image = scene_.image(SE3());
   ASSERT_TRUE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
   track.pixel += Eigen::Vector2d(0.8, 0.0);
@@ -54,7 +54,7 @@ TEST_F(ReferencePatches, StayUntilTheyNoLongerFit) {
   EXPECT_LT(
       (*templates_.align(track.id, image, track.pixel, in_camera(track, SE3())) - Eigen::Vector2d(130.4, 88.7)).norm(),
       0.1);
-  // One that does not is.
+  // One that does not match is replaced.
   const cv::Mat other = random_texture(240, 180, 9);
   EXPECT_FALSE(templates_.align(track.id, other, track.pixel, in_camera(track, SE3())));
   templates_.note(track.id, false);
@@ -73,7 +73,7 @@ TEST_F(ReferencePatches, AreForgottenWithTheirTracksAndNeverGuessed) {
   EXPECT_FALSE(templates_.align(track.id, image, {1.0, 1.0}, in_camera(track, SE3())));
   templates_.take(image, {});
   EXPECT_FALSE(templates_.align(track.id, image, track.pixel, in_camera(track, SE3())));
-  // Near the rim there is no room for one.
+  // Near the border there is no room for a patch.
   const Track rim = corner({3.0, 3.0});
   templates_.take(image, std::span(&rim, 1));
   EXPECT_FALSE(templates_.align(rim.id, image, rim.pixel, in_camera(rim, SE3())));

@@ -30,7 +30,7 @@ inline cv::Mat random_texture(int width, int height, std::uint64_t seed = 1) {
   return texture;
 }
 
-/// The plane Z = depth of the world; the camera at identity looks straight at it.
+/// The plane Z = depth of the world; the axis of the camera at identity is perpendicular to it.
 class PlaneScene {
  public:
   PlaneScene(const CameraModel& camera, double depth)
@@ -39,7 +39,7 @@ class PlaneScene {
   const CameraModel& camera() const { return camera_; }
   double depth() const { return depth_; }
 
-  /// What the camera sees; outside the texture it is black.
+  /// The image of the camera; black outside the texture.
   cv::Mat image(const SE3& T_W_C) const {
     Eigen::Matrix3d plane_to_texture;  // one texture pixel per image pixel seen from identity, its centre on the axis
     plane_to_texture << camera_.fx() / depth_, 0, 2.0 * camera_.width(), 0, camera_.fy() / depth_,

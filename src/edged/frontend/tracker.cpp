@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Follows corners through the images of one camera.
+// Tracks features through the images of one camera.
 #include "edged/frontend/tracker.hpp"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace edged {
 namespace {
 
-constexpr int kBackwardTopLevel = 1;  // the way back starts at its goal
+constexpr int kBackwardTopLevel = 1;  // the backward search starts at its expected result
 
 cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
 
 float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// 255 where no corner of this camera may be.
+/// 255 where the detector of this camera must not place corners.
 cv::Mat unused_pixels(const CameraModel& camera, int border_px) {
   if (!camera.view_limit() && !camera.is_masked()) return {};
   cv::Mat unused(camera.height(), camera.width(), CV_8UC1);
@@ -185,7 +185,7 @@ CameraObservations FeatureTracker::observations() const {
 
 void FeatureTracker::check_image(const cv::Mat& image) const {
   if (image.type() != CV_8UC1 || image.cols != camera_.width() || image.rows != camera_.height()) {
-    throw InputError::format("an image of camera {} is {}x{} with {} channels, its calibration wants {}x{} grey: {}",
+    throw InputError::format("an image of camera {} is {}x{} with {} channels, its calibration is for {}x{} grey: {}",
                              name_, image.cols, image.rows, image.channels(), camera_.width(), camera_.height(),
                              "use the calibration of this camera");
   }
@@ -208,7 +208,7 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   seeds.reserve(points_C.size());
   for (const Eigen::Vector3d& p_C : points_C) {
     const std::optional<Eigen::Vector2d> pixel = camera_.project(p_C);
-    // Far outside stands for behind the camera; match() ends such tracks at the border.
+    // A position far outside marks a point behind the camera; match() ends such tracks at the border.
     seeds.push_back(pixel ? to_cv(*pixel + offset_px) : cv::Point2f(-1e6F, -1e6F));
   }
   return seeds;
@@ -225,7 +225,7 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   }
   const Flow forward =
       follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1, config_.klt);
-  std::vector<std::size_t> otherwise;  // looks so, or has no look to compare with
+  std::vector<std::size_t> otherwise;  // matches, or has no reference patch
   for (std::size_t k = 0; k < alive.size(); ++k) {
     const std::size_t i = alive[k];
     matches.points[i] = forward.points[k];
@@ -247,7 +247,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   return matches;
 }
 
-/// Those that no reference patch confirms must lead back to where they come from, and look alike there.
+/// Tracks that no reference patch confirms must pass the forward-backward check and the correlation with the last
+/// image.
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
   const Flow backward =
@@ -275,7 +276,8 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
   const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
   const auto all = static_cast<double>(from.size());
   if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
-    // Those that a bad prediction left alive are likely to be wrong, and so is its warp: all or nothing.
+    // The few tracks that survive a bad prediction are likely wrong, and so is its warp: all are tracked again without
+    // it.
     Matches again = match(from, from, {});
     summary.prediction_failed = kept(again) > kept(matches);
     if (summary.prediction_failed) return again;

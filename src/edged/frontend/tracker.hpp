@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Follows corners through the images of one camera: the same class for event frames and for standard frames.
+// Tracks features through the images of one camera: the same class for event frames and for standard frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,12 +24,12 @@
 
 namespace edged {
 
-/// Where the corners are expected in the next image.
+/// The predicted motion and depth of the features in the next image.
 struct TrackPrediction {
   SE3 T_cur_prev;            ///< previous camera frame to the new one
   double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
   std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
-  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to where the poses expect a corner
+  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to the position predicted by the poses
   bool reference_patches = true;                          ///< compare corners with their reference patches
 };
 
@@ -37,11 +37,11 @@ struct TrackPrediction {
 struct TrackSummary {
   int before = 0;
   int tracked = 0;
-  int lost_flow = 0;        ///< no texture or out of sight
-  int lost_backward = 0;    ///< following back did not return to the start
-  int lost_appearance = 0;  ///< the patch has become another
+  int lost_flow = 0;        ///< no texture, or outside the image
+  int lost_backward = 0;    ///< failed the forward-backward check
+  int lost_appearance = 0;  ///< the patch no longer correlates
   int lost_border = 0;
-  int merged = 0;                  ///< ran into an older track
+  int merged = 0;                  ///< merged into an older track
   bool prediction_failed = false;  ///< the old positions were better seeds and were used
   Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - expected; zero without prediction
 };
@@ -60,7 +60,7 @@ class FeatureTracker {
   enum class Reference { Keyframe, Previous };
 
   /// Drops the tracks that contradict one rigid motion since the reference. R_ref_cur: rotation from the gyro, camera
-  /// now to camera then; nothing when it cannot be trusted. Tracks younger than the reference are kept.
+  /// now to camera then; nothing if the gyro is saturated. Tracks younger than the reference are kept.
   OutlierResult reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur);
 
   /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from
@@ -76,7 +76,7 @@ class FeatureTracker {
   /// R_kf_cur: camera now to camera at the last keyframe.
   KeyframeTracks since_keyframe(const Eigen::Matrix3d& R_kf_cur) const;
 
-  /// Ends the tracks that another part has found to be wrong. Unknown ids are ignored.
+  /// Ends the tracks that another part has rejected. Unknown ids are ignored.
   void remove(std::span<const FeatureId> ids);
 
   /// Ends all tracks and forgets the last image.
@@ -93,7 +93,7 @@ class FeatureTracker {
   struct Matches {
     std::vector<cv::Point2f> points;
     std::vector<Fate> fates;
-    std::vector<char> as_at_first;  ///< set to where the corner looks as it did at first
+    std::vector<char> as_at_first;  ///< set to the position that matches the reference patch
   };
 
   void check_image(const cv::Mat& image) const;

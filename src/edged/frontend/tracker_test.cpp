@@ -162,7 +162,7 @@ TEST_F(Tracking, SurvivesAGainChangeAndNoise) {
 }
 
 TEST_F(Tracking, LosesEverythingInAnUnrelatedOrFlatImage) {
-  TrackerConfig strict;  // the default leaves the last word to outlier rejection
+  TrackerConfig strict;  // the default leaves it to outlier rejection
   strict.min_correlation = 0.7;
   FeatureTracker tracker = start(SE3(), strict);
   const TrackSummary summary = tracker.track(random_texture(240, 180, 99), at(1), std::nullopt);

@@ -30,8 +30,8 @@ bool out_of_range(const Vector3d& a, const Vector3d& b, double limit) {
   return a.cwiseAbs().maxCoeff() >= limit || b.cwiseAbs().maxCoeff() >= limit;
 }
 
-/// What lies between two samples far apart is not on the straight line that is integrated: a knock rings faster than an
-/// IMU samples. Standard deviation of the mean over the step; 0 for the jumps of a body in flight.
+/// Between two samples far apart the signal does not follow the integrated straight line: the vibration after a knock
+/// is faster than the sample rate. Standard deviation of the mean over the step; 0 for the jumps of a body in flight.
 double sigma_of_jump(const Vector3d& a, const Vector3d& b, double usual) {
   constexpr double kShare = 0.3;  // of the jump
   return kShare * std::max(0.0, (b - a).norm() - usual);

@@ -18,14 +18,14 @@ using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Matrix15d = Eigen::Matrix<double, 15, 15>;
 
-/// Two samples farther apart than this say little of what was between them.
+/// Two samples farther apart than this have little information on the motion between them.
 inline constexpr Duration kMaxSampleInterval = std::chrono::milliseconds(30);
 
 /// Whether the step between two samples lies in a gap of the recording, wholly or in part: it counts as saturated.
 bool in_gap(const ImuSample& a, const ImuSample& b);
 
-/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as made up
-/// where that is across a gap. `samples` are in time order and must cover [t_0, t_1] (CheckError otherwise).
+/// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as interpolated
+/// if that is across a gap. `samples` are in time order and must cover [t_0, t_1] (CheckError otherwise).
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);
 
 /// The motion between the first and the last sample, free of the state it starts from:
@@ -70,7 +70,7 @@ class Preintegration {
   const ImuNoise& noise() const { return noise_; }
   /// Some sample reached the range of the sensor, or samples were missing (kMaxSampleInterval).
   bool saturated() const { return saturated_; }
-  /// Some sample reached the gyro's range: how far the body has turned is the cameras' word alone.
+  /// Some sample reached the gyro's range: the rotation is known from the cameras alone.
   bool gyro_clipped() const { return gyro_clipped_; }
   /// False where it was clipped, or samples were missing.
   bool gyro_trusted() const { return !gyro_clipped_ && !gapped_; }
@@ -92,7 +92,7 @@ class Preintegration {
   bool saturated_ = false, gyro_clipped_ = false, gapped_ = false;
 };
 
-/// The state at the last sample, from the state at the first. Biases are carried over.
+/// The state at the last sample, from the state at the first. Biases are unchanged.
 OdomState propagate(const OdomState& start, const Preintegration& motion);
 
 /// The states at every sample, the first being `start`: the poses that the warp interpolates between.

@@ -17,17 +17,18 @@ constexpr double kMargin_px = 9.0;
 constexpr int kCell_px = 16;
 constexpr int kJudged = 10;        // tries
 constexpr double kMinFound = 0.3;  // share of them
-constexpr double kFarthest = 1.5;  // [scene depths]: keyframes that lie farther away see it otherwise
+constexpr double kFarthest = 1.5;  // [scene depths]: from keyframes farther away the place has a different appearance
 constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
 constexpr std::size_t kFewestAgreeing = 12;
-constexpr double kAgreement_px = 3.0;   // of a feature with the place recognised
-constexpr double kLeastAgreeing = 0.3;  // share of the features that look like a point
+constexpr double kAgreement_px = 3.0;   // of a feature, at the recognised place
+constexpr double kLeastAgreeing = 0.3;  // share of the features that match a point
 constexpr double kWidest_deg = 60.0;    // between the optical axes
 
-/// How far it has proved findable.
+/// How reliably it has been matched so far.
 double reliability(const MapPoint& point) { return (1.0 + point.found) / (2.0 + point.tried); }
 
-/// Pixels of the image by pixels of the patch, of a plane through the point that faces its keyframe.
+/// Pixels of the image by pixels of the patch, for a plane through the point, parallel to the image plane of its
+/// keyframe.
 std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_now_then, const CameraModel& camera,
                                           const Eigen::Vector2d& pixel) {
   Eigen::Matrix2d A;
@@ -146,8 +147,8 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
   return found;
 }
 
-/// For each descriptor the point that looks most like it, the first of several. Point by point, as the descriptors of
-/// an image stay in the cache and those of the map do not.
+/// For each descriptor the most similar point, the first of several. The outer loop is over points, as the descriptors
+/// of an image stay in the cache and those of the map do not.
 std::vector<KeyframeMap::Alike> KeyframeMap::most_alike(const MapQuery& query,
                                                         std::span<const std::optional<Descriptor>> descriptors) const {
   std::vector<Alike> alike(descriptors.size(), Alike{kAlike, 0, nullptr});

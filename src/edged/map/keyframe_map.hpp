@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What was seen before: keyframes with their points, and which of those should be in view now. Where the keyframes are
-// is known elsewhere, and comes along with each question.
+// Keyframes with their map points, and which of these should be in view now. The poses of the keyframes are kept by
+// MapFilter and passed with each query.
 #pragma once
 
 #include <optional>
@@ -21,29 +21,29 @@
 
 namespace edged {
 
-/// A point in its keyframe's camera: when keyframes are moved, their points move along.
+/// A point in its keyframe's camera: it moves with its keyframe.
 struct MapPoint {
-  FeatureId id = 0;                                 ///< that it had in its own run; 0 in a map that was loaded
+  FeatureId id = 0;                                 ///< feature id of its own run; 0 in a loaded map
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< on the unit plane
   double inverse_depth = 0.0;                       ///< of z [1/m]
   double sigma = 0.0;                               ///< of inverse_depth
   Patch patch;
   std::optional<Descriptor> descriptor;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of the patch's middle in its image
-  int tried = 0, found = 0;                         ///< in images whose observations agreed
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of the patch's centre in its image
+  int tried = 0, found = 0;                         ///< number of matches, in images whose matches agreed
 };
 
 struct MapKeyframe {
-  Timestamp t, found_at;  ///< when it was made, and when points of it were last found
-  std::string camera;     ///< whose image it was: others show the same place otherwise
+  Timestamp t, found_at;  ///< time of creation, and of the last match of its points
+  std::string camera;     ///< camera of its image: in others the same place has another appearance
   SE3 T_B_C;
   std::vector<MapPoint> points;
   std::size_t number = 0;    ///< in TrajectorySmoother
-  double scene_depth = 0.0;  ///< median of its points [m]; KeyframeMap works it out
-  int times_found = 0;       ///< images in which points of it were found
+  double scene_depth = 0.0;  ///< median of its points [m]; computed by KeyframeMap
+  int times_found = 0;       ///< number of images with matches of its points
 };
 
-/// As those who use the map see it.
+/// The view of the map for its users.
 MappedKeyframe mapped(const MapKeyframe& keyframe, const SE3& T_M_K);
 
 /// From `since` on, and before `before`.
@@ -52,19 +52,19 @@ struct Period {
   bool contains(Timestamp t) const { return since <= t && t < before; }
 };
 
-/// What is asked of the map.
+/// A query of the map.
 struct MapQuery {
-  std::string_view camera;     ///< its keyframes alone
-  Period made;                 ///< those made then alone
-  std::span<const SE3> T_M_K;  ///< where the body was at each keyframe of the map, in their order
+  std::string_view camera;     ///< keyframes of this camera only
+  Period made;                 ///< keyframes of this time only
+  std::span<const SE3> T_M_K;  ///< pose of the body at each keyframe of the map, in their order
 };
 
-/// A point that should be in view, and once it has been found, where.
+/// A point that should be in view, and its match if found.
 struct Candidate {
-  MapObservation
-      observation;  ///< its keyframe as an index into KeyframeMap::keyframes; what was seen and how well: when found
+  MapObservation observation;  ///< its keyframe as an index into KeyframeMap::keyframes; the observation and its noise:
+                               ///< when matched
   MapPoint* point;
-  Eigen::Vector2d pixel;  ///< where it is expected
+  Eigen::Vector2d pixel;  ///< predicted position
   Eigen::Matrix2d A;      ///< pixels of the image by pixels of its patch
   bool found = false;
 };
@@ -73,24 +73,24 @@ class KeyframeMap {
  public:
   explicit KeyframeMap(const KeyframeMapConfig& config) : config_(config) {}
 
-  /// Whether a keyframe can be worth keeping, of whose view the map already shows that share.
+  /// Whether a keyframe is worth keeping if the map already covers that share of its view.
   bool wants(double covered) const { return covered <= config_.max_covered; }
-  /// Whether the map gains by the keyframe, which it wants. Points that are not worth keeping are taken out.
+  /// Whether the keyframe is worth keeping. Removes points that are not.
   bool gains_by(MapKeyframe& keyframe) const;
   void add(MapKeyframe keyframe);
-  /// The keyframe to be removed next, as there are too many: of those made then, but for the newest, the one that was
-  /// not found for longest. Nothing while there is room.
+  /// The keyframe to remove next, if there are too many: of those of that time, except the newest, the one not matched
+  /// for longest. Nothing while there is room.
   std::optional<std::size_t> superfluous(Period made = {}) const;
   void remove(std::size_t keyframe);
 
   /// What should be in view of the camera at T_M_C, spread over the image, the most reliable first: at most `most`.
   std::vector<Candidate> visible(const MapQuery& query, const SE3& T_M_C, const CameraModel& camera, int most);
 
-  /// The point was looked for in the image of t.
+  /// Records that the point was searched for in the image of t.
   void note(const Candidate& candidate, Timestamp t);
 
-  /// Where the camera is that sees features with these descriptors at those points of the unit plane. R_O_C as in
-  /// pose_by_gravity; focal: of the camera [px]. Nothing where no place of the map looks like that.
+  /// The pose of the camera that observes features with these descriptors at those points of the unit plane. R_O_C as
+  /// in pose_by_gravity; focal: of the camera [px]. Nothing if no place of the map matches.
   std::optional<SE3> recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
                                std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
                                double focal) const;
@@ -101,7 +101,7 @@ class KeyframeMap {
   struct Alike {
     int bits;  ///< that differ
     std::size_t keyframe;
-    const MapPoint* point;  ///< null: none is alike
+    const MapPoint* point;  ///< null: no similar one
   };
   std::vector<Alike> most_alike(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const;
   std::vector<std::size_t> near(const MapQuery& query, const SE3& T_M_C) const;

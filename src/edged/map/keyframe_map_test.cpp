@@ -15,7 +15,7 @@ const std::string kName = "frames";
 
 Timestamp at(double t_s) { return timestamp_from_seconds(t_s); }
 
-/// All are where the map begins.
+/// All at the origin of the map.
 MapQuery asked(double before_s, std::string_view camera = kName) {
   static const std::vector<SE3> kThere(3);
   return {camera, {.before = at(before_s)}, kThere};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Errors of poses in the map M, what they become and what a observation of the map tells of them. Those of a pose T_M_B
+// Errors of poses in the map M: propagation, and Jacobians of observations of map points. Those of a pose T_M_B
 // are (position in M [m], rotation in B [rad]): p_true = p + dp, R_true = R Exp(phi).
 #pragma once
 
@@ -13,15 +13,15 @@
 
 namespace edged {
 
-/// A map point's observation in an image, expected or found. In floats where many are kept.
+/// A map point's observation in an image, predicted or matched. In floats if many are kept.
 template <typename Scalar>
 struct MapObservationOf {
   using Vector2 = Eigen::Matrix<Scalar, 2, 1>;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
-  std::uint32_t keyframe = 0;               ///< by its number where the keyframes are
+  std::uint32_t keyframe = 0;               ///< number of its keyframe
   Vector3 p_K = Vector3::Zero();            ///< in the body frame of the keyframe
-  Vector3 depth_sigma_K = Vector3::Zero();  ///< by how much p_K moves with one sigma of its depth
+  Vector3 depth_sigma_K = Vector3::Zero();  ///< change of p_K with one sigma of its depth
   Vector2 seen = Vector2::Zero();           ///< on the unit plane of the camera
   Scalar sigma = 0;                         ///< of seen, each coordinate
 
@@ -33,21 +33,21 @@ struct MapObservationOf {
 };
 using MapObservation = MapObservationOf<double>;
 
-/// Of a observation: residual, Jacobians by the errors of the body and of its keyframe, and noise.
+/// Of an observation: residual, Jacobians by the errors of the body and of its keyframe, and noise.
 struct LinearizedObservation {
   Eigen::Vector2d r;
   Eigen::Matrix<double, 2, 6> by_body, by_keyframe;
   Eigen::Matrix2d R;
 };
 
-/// Nothing where the point would lie behind the camera.
+/// Nothing if the point is behind the camera.
 std::optional<LinearizedObservation> linearised(const MapObservation& observation, const SE3& T_M_B, const SE3& T_M_K,
                                                 const SE3& T_B_C);
 
-/// How the error of a pose becomes that of another that is known against it: T_M_A to T_M_A * T_A_B.
+/// Jacobian from the error of T_M_A to that of T_M_A * T_A_B, with T_A_B known.
 Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B);
 
-/// What the odometry may be off by after dt [s].
+/// Covariance of the odometry's drift after dt [s].
 Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt);
 
 SE3 corrected(const SE3& T, const Vector6d& error);

@@ -99,7 +99,7 @@ SE3 MapFilter::correct(const VectorXd& error) {
   return T_M_O;
 }
 
-/// The rows' part of the normal equations on the body and the keyframes that they touch, far ones weighed down.
+/// The part of the rows in the normal equations of the body and the observed keyframes, with a robust loss.
 MapFilter::Information MapFilter::gather(std::span<const MapObservation> observations,
                                          std::span<const LinearizedObservation> rows) const {
   Information sum;
@@ -125,7 +125,7 @@ MapFilter::Information MapFilter::gather(std::span<const MapObservation> observa
   return sum;
 }
 
-/// Root of the median squared residual that is left of the rows once the poses are corrected [sigma of each].
+/// Root of the median squared residual of the rows after the correction of the poses [sigma of each].
 double MapFilter::misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
                          const VectorXd& error) const {
   std::vector<double> squared;
@@ -157,7 +157,7 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
   P_tt.topRows<6>() = P_t.topRows<6>();
   for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(block_of(keyframe));
   const MatrixXd inverse = (MatrixXd::Identity(m, m) + H * P_tt).partialPivLu().inverse();
-  // Of a map that this place has not been found in nothing hangs together with those: it changes no bit of the rest.
+  // Keyframes without any correlation with these blocks do not change by a bit.
   std::vector<Eigen::Index> moved;
   for (Eigen::Index row = 0; row < P_t.rows(); ++row) {
     if (!P_t.row(row).isZero(0.0)) moved.push_back(row);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the body and the keyframes are in the map M: one Kalman filter over all their poses. The odometry moves the
-// body on; map matches tie it to the keyframes, and all that hangs together moves. The odometry
-// itself learns nothing of it: no measurement counts twice there, and a wrong map does it no harm.
+// The poses of body and keyframes in the map M: one Kalman filter over all of them. The odometry predicts the pose of
+// the body; map matches correct it and all correlated poses. Nothing feeds back into the odometry: no measurement is
+// used twice there, and a wrong map does not affect it.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,37 +19,37 @@
 
 namespace edged {
 
-/// T_M_O is OdomToMap's: the filter takes it and gives its correction.
+/// T_M_O is OdomToMap's: the filter takes it and returns its correction.
 class MapFilter {
  public:
   explicit MapFilter(const MapFilterConfig& config) : config_(config) {}
 
-  /// A new frame O of the odometry: where it lies in M is a guess with these sigmas [m], [rad] of position and yaw.
+  /// A new frame O of the odometry: its pose in M is uncertain, with these sigmas [m], [rad] of position and yaw.
   void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
-  /// The odometry has come to T_O_B. drift: how much more it drifts than the options say.
+  /// Prediction to T_O_B. drift: factor on the drift in the options.
   void predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift = 1.0);
-  /// A keyframe of the odometry, at T_O_K: it comes last in keyframes().
+  /// Adds a keyframe of the odometry, at T_O_K: the last one in keyframes().
   void add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t);
-  /// The keyframes of another run, in place of those there are, and how well they are known: six rows each.
+  /// Replaces all keyframes by those of another run, with their covariance: six rows each.
   void load(std::vector<SE3> T_M_K, const Eigen::MatrixXd& covariance);
-  /// The others' order stays.
+  /// The order of the other keyframes stays.
   void remove_keyframe(std::size_t keyframe);
-  /// Fits all poses to the observations; expected: how many could have been found. Returns T_M_O as corrected; nothing
-  /// where they do not agree, and nothing has changed then.
+  /// Updates all poses with the observations; expected: how many points were searched for. Returns the corrected T_M_O;
+  /// nothing if they do not agree, without any change.
   std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C);
 
   const SE3& T_M_B() const { return T_M_B_; }
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
-  /// Of the body against the map's first keyframe.
+  /// Covariance of the body relative to the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
   Eigen::MatrixXd keyframe_covariance() const;
-  /// How far a observation may lie from where it is expected on the unit plane: one sigma.
+  /// One sigma of the predicted position of an observation on the unit plane.
   double expected_error(const MapObservation& observation, const SE3& T_B_C) const;
 
  private:
   std::optional<LinearizedObservation> linearise(const MapObservation& observation, const SE3& T_B_C) const;
   Eigen::Matrix2d expected_covariance(const LinearizedObservation& row, std::size_t keyframe) const;
-  /// Normal equations of the body and of the keyframes in `place`, by where those begin.
+  /// Normal equations of the body and of the keyframes in `place`, which maps them to their first columns.
   struct Information {
     std::map<std::size_t, Eigen::Index> place;
     Eigen::MatrixXd H;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The filter against odometry that drifts by a known walk, in a world whose points are known.
+// The filter with odometry that drifts by a known random walk, in a world of known points.
 #include "edged/map/map_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStep_s = 0.25, kPixel = 1.0 / 200.0;
 
-/// A body that circles before a wall of points and looks at it, and odometry that walks away from that.
+/// A body that circles in front of a wall of points in view, and odometry that drifts.
 class World {
  public:
   explicit World(std::uint64_t seed, double drift_m = 0.002, double drift_rad = 0.001)
@@ -23,7 +23,7 @@ class World {
     odometry_ = truth(0.0);
   }
 
-  /// Comes back every 8 s. The camera looks along x, z of the camera.
+  /// Periodic, every 8 s. The camera axis is along x, z of the camera.
   static SE3 truth(double t) {
     const double a = 2.0 * M_PI * t / 8.0;
     return {so3::exp({0.0, 0.05 * std::sin(a), 0.1 * std::cos(a)}),
@@ -40,7 +40,7 @@ class World {
     return odometry_;
   }
 
-  /// Every third point, as that keyframe had it, seen from the truth at t with that noise.
+  /// Every third point of that keyframe, observed from the true pose at t with that noise.
   std::vector<MapObservation> observations(const std::vector<SE3>& keyframes, std::size_t keyframe, double t,
                                            double noise_px = 0.4) {
     std::vector<MapObservation> out;
@@ -72,19 +72,19 @@ MapFilterConfig config_of_world() {
   return config;
 }
 
-/// Root mean squares over times of a walk, and the mean of the errors' squares by their covariance, over six.
+/// RMS errors over the times of a random walk, and the mean NEES over six.
 struct Walk {
   double early_m = 0.0, late_m = 0.0, odometry_late_m = 0.0, nees = 0.0;
 };
 
-/// Keyframes in the first round, of 8 s; after that their points are seen again.
+/// Keyframes in the first round, of 8 s; after that their points are observed again.
 Walk walk(std::uint64_t seed) {
   constexpr double kMapped_s = 8.0, kEarly_s = 60.0, kLate_s = 180.0, kEnd_s = 240.0;
   World world(seed);
   MapFilter filter(config_of_world());
   filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0);
   SE3 T_M_O;
-  std::vector<SE3> keyframes;  // where they are in truth
+  std::vector<SE3> keyframes;  // their true poses
   Walk sum;
   int early = 0, late = 0, all = 0;
   for (double t = kStep_s; t < kEnd_s; t += kStep_s) {
@@ -123,7 +123,7 @@ TEST(MapFilter, HoldsTheBodyWhereTheOdometryWalksAwayAndKnowsHowWell) {
     mean.odometry_late_m += walked.odometry_late_m / 12.0;
     mean.nees += walked.nees / 12.0;
   }
-  EXPECT_LT(mean.late_m, 1.1 * mean.early_m) << "what the first round drifted by stays, no more";
+  EXPECT_LT(mean.late_m, 1.1 * mean.early_m) << "the drift of the first round remains, no more";
   EXPECT_LT(mean.late_m, 0.4 * mean.odometry_late_m);
   EXPECT_GT(mean.nees, 0.6);
   EXPECT_LT(mean.nees, 1.5);
@@ -179,8 +179,8 @@ TEST_F(OneKeyframe, NeverTakesAPointThatLiesBehind) {
   EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
 }
 
-/// What a observation's expected error is made of follows the residual's change with each pose: the same body, a
-/// keyframe that is exact, and the other way round.
+/// The predicted error of an observation follows from the Jacobians of both poses: once with an exact keyframe, once
+/// with an exact body.
 TEST_F(OneKeyframe, ExpectsSightsAsFarOffAsTheBodyIsUncertain) {
   filter_.restart(SE3(), World::truth(4.0), timestamp_from_seconds(4.0), 0.1, 0.0);
   double sum = 0.0;

@@ -9,10 +9,10 @@
 namespace edged {
 namespace {
 
-constexpr double kSamePlace_m = 0.15, kSamePlace_rad = 0.05;  // of two keyframes that say where the other map lies
+constexpr double kSamePlace_m = 0.15, kSamePlace_rad = 0.05;  // of the poses of the other map by two keyframes
 constexpr std::size_t kFewestKeyframes = 3;
-constexpr double kLeastShare = 0.5;  // of the keyframes that say anything
-// Of what they agree on.
+constexpr double kLeastShare = 0.5;  // of the recognised keyframes
+// Of the common result.
 constexpr double kPositionSigma_m = 0.05, kRotationSigma_rad = 0.02;
 
 double focal_of(const SavedMap& map, const std::string& camera) {
@@ -20,7 +20,7 @@ double focal_of(const SavedMap& map, const std::string& camera) {
   return found == map.cameras.end() ? 0.0 : found->focal;
 }
 
-/// Of each keyframe of `other` that is recognized: where its body is, in both frames.
+/// Of each recognized keyframe of `other`: the pose of its body, in both frames.
 struct Hypothesis {
   SE3 T_A_K, T_B_K;
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
@@ -49,14 +49,14 @@ std::vector<Hypothesis> hypotheses_of(const SavedMap& map, const SavedMap& other
   return hypotheses;
 }
 
-/// Whether `hypothesis`, too, has its keyframe where T_A_B puts it.
+/// Whether `hypothesis` agrees with T_A_B, too.
 bool agrees(const SE3& T_A_B, const Hypothesis& hypothesis) {
   const SE3 off = hypothesis.T_A_K.inverse() * T_A_B * hypothesis.T_B_K;
   return off.translation().norm() < kSamePlace_m && so3::log(off.rotation()).norm() < kSamePlace_rad;
 }
 
-/// By how much the poses of keyframes are off where T_A_B is: six rows each, by position in A and rotation about A's
-/// axes at `centre`.
+/// Jacobian of keyframe poses by the error of T_A_B: six rows each, by position in A and rotation about A's axes at
+/// `centre`.
 Eigen::MatrixXd by_common_error(const std::vector<SE3>& T_A_K, const Eigen::Vector3d& centre) {
   Eigen::MatrixXd J(6 * std::ssize(T_A_K), 6);
   for (std::size_t k = 0; k < T_A_K.size(); ++k) {

@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-/// A wall of points that all look different, seen from places beside one another; everything in a frame A.
+/// A wall of points with distinct descriptors, observed from neighbouring places; everything in a frame A.
 struct Wall {
   std::vector<Eigen::Vector3d> points;
   std::vector<Descriptor> looks;
@@ -75,12 +75,12 @@ TEST(MapMerge, BothLieInOneFrame) {
   const SavedMap both = merged(map, other, kT_A_B);
   ASSERT_EQ(both.keyframes.size(), 9U);
   for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((both.T_M_K[k].inverse() * T_A_K[k]).log().norm(), 1e-9);
-  // The others are known as before; of these two it is known better how they lie to one another than to the others.
+  // The covariance of the others is unchanged; these two are more certain relative to each other than to the others.
   EXPECT_EQ(both.covariance.bottomRightCorner(30, 30), map.covariance);
   const Eigen::MatrixXd P = both.covariance.topLeftCorner(12, 12);
   EXPECT_GT(P(0, 0), 0.04 * 0.04);
   EXPECT_LT(P(0, 0) + P(6, 6) - 2.0 * P(0, 6), 0.02 * 0.02);
-  EXPECT_NO_THROW(saved_map_from_bytes(to_bytes(both)));  // in order of time, and of sound values
+  EXPECT_NO_THROW(saved_map_from_bytes(to_bytes(both)));  // in order of time, with valid values
 }
 
 }  // namespace

@@ -19,17 +19,17 @@ namespace edged {
 class OdomToMap {
  public:
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
-  /// Position and yaw go on; tilt is the estimator's, which knows gravity.
+  /// Position and yaw are continuous; tilt is that of the estimator, which observes gravity.
   void restart(const SE3& T_new_old, const OdomState& now);
-  /// O goes on where it is, but its place in M is a guess again.
+  /// O stays where it is, but its pose in M is uncertain again.
   void restart(Timestamp t);
-  /// The map has placed O at T_M_O, from t on.
+  /// The map has corrected T_M_O, from t on.
   void correct(Timestamp t, const SE3& T_M_O);
-  /// The guess of the newest start was far off: its newest placement holds for all its time.
+  /// The dead reckoning to the newest start was far off: its newest T_M_O replaces all since that start.
   void forget_guess();
   /// All starts before the newest lay in another frame than M.
   void move_before(const SE3& T_M_before);
-  /// What follows goes on from here, with a history of its own.
+  /// Starts a new history from here.
   void forget_history() { starts_.clear(); }
 
   const SE3& T_M_O() const { return T_M_O_; }

@@ -26,7 +26,7 @@ TEST(OdomToMap, TheFirstStartDefinesTheMapFrame) {
 TEST(OdomToMap, LaterStartsGoOnWithPositionAndYawButTheirOwnTilt) {
   OdomToMap odom_to_map;
   odom_to_map.restart(SE3(), at(SE3(), {0, 0, 0}));
-  // Dead reckoning has come to `old`; the new start puts the body at its origin, with a tilt it knows better.
+  // Dead reckoning has reached `old`; the new start has the body at its origin, with a more accurate tilt.
   const SE3 old(so3::exp({0, 0, 1.2}) * so3::exp({0.05, 0, 0}), {3, -1, 2});
   const OdomState now = at(SE3(so3::exp({0.02, 0, 0}), {0.5, 0, 0}), {1, 0, 0});
   odom_to_map.restart(now.T_O_B * old.inverse(), now);
@@ -36,7 +36,7 @@ TEST(OdomToMap, LaterStartsGoOnWithPositionAndYawButTheirOwnTilt) {
   EXPECT_LT((off - Eigen::Vector3d(0.02, 0, 0)).norm(), 1e-3) << "the tilt of the new estimate, the yaw of the old";
   EXPECT_LT((in_map.v_W - so3::exp({0, 0, 1.2}) * now.v_O).norm(), 1e-3);
   const std::vector<Landmark> landmarks = odom_to_map.in_map(std::vector<Landmark>{{7, now.T_O_B.translation()}});
-  EXPECT_LT((landmarks.front().p_W - old.translation()).norm(), 1e-9) << "landmarks move along";
+  EXPECT_LT((landmarks.front().p_W - old.translation()).norm(), 1e-9) << "landmarks are transformed, too";
 }
 
 TEST(OdomToMap, KnowsWhereOWasAtEachTimeOfEachStart) {
@@ -51,10 +51,10 @@ TEST(OdomToMap, KnowsWhereOWasAtEachTimeOfEachStart) {
   };
   EXPECT_EQ(at(0, 2), 0.0);
   EXPECT_EQ(at(0, 4), 1.0);
-  EXPECT_EQ(at(1, 6), 1.0) << "a new start goes on where the last one was";
+  EXPECT_EQ(at(1, 6), 1.0) << "a new start continues from the pose of the last one";
   EXPECT_EQ(at(1, 7), 2.0);
   odom_to_map.forget_guess();
-  EXPECT_EQ(at(1, 6), 2.0) << "the guess was wrong all the time";
+  EXPECT_EQ(at(1, 6), 2.0) << "dead reckoning was wrong since the start";
   odom_to_map.move_before(x(10.0));
   EXPECT_EQ(at(0, 2), 10.0);
   EXPECT_EQ(at(1, 6), 2.0);

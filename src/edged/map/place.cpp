@@ -11,11 +11,11 @@
 namespace edged {
 namespace {
 
-constexpr int kPairs = 300;             // pairs: at 20 % right ones all but 5e-6 of the runs meet one
-constexpr double kLeastHeight = 0.05;   // of a ray against the horizon, to tell a distance by a height
+constexpr int kPairs = 300;             // pairs: with 20 % inliers all but 5e-6 of the runs draw a pair of inliers
+constexpr double kLeastHeight = 0.05;   // slope of a ray against the horizon, to derive a distance from a height
 constexpr double kLeastUpright = 0.42;  // sine of 25 deg, of a ray against gravity
 
-/// Of `up` in the image at that point of the unit plane [deg]; nothing where the ray is nearly vertical.
+/// Direction of `up` in the image at that point of the unit plane [deg]; nothing if the ray is nearly vertical.
 std::optional<float> upright_deg(const Eigen::Vector2d& point, const Eigen::Vector3d& up_C) {
   const Eigen::Vector3d ray(point.x(), point.y(), 1.0);
   if (ray.cross(up_C).norm() < kLeastUpright * ray.norm()) return std::nullopt;
@@ -25,7 +25,7 @@ std::optional<float> upright_deg(const Eigen::Vector2d& point, const Eigen::Vect
 }
 
 /// Camera positions and headings from which two points are seen along two rays (in O): lambda_i Rz f_i = p_i - t. The
-/// heights tell one distance by the other, the horizontal distance both.
+/// heights give one distance from the other, the horizontal distance gives both.
 std::vector<SE3> poses_of(const PlaceMatch& a, const PlaceMatch& b, const Eigen::Quaterniond& R_O_C) {
   Eigen::Vector3d f1 = R_O_C * a.point.homogeneous(), f2 = R_O_C * b.point.homogeneous();
   Eigen::Vector3d p1 = a.p_M, p2 = b.p_M;

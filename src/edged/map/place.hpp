@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// To know a place again without knowing where one is: descriptors that stand upright by gravity, and a pose by two
-// points, as gravity tells the rest.
+// Place recognition without a pose prior: descriptors oriented by gravity, and a pose from two points, as gravity gives
+// the tilt.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,15 +19,15 @@ namespace edged {
 /// 256 comparisons of grey levels around a feature (ORB, by OpenCV).
 using Descriptor = std::array<std::uint64_t, 4>;
 
-/// How many bits differ.
+/// Number of bits that differ.
 int distance(const Descriptor& a, const Descriptor& b);
 
-/// One for each feature; nothing near the image's rim, and where a camera looks up or down, as gravity has no direction
-/// in the image there. points: the same on the unit plane; up_C: what points up, in the camera.
+/// One for each feature; nothing near the image border, and where the ray is vertical, as gravity has no direction in
+/// the image there. points: the same on the unit plane; up_C: the upward direction, in the camera.
 std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<const Eigen::Vector2d> pixels,
                                                 std::span<const Eigen::Vector2d> points, const Eigen::Vector3d& up_C);
 
-/// A feature of the present image that looks like a point of the map.
+/// A feature of the present image that matches a map point by its descriptor.
 struct PlaceMatch {
   Eigen::Vector2d point;  ///< of the feature, on the unit plane
   Eigen::Vector3d p_M;
@@ -38,7 +38,7 @@ struct PlacePose {
   std::size_t agreeing;  ///< of the matches
 };
 
-/// The pose that most matches agree with, by up to max_error on the unit plane. R_O_C: of the camera in any frame whose
+/// The pose with most inliers, within max_error on the unit plane. R_O_C: of the camera in any frame whose
 /// z points up; the pose has the same tilt. Deterministic. Nothing with fewer than two matches.
 std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, const Eigen::Quaterniond& R_O_C,
                                          double max_error);

@@ -11,7 +11,7 @@
 namespace edged {
 namespace {
 
-/// Points before a camera that is turned and tilted, some of them matched wrongly.
+/// Points in front of a rotated and tilted camera, some with wrong matches.
 struct Scene {
   SE3 T_M_C;
   std::vector<PlaceMatch> matches;
@@ -35,7 +35,7 @@ Scene scene(std::uint64_t seed, int right, int wrong) {
 TEST(PoseByGravity, IsFoundAmongManyWrongMatches) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Scene made = scene(seed, 20, 40);
-    // Of the attitude only the tilt is known: the heading of O is any.
+    // Of the attitude only the tilt is known: the heading of O is arbitrary.
     const Eigen::Quaterniond R_O_C = so3::exp({0.0, 0.0, 0.37 * static_cast<double>(seed)}) * made.T_M_C.rotation();
     const auto found = pose_by_gravity(made.matches, R_O_C, 0.015);
     ASSERT_TRUE(found);
@@ -57,7 +57,7 @@ TEST(PoseByGravity, NeedsTwoMatches) {
   EXPECT_FALSE(pose_by_gravity(scene(1, 1, 0).matches, Eigen::Quaterniond::Identity(), 0.015));
 }
 
-/// Grey blobs, turned about the image's middle.
+/// Grey blobs, rotated about the image centre.
 cv::Mat blobs(double turn_deg) {
   cv::Mat image(180, 240, CV_8UC1, cv::Scalar(100));
   cv::RNG random(5);
@@ -73,7 +73,7 @@ cv::Mat blobs(double turn_deg) {
 TEST(Describe, IsTheSameForACameraThatIsTurnedAboutItsAxis) {
   const std::vector<Eigen::Vector2d> pixels = {{120, 90}}, points = {{0, 0}};
   const auto upright = describe(blobs(0.0), pixels, points, {0, -1, 0});
-  const double turn = 40.0 * M_PI / 180.0;  // of the image, counter-clockwise as it is seen
+  const double turn = 40.0 * M_PI / 180.0;  // of the image, counter-clockwise as displayed
   const auto turned = describe(blobs(40.0), pixels, points, {-std::sin(turn), -std::cos(turn), 0});
   const auto elsewhere = describe(blobs(0.0), std::vector<Eigen::Vector2d>{{70, 100}}, points, {0, -1, 0});
   ASSERT_TRUE(upright[0] && turned[0] && elsewhere[0]);

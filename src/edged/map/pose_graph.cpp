@@ -14,13 +14,12 @@ namespace {
 
 constexpr double kFarSigmas = 2.0;  // Cauchy's scale
 constexpr int kIterations = 12;
-constexpr int kTrusting = 3;  // of them that believe all observations: after a long drift, right ones are far off, too
+constexpr int kTrusting = 3;  // of them without a robust loss: after a long drift, inliers have large residuals, too
 constexpr double kConverged = 1e-6;  // largest step of an iteration, metres and radians
 
 }  // namespace
 
-/// H dx = -g of the unknown poses, of which only blocks that are not zero are kept: of each pair of poses that one for
-/// which a >= b.
+/// H dx = -g of the unknown poses, with only the non-zero blocks: of each pair of poses the one with a >= b.
 class PoseGraph::Equations {
  public:
   explicit Equations(const PoseGraph& graph) : rows_(graph.rows_), g_(Eigen::VectorXd::Zero(graph.unknowns_)) {}

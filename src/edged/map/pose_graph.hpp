@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Poses of the body that hang together by the odometry's steps from one to the next and by points of the one that were
-// found again from the other: where all of them fit best. What MapFilter does with the past alone, with the future too.
+// A pose graph over poses of the body, with odometry between consecutive poses and map matches between any two. A batch
+// counterpart of MapFilter, which uses only the past.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,15 +16,15 @@ namespace edged {
 
 class PoseGraph {
  public:
-  /// A first guess; returns its number. The first one stays where it is.
+  /// Adds a pose with an initial value; returns its number. The first pose is fixed.
   std::size_t add_pose(const SE3& T_M_B);
-  /// A pose that stays where it is.
+  /// Adds a fixed pose.
   std::size_t add_known_pose(const SE3& T_M_B);
-  /// B was seen to lie at T_A_B from A; the covariance is that of B's error then.
+  /// A relative pose T_A_B; the covariance is that of B's error.
   void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);
-  /// What was found in the image of a body, of keyframes by their numbers.
+  /// Map matches in the image at a pose, with keyframes by their numbers.
   void add_observations(std::size_t body, const SE3& T_B_C, std::span<const MapObservation> observations);
-  /// Gauss-Newton; observations that lie far off are weighed down by Cauchy's function, but for the first steps.
+  /// Gauss-Newton; observations with a Cauchy loss, except in the first steps.
   /// Deterministic.
   void solve();
 
@@ -47,7 +47,7 @@ class PoseGraph {
   void take(const View& view, bool trusting, Equations& equations) const;
 
   std::vector<SE3> T_M_B_;
-  std::vector<Eigen::Index> rows_;  ///< where the unknowns of each pose begin; kKnown: none
+  std::vector<Eigen::Index> rows_;  ///< first column of each pose; kKnown: fixed
   Eigen::Index unknowns_ = 0;
   std::vector<Step> steps_;
   std::vector<View> views_;

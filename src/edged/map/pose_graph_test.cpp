@@ -32,7 +32,7 @@ struct Chain {
   }
 };
 
-/// Points of keyframe 0 as they lie before it, seen from the last pose.
+/// Points of keyframe 0, observed from the last pose.
 std::vector<MapObservation> observations_from_last(const Chain& chain) {
   std::vector<MapObservation> observations;
   for (const double x : {-0.5, 0.0, 0.5}) {

@@ -20,14 +20,14 @@ static_assert(std::endian::native == std::endian::little, "maps are written and 
 constexpr std::string_view kMagic = "edged map\n";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kMostCameras = 16, kMostKeyframes = 10'000, kMostPoints = 10'000, kLongestName = 200;
-constexpr double kSameFocal = 0.02;  // share: what two calibrations of one lens differ by
+constexpr double kSameFocal = 0.02;  // share: difference of two calibrations of one lens
 constexpr Duration kBefore = std::chrono::seconds(1), kOldest = std::chrono::hours(24 * 365 * 100);
 
 [[noreturn]] void refuse(const char* why) {
-  throw InputError::format("no map that can be used: {}; make it again with --save-map", why);
+  throw InputError::format("not a usable map: {}; make it again with --save-map", why);
 }
 
-/// FNV-1a: against damage, not against malice.
+/// FNV-1a: detects damage, not manipulation.
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t sum = 0xcbf29ce484222325U;
   for (const char c : bytes) sum = (sum ^ static_cast<std::uint8_t>(c)) * 0x100000001b3U;
@@ -37,11 +37,11 @@ std::uint64_t checksum(std::string_view bytes) {
 template <typename T>
 concept Plain = std::is_arithmetic_v<T>;
 
-/// A Writer and a Reader are called alike, so that what is written and what is read is one list: fields_of.
+/// Writer and Reader have the same interface, so that one list serves both: fields_of.
 class Writer {
  public:
   void operator()(Plain auto& x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof(x)); }
-  /// How many there are, of a vector or text.
+  /// The size of a vector or text.
   void size(auto& container, std::size_t /*most*/) {
     auto n = static_cast<std::uint32_t>(container.size());
     (*this)(n);
@@ -59,18 +59,18 @@ class Reader {
     expect(sizeof(x));
     std::memcpy(&x, bytes_.data(), sizeof(x));
     bytes_.remove_prefix(sizeof(x));
-    if (!std::isfinite(static_cast<double>(x))) refuse("a number in it is none");
+    if (!std::isfinite(static_cast<double>(x))) refuse("a number in it is not finite");
   }
   void size(auto& container, std::size_t most) {
     std::uint32_t n = 0;
     (*this)(n);
-    if (n > most) refuse("it claims to hold more than it can");
+    if (n > most) refuse("its sizes exceed its length");
     expect(n);
     container.resize(n);
   }
-  /// So much at least must follow: asked before room is made for it.
+  /// Checks that so many bytes follow, before the allocation.
   void expect(std::size_t bytes) const {
-    if (bytes > bytes_.size()) refuse("it ends too soon");
+    if (bytes > bytes_.size()) refuse("it is truncated");
   }
   bool at_end() const { return bytes_.empty(); }
 
@@ -151,14 +151,14 @@ void check_values(const SavedMap& map) {
     const auto sound = [](const MapPoint& p) { return p.inverse_depth > 0.0 && p.sigma >= 0.0 && p.tried >= p.found; };
     if (keyframe.points.empty() || !std::ranges::all_of(keyframe.points, sound) || !unit(keyframe.T_B_C) ||
         !past(keyframe.t) || !past(keyframe.found_at))
-      refuse("a keyframe in it makes no sense");
+      refuse("a keyframe in it is invalid");
   }
   if (!std::ranges::all_of(map.T_M_K, unit) || (map.covariance.diagonal().array() < 0.0).any())
-    refuse("a pose in it makes no sense");
-  if (!std::ranges::is_sorted(map.keyframes, {}, &MapKeyframe::t)) refuse("its keyframes are in no order");
+    refuse("a pose in it is invalid");
+  if (!std::ranges::is_sorted(map.keyframes, {}, &MapKeyframe::t)) refuse("its keyframes are not in order");
 }
 
-/// So that the newest lies before any time of another run.
+/// Shifts times so that the newest is before any time of another run.
 void set_back(std::vector<MapKeyframe>& keyframes) {
   Timestamp newest = Timestamp::min();
   for (const MapKeyframe& keyframe : keyframes) newest = std::max({newest, keyframe.t, keyframe.found_at});
@@ -203,7 +203,7 @@ std::string to_bytes(const SavedMap& map) {
 }
 
 SavedMap saved_map_from_bytes(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) refuse("it does not begin as one");
+  if (!bytes.starts_with(kMagic)) refuse("it has no map header");
   Reader head(bytes.substr(kMagic.size()));
   std::uint32_t version = 0;
   std::uint64_t sum = 0;
@@ -215,7 +215,7 @@ SavedMap saved_map_from_bytes(std::string_view bytes) {
   Reader reader(body);
   SavedMap map;
   fields_of(reader, map);
-  if (!reader.at_end()) refuse("it does not end where it should");
+  if (!reader.at_end()) refuse("it has extra bytes at its end");
   map.covariance.triangularView<Eigen::StrictlyUpper>() = map.covariance.transpose();
   check_values(map);
   return map;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A map between two runs: its keyframes, where they are, how well that is known, and what they were taken with.
+// A saved map: its keyframes, their poses with covariance, and their cameras.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 namespace edged {
 
 struct SavedMap {
-  /// Patches are of its pixels: another lens shows the same place otherwise.
+  /// Patches are in its pixels: with another lens the same place has another appearance.
   struct Camera {
     std::string name;
     int width = 0, height = 0;  ///< [px]
@@ -23,15 +23,15 @@ struct SavedMap {
   };
   std::vector<Camera> cameras;
   std::vector<MapKeyframe> keyframes;  ///< oldest first
-  std::vector<SE3> T_M_K;              ///< of the body, one a keyframe
-  Eigen::MatrixXd covariance;          ///< of T_M_K, six a keyframe; errors as in MapFilter
+  std::vector<SE3> T_M_K;              ///< of the body, one per keyframe
+  Eigen::MatrixXd covariance;          ///< of T_M_K, six per keyframe; errors as in MapFilter
 };
 
 /// Throws InputError where the rig has none of its cameras, or one of them with another lens.
 void check_fits(const SavedMap& map, const Rig& rig);
 
-/// As bytes, little endian, with a version and a checksum. Of times only the order is kept: the newest keyframe was
-/// found last at -1 s of the next run's clock.
+/// As bytes, little endian, with a version and a checksum. Of times only the order is kept: the last match of the
+/// newest keyframe is at -1 s of the next run's clock.
 std::string to_bytes(const SavedMap& map);
 /// Throws InputError on anything that to_bytes cannot have written.
 SavedMap saved_map_from_bytes(std::string_view bytes);

@@ -12,15 +12,15 @@
 namespace edged {
 namespace {
 
-// Of the odometry's drift as the filter has it: looks at both ends of a stretch tell more of it than those behind.
+// Factor on the odometry's drift of the filter: matches on both sides bound it better than past ones alone.
 constexpr double kFinalDriftScale = 3.0;
 constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
-// Looks that are fitted with the keyframes: each hangs together with the one before and with most keyframes, and time
-// and memory grow faster than their number.
+// Number of matched images that are optimized with the keyframes: each is coupled to the one before and to most
+// keyframes, so time and memory grow faster than their number.
 constexpr std::size_t kMostTogether = 500;
 
-/// Of where the odometry starts, against where it ended.
+/// Of the start of the odometry, relative to its last end.
 Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
   Matrix6d P = Matrix6d::Zero();
   P.diagonal().head<3>().setConstant(position_sigma * position_sigma);
@@ -30,11 +30,11 @@ Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
 
 }  // namespace
 
-/// The graph of all sessions: an instant that something is known of is a pose, drift of the odometry lies between.
+/// The graph of all sessions: a pose for each instant with information, odometry with drift between them.
 class TrajectorySmoother::Fit {
  public:
-  /// One look of so many. together: keyframes stay where that has found them, which leaves a chain, of which time and
-  /// memory are linear.
+  /// One matched image of so many. together: their solution for the keyframes is then fixed, which leaves a chain with
+  /// linear time and memory.
   Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, std::size_t of, const Fit* together = nullptr)
       : config_(record.config_),
         odom_to_map_(odom_to_map),

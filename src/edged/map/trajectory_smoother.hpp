@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Records causal poses and map matches, and optimizes the final trajectory over all of them.
-// Nothing of it acts back on odometry or map.
+// Nothing of it feeds back into odometry or map.
 #pragma once
 
 #include <map>
@@ -16,8 +16,8 @@
 
 namespace edged {
 
-/// Calls come in order of time, `load` or `restart` first. Where each start's O lies in M is known to OdomToMap, which
-/// sees the same starts. Half a megabyte a minute; path() takes six times that while it works.
+/// Calls come in order of time, `load` or `restart` first. The T_M_O of each start is in OdomToMap, which gets the same
+/// starts. Half a megabyte a minute; path() takes six times that while it works.
 class TrajectorySmoother {
  public:
   explicit TrajectorySmoother(const MapFilterConfig& config) : config_(config) {}
@@ -25,24 +25,24 @@ class TrajectorySmoother {
   /// Nothing has started yet.
   bool empty() const { return sessions_.empty(); }
 
-  /// The map has keyframes of another run, numbered from zero on. They stay where they are.
+  /// The map has keyframes of another run, numbered from zero on. Their poses are fixed.
   void load(std::span<const SE3> T_M_K);
-  /// The odometry starts in a new O, whose place is a guess of those sigmas of position and yaw [m], [rad].
+  /// The odometry starts in a new O, whose pose in M has these sigmas of position and yaw [m], [rad].
   void restart(const StampedPose& T_O_B, double position_sigma, double yaw_sigma);
-  /// A pose that was given out: one of the path.
+  /// A published pose: one of the path.
   void add(const StampedPose& T_O_B);
-  /// A keyframe has left the odometry's window: where it was at an instant that was added is now better known.
+  /// A marginalized keyframe: a refined pose at an instant that was added.
   void refine(const StampedPose& T_O_K);
-  /// The map keeps that keyframe. Returns its number, by which observations speak of it from now on.
+  /// The map keeps that keyframe. Returns its number, which observations refer to.
   std::size_t add_keyframe(const StampedPose& T_O_K);
-  /// Points were found in an image, and OdomToMap has been corrected by them.
+  /// Map matches in an image, after the correction of OdomToMap by them.
   void add_observations(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapObservation> observations);
 
   struct Path {
     Trajectory poses;            ///< T_M_B of all that were added
     std::vector<SE3> keyframes;  ///< T_M_K by number
   };
-  /// Without any map match all poses are the causal ones, bit by bit.
+  /// Without any map match all poses are bit-identical to the causal ones.
   Path path(const OdomToMap& odom_to_map) const;
 
  private:
@@ -58,11 +58,11 @@ class TrajectorySmoother {
     double position_sigma, yaw_sigma;
     std::size_t first_keyframe;  ///< the number of the first of `keyframes`; they are numbered on
     Trajectory causal;           ///< T_O_B
-    Trajectory refined;    ///< T_refined_causal, on the left: what was causal of that instant has to be moved by it
-    Trajectory keyframes;  ///< T_O_K
+    Trajectory refined;          ///< T_refined_causal, applied on the left to causal poses of that instant
+    Trajectory keyframes;        ///< T_O_K
     std::vector<View> views;
   };
-  /// Number in the graph and T_O_B of the instants of a session that something is known of.
+  /// Number in the graph and T_O_B of the instants of a session with information.
   struct Node {
     std::size_t number;
     SE3 T_O_B;
@@ -77,7 +77,7 @@ class TrajectorySmoother {
   MapFilterConfig config_;
   std::vector<SE3> loaded_;  ///< T_M_K
   std::vector<Session> sessions_;
-  std::size_t keyframes_ = 0;  ///< how many have a number
+  std::size_t keyframes_ = 0;  ///< number of keyframes that have a number
 };
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A body that goes round a wall of points, and odometry that drifts by the same each step.
+// A body that circles a wall of points, and odometry with a constant drift per step.
 #include "edged/map/trajectory_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -41,12 +41,12 @@ class FlightRecordTest : public testing::Test {
     record_.add({instant(t), T_O_B_});
     causal_.push_back({instant(t), T_M_O_ * T_O_B_});
   }
-  /// The wall as that keyframe has it, seen from where the body is in truth.
+  /// The points of that keyframe on the wall, observed from the true pose of the body.
   void look(double t, double made_at, std::size_t keyframe) {
     std::vector<MapObservation> observations;
     for (const double x : {-1.2, 0.1, 1.3}) {
       for (const double y : {-1.1, 0.0, 1.0}) {
-        const Eigen::Vector3d p(x, y, 3.0 + x + 0.8 * y);  // no plane across: turns are told from shifts
+        const Eigen::Vector3d p(x, y, 3.0 + x + 0.8 * y);  // not one plane: rotation and translation are separable
         const Eigen::Vector3d p_K = true_pose(made_at).inverse() * p, p_B = true_pose(t).inverse() * p;
         observations.push_back({static_cast<std::uint32_t>(keyframe), p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
       }
@@ -101,7 +101,7 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
 }
 
 TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes) {
-  constexpr double kFirst_s = 1.0, kStep_s = 0.5, kLong_s = 180.0;  // 1700 looks
+  constexpr double kFirst_s = 1.0, kStep_s = 0.5, kLong_s = 180.0;  // 1700 matched images
   restart(0.0, SE3());
   std::vector<double> made_at;
   double t = 0.0;
@@ -117,7 +117,7 @@ TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes
       look(now, made_at[keyframe], keyframe);
     }
   }
-  ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is found again";
+  ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is observed again";
   const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   ASSERT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
@@ -128,7 +128,7 @@ TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
   fly(0.0, 0.5, 0.0);
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 4.0, 0.0);
-  T_O_B_.translation().z() += 0.01;  // one pose that was causal wrong, and mended within the window
+  T_O_B_.translation().z() += 0.01;  // one wrong causal pose, corrected within the window
   fly(4.0, 4.1, 0.0);
   T_O_B_.translation().z() -= 0.01;
   fly(4.1, 8.5, 0.0);
@@ -143,7 +143,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 3.0, 0.0);
   look(3.0, 0.5, keyframe);
-  // The new frame lies where dead reckoning puts it, half a metre off, and is turned besides.
+  // The new frame is at the pose of dead reckoning, half a metre off, with a yaw error.
   const SE3 off(Eigen::Quaterniond::Identity(), {0.5, -0.2, 0.0}), O(so3::exp({0, 0, 1.0}), {1.0, 2.0, 0.5});
   T_O_B_ = O.inverse() * true_pose(5.0);
   T_M_O_ = off * O;
@@ -163,7 +163,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
 TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   const std::vector<SE3> loaded = {true_pose(7.0), true_pose(7.5)};
   record_.load(loaded);
-  // Two starts in a frame of this run's own, before its place in the map is known.
+  // Two starts in a frame of this run's own, before relocalization in the map.
   const SE3 own(so3::exp({0, 0, -0.7}), {2.0, 1.0, 0.0});
   restart(0.0, own);
   fly(0.0, 3.0, 0.0);
@@ -188,7 +188,7 @@ TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
   odom_to_map_.move_before(own.inverse());
   const Trajectory moved = record_.path(odom_to_map_).poses;
   EXPECT_LT((moved.front().T.inverse() * own.inverse() * causal_.front().T).log().norm(), 1e-12);
-  EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the present start has been moved by the map";
+  EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the map has corrected the present start";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool start
     for (const OdomState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_O_B});
     now_ = propagate(now_, motion);
   } else {
-    // Neither speed nor tilt are known yet: turn with the gyro, stay in place.
+    // Neither speed nor tilt are known yet: rotation by the gyro only.
     SE3& pose = now_.T_O_B;
     T_O_B_.push_back({imu.front().t, pose});
     for (std::size_t i = 1; i < imu.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the body is in O, now and while the events of the packet came: IMU propagation from the newest estimate.
+// The pose of the body in O, now and during the packet: IMU propagation from the newest estimate.
 #pragma once
 
 #include <vector>
@@ -17,17 +17,18 @@ class BodyMotion {
   /// history: how long before a packet poses are kept (the oldest event that a packet's frame can show).
   BodyMotion(const ImuNoise& noise, Duration history) : noise_(noise), history_(history) {}
 
-  /// Moves `now` to the end of `imu` and gives that motion, integrated. started: the estimator knows speed and tilt;
+  /// Propagates `now` to the end of `imu` and returns the preintegrated motion. started: speed and tilt are estimated;
   /// else attitude by gyro only.
   Preintegration predict(const std::vector<ImuSample>& imu, bool started);
 
-  /// `now` as estimated: the history moves along. Returns from the old odometry frame to the new one, T_new_old.
+  /// Sets `now` to the estimate and transforms the history. Returns T_new_old, from the old odometry frame to the new
+  /// one.
   SE3 correct(const OdomState& estimate);
 
   const OdomState& now() const { return now_; }
-  /// Whether speed and tilt of `now` mean anything.
+  /// Whether speed and tilt of `now` are estimated.
   bool started() const { return started_; }
-  /// T_O_B a few milliseconds after now, turning and moving on as it does now.
+  /// T_O_B a few milliseconds after now, at the present rate and velocity.
   SE3 moved_on(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
   const std::vector<StampedPose>& poses() const { return T_O_B_; }

@@ -11,7 +11,7 @@ constexpr double kTurnRate = 0.8;  // [rad/s] about z
 
 Timestamp seconds_in(double s) { return timestamp_from_seconds(s); }
 
-/// A body that goes straight on and turns about the vertical: samples every 5 ms.
+/// A body that moves straight and rotates about the vertical: samples every 5 ms.
 std::vector<ImuSample> samples(double from_s, double to_s) {
   std::vector<ImuSample> imu;
   for (double t = from_s; t < to_s + 1e-6; t += 0.005) {

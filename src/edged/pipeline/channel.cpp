@@ -33,7 +33,7 @@ void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPr
 
 void Channel::align(const TrackSummary& summary) {
   if (alignment_.gain <= 0.0) return;
-  // Without a usable prediction the old correction fades.
+  // Without a usable prediction the old correction decays.
   const bool measured = summary.tracked > 0 && !summary.prediction_failed;
   const Eigen::Vector2d newest =
       measured ? Eigen::Vector2d(summary.median_innovation_px + alignment_px_) : Eigen::Vector2d::Zero();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One camera of the rig at work: its tracks, and where the body was at its last image and last keyframe.
+// The tracks of one camera of the rig, and the poses of the body at its last image and last keyframe.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -14,7 +14,7 @@ namespace edged {
 
 class Channel {
  public:
-  /// image_model: of the images given to it (the ideal pinhole for undistorted event frames).
+  /// image_model: camera model of its images (the ideal pinhole for undistorted event frames).
   Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
           const AlignmentConfig& alignment, const HealthConfig& health)
       : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
@@ -23,28 +23,28 @@ class Channel {
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
   Eigen::Matrix3d since_keyframe(const SE3& T_O_B) const;
 
-  /// Follows the tracks into the image. T_O_B: the body now, as predicted; prediction: what else is known, without its
-  /// pose and offset.
+  /// Tracks the features into the image. T_O_B: the predicted pose of the body; prediction: all but pose and offset.
   void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction);
-  /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with its rotation.
+  /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with the rotation of the gyro.
   void reject(const SE3& T_O_B, bool trust_gyro);
-  /// Finds new features in the image, up to `most` live ones, and makes it the keyframe.
+  /// Detects new features in the image, up to `most` live ones, and makes it the keyframe.
   void mark_keyframe(const cv::Mat& image, const SE3& T_O_B, FeatureId& next_feature, int most);
 
-  /// Running mean of the share of tracks that live through an image, 0 .. 1: blur, noise and darkness end tracks.
+  /// Track survival rate: running mean of the share of tracks that survive an image, 0 .. 1.
   double survival_rate() const { return survival_rate_; }
-  /// Tracks as they count: as many as are likely to be there in the next image.
+  /// Effective number of tracks: the number that likely survives the next image.
   double carried() const { return survival_rate_ * static_cast<double>(tracker.tracks().size()); }
-  /// The observations of the present image, less sure the fewer tracks survive; none when the camera is ignored.
+  /// The observations of the present image, with a sigma that grows as fewer tracks survive; none when the camera is
+  /// ignored.
   CameraObservations observations() const;
 
   bool has_image_of(Timestamp t) const { return any_image_ && last_image_ == t; }
-  /// The body at the present image (and keyframe), now better known.
+  /// Sets the estimated pose of the body at the present image (and keyframe).
   void settle(const SE3& T_O_B, bool keyframe);
-  /// Everything remembered moves into another odometry frame.
+  /// Transforms all stored poses to another odometry frame.
   void move(const SE3& T_new_old);
 
-  RigCamera camera;  ///< as the estimator has calibrated it
+  RigCamera camera;  ///< with the calibration of the estimator
   FeatureTracker tracker;
   SE3 T_O_Blast;      ///< at the last image
   SE3 T_O_Bkeyframe;  ///< at the last keyframe
@@ -59,17 +59,17 @@ class Channel {
   Timestamp last_image_;
   bool any_image_ = false;
   // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;
-  // to shift the places where they are searched instead is the same, and leaves the frame where the poses put it.
+  // shifting the search positions instead is equivalent, and keeps the frame consistent with the poses.
   Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();
 };
 
-/// A camera with its image of a packet: features are followed on `track` and found on `detect`.
+/// A camera with its image of a packet: features are tracked on `track` and detected on `detect`.
 struct ChannelView {
   Channel* channel;
   cv::Mat track, detect;
 };
 
-/// The camera that carries the most tracks, the last of equals (frames); null without any.
+/// The camera with most tracks, the last of equals (frames); null without any.
 const Channel* leading_channel(std::span<const ChannelView> views);
 
 }  // namespace edged

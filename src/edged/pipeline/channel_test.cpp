@@ -27,7 +27,7 @@ class ChannelHealth : public testing::Test {
     channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, {});
   }
 
-  /// Nothing but noise, another one every time.
+  /// An image of new noise at every call.
   cv::Mat darkness() {
     cv::Mat image(scene_.camera().height(), scene_.camera().width(), CV_8UC1);
     random_.fill(image, cv::RNG::NORMAL, 8, 4);

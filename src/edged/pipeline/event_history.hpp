@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The events of one camera that packets still need: the new ones, and those before that a window reaches back to.
+// The events of one camera that packets still need: the new ones, and older ones within the window.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ class EventHistory {
 
   const std::string& camera() const { return camera_; }
   Duration offset() const { return offset_; }
-  /// Takes events of the camera's clock over to the IMU's. Those not after the last cut, or before one that has come,
-  /// are left out: how many.
+  /// Adds events, converted from the camera clock to the IMU clock. Drops those not after the last cut, or before an
+  /// earlier event; returns how many.
   std::size_t add(const std::vector<Event>& events, Timestamp last_cut);
 
   /// The stamp of the event that completes the count of a packet; nothing while there are fewer.
@@ -29,9 +29,9 @@ class EventHistory {
   std::size_t new_events() const { return events_.size() - uncut_begin_; }
   std::optional<Timestamp> newest() const { return events_.empty() ? std::nullopt : std::optional(events_.back().t); }
 
-  /// What a packet cut at t holds; the one before was cut at last_cut.
+  /// The events of a packet cut at t; the one before was cut at last_cut.
   PacketEvents take(Timestamp t, Timestamp last_cut);
-  /// New events that no packet will take: how many.
+  /// Drops new events that are in no packet; returns how many.
   std::size_t give_up();
 
  private:

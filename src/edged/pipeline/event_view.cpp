@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-/// The poses from the last one not after t on, at least two. One twist (Eq. 1) is that of the events' time only.
+/// The poses from the last one not after t on, at least two. A single twist (Eq. 1) covers only the time of the events.
 std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
   std::size_t first = poses.size() - 2;
   while (first > 0 && poses[first].t > t) --first;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What an event camera shows of a packet: which of its events are rendered, where, and how the frame is enhanced.
+// The event frame of a packet: selection, rendering and enhancement of its events.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -16,12 +16,12 @@ namespace edged {
 
 /// One event frame. All images are empty when there were too few events for one.
 struct EventImage {
-  cv::Mat frame;             ///< motion-compensated, CV_8UC1, undistorted
-  cv::Mat track, detect;     ///< the same, or enhanced (Algorithm 1): features are followed on one, found on the other
-  std::size_t rendered = 0;  ///< events it is of, the newest of the packet
+  cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
+  cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): features are tracked on one, detected on the other
+  std::size_t rendered = 0;  ///< events that it is rendered from, the newest of the packet
 };
 
-/// Which events an event frame is rendered of: each `every`-th from the newest on, standing for as many.
+/// The events that an event frame is rendered from: every `every`-th from the newest on, weighted by `every`.
 struct EventsToRender {
   std::span<const Event> events;
   int every = 1;
@@ -31,16 +31,15 @@ class EventView {
  public:
   EventView(const CameraModel& camera, const OdometryConfig& config);
 
-  /// Fewer events than anything that moves would make.
+  /// Fewer events than any motion would cause.
   bool quiet(const PacketEvents& events) const;
-  /// Those of the window that make a frame: shortened when the body moves fast, as over a long way the warp
-  /// smears what does not lie at the scene's one depth (z, [m]). Rotation does not count, its warp knows no depth.
-  /// body: at the time of their packet, as predicted. Empty when there are too few. thin: a wide sensor's picture may
-  /// be noisier than its events allow.
+  /// The events of the window for a frame: fewer in fast translation, where the warp blurs points away from the one
+  /// scene depth (z, [m]). Rotation does not matter, as its warp does not depend on depth. body: predicted, at the time
+  /// of the packet. Empty if there are too few. thin: a wide sensor may use a part of its events, with a noisier frame.
   EventsToRender rendered_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
                                  bool thin) const;
-  /// rendered: not empty; camera: as calibrated so far; depths: that of every event in its place, null: scene_depth for
-  /// all.
+  /// rendered: not empty; camera: with online calibration; depths: one per event in the same order, null: scene_depth
+  /// for all.
   EventImage render(const EventsToRender& rendered, const RigCamera& camera, const BodyMotion& body, double scene_depth,
                     const DepthGrid* depths);
 
@@ -56,7 +55,7 @@ class EventView {
   double quiet_rate_per_pixel_, max_travel_px_, max_age_s_;
   std::size_t least_events_;
   int thinned_every_;
-  std::vector<Event> thinned_;  ///< kept for its memory
+  std::vector<Event> thinned_;  ///< kept to reuse its memory
 };
 
 }  // namespace edged

@@ -14,12 +14,12 @@ namespace {
 constexpr double kSpan_s = 0.1, kDepth_m = 2.0;
 constexpr int kPixels = 240 * 180;
 
-/// Those of a packet at 0.1 s, which come evenly over the time before, all over the image.
+/// Events of a packet at 0.1 s, spread evenly over the time before and over the image.
 PacketEvents packet_of(std::size_t events) {
   PacketEvents packet;
   for (std::size_t i = 0; i < events; ++i) {
     const double t_s = kSpan_s * static_cast<double>(i + 1) / static_cast<double>(events);
-    const std::size_t place = i * 0x9e3779b97f4a7c15U >> 24U;  // as good as random
+    const std::size_t place = i * 0x9e3779b97f4a7c15U >> 24U;  // pseudo-random
     packet.events.push_back({timestamp_from_seconds(t_s), static_cast<std::uint16_t>(place % 240),
                              static_cast<std::uint16_t>(place / 240 % 180), true});
   }
@@ -36,7 +36,7 @@ class EventViewTest : public testing::Test {
     config_.packets.window_per_pixel = 1.0;
   }
 
-  /// A body that has moved straight on at that speed until the packet's time.
+  /// A body that moves straight at that speed until the packet's time.
   static BodyMotion moving(double speed) {
     BodyMotion body({}, duration_from_seconds(1.0));
     OdomState state;
@@ -80,7 +80,7 @@ TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereToldToThinAndEachForN) 
   const EventImage all = draw(20'000, 0.0), thinned_narrow = draw(20'000, 0.0, true);
   EXPECT_EQ(cv::norm(all.frame, thinned_narrow.frame), 0.0) << "240 px are not wide";
   config_.thin_width_px = 70;
-  EXPECT_EQ(cv::norm(all.frame, draw(20'000, 0.0).frame), 0.0) << "not told to";
+  EXPECT_EQ(cv::norm(all.frame, draw(20'000, 0.0).frame), 0.0) << "not enabled";
   const EventImage thinned = draw(20'000, 0.0, true);
   EXPECT_EQ(thinned.rendered, all.rendered) << "it reaches back as far";
   cv::Scalar mean, sigma, thinned_mean, thinned_sigma;

@@ -16,7 +16,7 @@ constexpr Duration kBehind = std::chrono::seconds(1);
 constexpr Duration kSure = std::chrono::milliseconds(500);
 constexpr std::size_t kMostTimes = 2;
 
-/// A camera's name for what has waited at its gate.
+/// Sets the camera name of an item that the gate held.
 template <typename T>
 Measurement measurement_of(const std::string& camera, T item) {
   if constexpr (std::is_same_v<T, Event>) {
@@ -34,7 +34,8 @@ bool ClockWatch::set_back(Timestamp t) {
     behind_since_.reset();
     return false;
   }
-  if (!behind_since_ || t < behind_ || t - behind_ > kBehind) behind_since_ = t;  // no stamp that goes on from another
+  if (!behind_since_ || t < behind_ || t - behind_ > kBehind)
+    behind_since_ = t;  // no stamp that continues from another
   behind_ = t;
   return t - *behind_since_ >= kSure;
 }
@@ -57,7 +58,7 @@ void Intake::add(Measurement measurement) {
   std::visit([this](auto& item) { accept(std::move(item)); }, measurement);
 }
 
-/// Of events each is judged by itself.
+/// Events are checked one by one.
 void Intake::accept(EventBatch batch) {
   Sensor<Event>* sensor = find(events_, batch.camera);
   if (sensor == nullptr || !admit(batch, sensor->model)) return;
@@ -103,7 +104,7 @@ void Intake::judge(Sensor<T>& sensor, T item) {
   for (T& one : passed) take(std::move(one), sensor.clock);
 }
 
-/// give(gate, what takes what comes out of it).
+/// give(gate, sink of its output).
 template <typename Give>
 void Intake::for_each_gate(const Give& give) {
   const auto open = [&]<typename T>(Sensor<T>& sensor) {
@@ -120,7 +121,7 @@ void Intake::take(Measurement measurement, ClockWatch& clock) {
   const Timestamp t = *last_stamp(measurement);
   if (clock.set_back(t)) begin_time();
   pass_on(std::move(measurement));
-  // What waits near it has not come from a damaged stamp either, and still gets into its place.
+  // Held items near it have no damaged stamp either, and still get into order.
   for_each_gate([t](auto& gate, const auto& pass) { gate.confirm(t, pass); });
 }
 
@@ -190,13 +191,13 @@ Intake::Sensor<T>* Intake::find(std::vector<Sensor<T>>& cameras, const std::stri
   return nullptr;
 }
 
-/// Takes out events that cannot be.
+/// Removes invalid events.
 bool Intake::admit(EventBatch& batch, const CameraModel& camera) {
   const int width = camera.width(), height = camera.height();
   counters_.events_outside +=
       std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
   counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return !is_plausible(event.t); });
-  // What is masked must not cut packets either, nor pass for motion.
+  // Masked events must not cut packets either, nor count as motion.
   if (camera.is_masked())
     std::erase_if(batch.events, [&](const Event& event) { return !camera.uses(event.x, event.y); });
   return !batch.events.empty();
@@ -206,7 +207,7 @@ bool Intake::admit(Frame& frame, const CameraModel& camera) {
   cv::Mat& image = frame.image;
   const bool fits = image.type() == CV_8UC1 && image.cols == camera.width() && image.rows == camera.height();
   counters_.frames_unfit += fits ? 0 : 1;
-  if (fits && image.u == nullptr) image = image.clone();  // a driver's memory, which may be gone by the time it is used
+  if (fits && image.u == nullptr) image = image.clone();  // a driver's memory, which may be freed before it is used
   counters_.absurd_stamps += is_plausible(frame.t) ? 0 : 1;
   return fits && is_plausible(frame.t);
 }

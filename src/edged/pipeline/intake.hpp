@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where measurements come in, from any thread: what cannot be used is counted, the rest is put into order.
+// The input of measurements, from any thread: unusable ones are counted, the rest is put in order.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ namespace edged {
 /// Whether the clock of a sensor has been set back for good.
 class ClockWatch {
  public:
-  /// True when t completes half a second that lies behind the newest stamp by more than a second.
+  /// True when t completes half a second of stamps more than a second behind the newest one.
   bool set_back(Timestamp t);
 
  private:
@@ -33,26 +33,26 @@ class ClockWatch {
   Timestamp behind_;
 };
 
-/// One damaged stamp costs one measurement. When a sensor's clock has been set back by more than a second, for good,
-/// what comes belongs to a new time: it takes half a second to be sure, whose measurements are late, and by less than a
-/// second they are late until the old time is reached again.
+/// One damaged stamp costs one measurement. When a sensor's clock has been set back by more than a second and stays
+/// there, a new time begins. The decision takes half a second, whose measurements are late. After a step by less than a
+/// second measurements are late until the old time is reached again.
 class Intake {
  public:
   struct Item {
     Measurement measurement;
-    bool begins_time = false;  ///< a clock was set back: what came before belongs to another time
+    bool begins_time = false;  ///< a clock was set back: earlier measurements belong to another time
   };
 
   /// used: the cameras of the run, some of the rig's.
   Intake(const Rig& rig, const Rig& used, const SensorDelays& delays);
 
-  /// From any thread. Measurements of cameras that are not used are passed over.
+  /// From any thread. Measurements of unused cameras are ignored.
   void add(Measurement measurement);
   void finish();
 
-  /// What follows next, as of the sequencer.
+  /// The next measurement, as of the sequencer.
   std::optional<Item> next();
-  /// After finish(), and next() has given all.
+  /// After finish(), when next() has returned all.
   bool ended() const;
   IntakeCounters counters() const;
 
@@ -85,13 +85,13 @@ class Intake {
   Rig used_;
   SensorDelays delays_;
   std::vector<std::pair<std::string, Modality>> known_;  // all cameras of the rig
-  mutable std::mutex mutex_;                             // of what is below
-  std::deque<Sequencer> times_;        // the last is what comes, those before it are ended and not yet handed out
-  bool begins_time_ = false;           // of what comes next out of the first
-  std::vector<Sensor<Event>> events_;  // one a camera that is used
+  mutable std::mutex mutex_;                             // guards the members below
+  std::deque<Sequencer> times_;        // the last one receives; those before it are finished but not yet read out
+  bool begins_time_ = false;           // of the next measurement from the first one
+  std::vector<Sensor<Event>> events_;  // one per used camera
   std::vector<Sensor<Frame>> frames_;
   Sensor<ImuSample> imu_;
-  // They begin no time and confirm no other stamp: no run depends on them.
+  // They start no new time and confirm no other stamp, so that runs without them are the same.
   std::array<JumpGate<ExternalSample>, kExternalSensors> external_ = fresh_gates();
   IntakeCounters counters_;
 };

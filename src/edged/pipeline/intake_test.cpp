@@ -25,7 +25,7 @@ Rig two_cameras() {
           {{"dvs", Modality::Events, lens, SE3(), Duration(0)}, {"cam", Modality::Frames, lens, SE3(), Duration(0)}}};
 }
 
-/// What came out: how many events, frames and samples, and where a new time began.
+/// The output: numbers of events, frames and samples, and where a new time began.
 struct Received {
   std::size_t events = 0, frames = 0, samples = 0;
   std::vector<Timestamp> stamps, begins;
@@ -42,7 +42,7 @@ struct Received {
   }
 };
 
-/// Two seconds of measurements, each with the stamp that `clock` reads at its time.
+/// Two seconds of measurements, each with the stamp of `clock` at its time.
 Received received(Intake& intake, int from_ms, int to_ms, const std::function<int(int)>& clock) {
   Received all;
   for (int ms = from_ms; ms < to_ms; ms += 5) {

@@ -11,13 +11,13 @@
 namespace edged {
 namespace {
 
-/// The covariance of the pose changes slowly, and takes as long as a third of an optimisation.
+/// The covariance of the pose changes slowly, and costs a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
-/// Of fewer features than that on frames there is no map, but of those on event frames beside them.
+/// With fewer features on frames than this the map uses event frames.
 constexpr double kFeaturesForMap = 20.0;
 
-/// After a loss for want of anything in view, the IMU alone tells for so long where the body goes.
+/// After a loss of vision, dead reckoning is used for this time.
 constexpr Duration kDeadReckoning = std::chrono::seconds(10);
 
 TrackedImage without(TrackedImage image, const std::vector<FeatureId>& outliers) {
@@ -119,7 +119,8 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     rig_.cameras[camera] = estimator_.window().calibrated(camera);
   correction.cameras = rig_.cameras;
   correction.landmarks = landmark_depths();
-  // The map filter's drift is that of an odometry with a gyro: without, its pose is a guess as after a loss.
+  // The drift of the map filter is that of an odometry with a gyro: without one, the pose is as uncertain as after a
+  // loss.
   if (result.new_frame) {
     mapper_.restart(T_new_old, body_.now());
   } else if (turned_unseen_) {
@@ -138,8 +139,8 @@ LandmarkDepths Localization::landmark_depths() const {
   return depths;
 }
 
-/// Frames are what the map is of, where they see enough: the look of an event frame changes with the motion; those of
-/// the first camera of the kind.
+/// The map uses frames if these have enough features, as the appearance of an event frame depends on the motion; those
+/// of the first camera of the kind.
 std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const {
   const auto frames = std::ranges::find(rig_.cameras, Modality::Frames, &RigCamera::modality);
   const auto first_frames = static_cast<std::size_t>(frames - rig_.cameras.begin());
@@ -147,7 +148,7 @@ std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::ve
   return without(seen.images[first_frames], outliers).carried() >= kFeaturesForMap ? first_frames : 0;
 }
 
-/// True when the body has been found in the map after a loss.
+/// True when the body has been relocalized in the map.
 bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result) {
   if (!estimator_.initialized() || !config_.map.enabled) return false;
   const auto timer = timings_->measure("map");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Localization: from observations and IMU to states, in the estimator's window and in the map. Renders and tracks
-// nothing.
+// Localization: from observations and IMU to states, in the estimator's window and in the map. It neither renders nor
+// tracks.
 #pragma once
 
 #include <optional>
@@ -34,18 +34,18 @@ class Localization {
   /// cameras: those of the run, event cameras first; config: validated.
   Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config, StageTimings& timings);
 
-  /// Moves the body on to the last of the samples, which begin where it is, and gives that motion.
+  /// Propagates the body to the last of the samples, which begin at its time, and returns that motion.
   Preintegration predict(const std::vector<ImuSample>& imu);
-  /// In O: as predicted, and after process as estimated.
+  /// In O: predicted; after process estimated.
   const BodyMotion& body() const { return body_; }
-  /// motion: as predicted; seen: at its end; external: samples within it, in time order.
+  /// motion: as returned by predict; seen: observations at its end; external: samples within it, in time order.
   LocalizationOutput process(Preintegration motion, const VisionOutput& seen,
                              std::vector<ExternalSample> external = {});
-  /// A clock was set back, and what follows is of a new time: the estimate ends. The next start goes on from where the
-  /// body was, as after a loss.
+  /// A clock was set back and a new time begins: the estimate ends. The next start continues from the last pose, as
+  /// after a loss.
   void begin_time();
 
-  /// As of Odometry.
+  /// As in Odometry.
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
   bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
@@ -65,22 +65,21 @@ class Localization {
   OdometryConfig config_;
   ImuNoise noise_;
   Rig given_rig_;  ///< the cameras of the run
-  Rig rig_;        ///< the same as calibrated so far; its time offsets are those left over
+  Rig rig_;        ///< the same with online calibration; with residual time offsets
   StageTimings* timings_;
   Estimator estimator_;
   Mapper mapper_;
-  FinalTrajectory before_;  ///< of the times before the newest clock
+  FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;
   BodyMotion body_;
   bool gyro_clipped_ = false;   ///< in this packet
   bool turned_unseen_ = false;  ///< it was until this packet
   std::optional<PoseCovariance> covariance_;
   Timestamp covariance_at_;
-  Timestamp dead_reckoning_until_ =
-      Timestamp::min();  ///< without an estimate the IMU alone moves the body on, until then
+  Timestamp dead_reckoning_until_ = Timestamp::min();  ///< without an estimate: end of dead reckoning
 };
 
-/// The packetizer takes the time offsets out; what is left over is up to the estimator.
+/// The packetizer applies the time offsets; the estimator handles residual ones.
 Rig without_offsets(Rig rig);
 
 }  // namespace edged

@@ -17,7 +17,7 @@ constexpr double kPacket_s = 0.05;
 
 class LocalizationInTheTestWorld : public testing::Test {
  protected:
-  /// One packet on; seen: false: of a camera that sees nothing.
+  /// One packet; seen: false: without observations.
   LocalizationOutput step(bool seen = true) {
     ++packet_;
     EstimatorInput input = world_.packet(t(), kPacket_s, packet_ % 4 == 0);
@@ -72,7 +72,7 @@ TEST_F(LocalizationInTheTestWorld, TellsVisionTheDepthsOfLandmarks) {
     right += std::abs(depth->second - truth) < 0.2 * truth ? 1 : 0;
     ++all;
   }
-  EXPECT_GT(right, 0.9 * all) << "the youngest are vague";
+  EXPECT_GT(right, 0.9 * all) << "the youngest are uncertain";
 }
 
 TEST_F(LocalizationInTheTestWorld, GivesStatesInTheMapFrame) {

@@ -10,16 +10,16 @@ namespace edged {
 namespace {
 
 constexpr double kSearchSigmas = 3.0;
-constexpr double kSearchInterval_s = 0.09;  // between images, as long as the place is not known after a loss
+constexpr double kSearchInterval_s = 0.09;  // between images, until relocalization after a loss
 constexpr double kLeastSearch_px = 2.0;
 constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
-constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // that dead reckoning may be off
+constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // bound on the error of dead reckoning
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
-constexpr double kYoungDrift = 5.0;              // of an odometry that has just started, whose scale is still poor
-constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to say how much of it the map shows
+constexpr double kYoungDrift = 5.0;  // of an odometry that has just started, whose scale is still inaccurate
+constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to measure how much of it the map covers
 
-/// One a track.
+/// One per track.
 std::vector<std::optional<Descriptor>> descriptors_of(const TrackedImage& image, const SE3& T_O_C) {
   std::vector<Eigen::Vector2d> pixels, points;
   for (const Track& track : image.tracks) {
@@ -123,7 +123,7 @@ Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const T
   return search;
 }
 
-/// The filter takes what was found, where that agrees, and O is placed by it.
+/// The filter takes the matches if they agree, and corrects T_M_O.
 bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t) {
   const SE3 T_O_B = T_M_O.inverse() * filter.T_M_B();
   std::vector<MapObservation> observations = search.observations();
@@ -145,7 +145,7 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
 }
 
 bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
-  // In a map of another run no dead reckoning tells right from wrong: two looks that agree must be further apart.
+  // In a map of another run no dead reckoning rejects wrong places: two images that agree must be further apart.
   const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
@@ -165,15 +165,15 @@ bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) 
   return found_by_guess || found_by_looks;
 }
 
-/// Whether dead reckoning may have been so far off. Its heading is the gyro's, and good: of places that look alike most
-/// are refused by that.
+/// Whether dead reckoning can be that far off. Its heading is that of the gyro, and accurate, which rejects most
+/// similar places.
 bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
   const SE3 off = (T_M_O_guess_ * T_O_B).inverse() * (T_M_O * T_O_B);
   return off.translation().norm() < kFarthest_m + kFarthest_mps * dead_reckoning_s_ &&
          so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * dead_reckoning_s_;
 }
 
-/// T_M_O by looks alone, of keyframes made then.
+/// T_M_O by place recognition, from keyframes of that time.
 std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const {
   std::vector<Eigen::Vector2d> points;
   for (const Track& track : image.tracks) points.push_back(track.point);
@@ -183,8 +183,9 @@ std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
-/// By looks alone, of what was there before the newest start, or of the map that was taken up. Two images must agree on
-/// where that is, and the points that should then be in view be found. What has been mapped since, from a guess, goes.
+/// Relocalization by place recognition, in the keyframes before the newest start or in the loaded map. Two images must
+/// agree on the pose, and the points that should then be in view must match. Keyframes mapped since, at uncertain
+/// poses, are removed.
 bool Mapper::recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
   const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
   const std::optional<SE3> T_M_O = recognised(image, T_O_C, before);

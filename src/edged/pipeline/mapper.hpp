@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The odometry's joint with the map: what its keyframes looked like, where it is by what was seen before, and what the
-// map keeps of a keyframe that leaves the window.
+// Connects the odometry to the map: appearance of its keyframes, map matches, relocalization, and keyframes that leave
+// the window for the map.
 #pragma once
 
 #include <deque>
@@ -22,55 +22,54 @@ namespace edged {
 
 class Mapper {
  public:
-  /// lost_after_s: StatusConfig's. The last estimate may have been without landmarks for so long.
+  /// lost_after_s: StatusConfig's. For this time the last estimate may have been without landmarks.
   Mapper(const MapConfig& config, double lost_after_s);
 
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
   void restart(const SE3& T_new_old, const OdomState& now);
-  /// O goes on, but how the body turned until now nobody knows: where it is in M is a guess, as after a start.
+  /// O continues, but the rotation until now is unknown: its pose in M is uncertain, as after a start.
   void doubt(const OdomState& now);
-  /// What follows is of a new time: the map of the time before is let go, the body goes on from where it is.
+  /// A new time begins: the map is discarded, the body continues from its pose.
   void begin_time();
-  /// The odometry has come to `now`.
+  /// The odometry has reached `now`.
   void predict(const OdomState& now);
-  /// Looks for the map in the image, and after a new start, until relocalized, everywhere: true when it has
-  /// been just now. T_O_C: of the image's camera and instant.
+  /// Matches the map in the image; after a new start, until relocalized, by place recognition: true when it has just
+  /// been relocalized. T_O_C: of the image's camera and instant.
   bool localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
-  /// The packet has become a keyframe, which looks like this.
+  /// The packet has become a keyframe, with this image.
   void keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
-  /// A keyframe has left the window: kept where the map gains by it.
+  /// A keyframe has left the window: kept if it is worth it.
   void take(const KeyframeRecord& record);
 
-  /// That pose of the odometry has been given out.
+  /// That pose of the odometry has been published.
   void note(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
 
-  /// How long the pose has gone on dead reckoning alone, at the newest start [s]. It bounds where relocalization may
-  /// find the body.
+  /// Time of dead reckoning at the newest start [s]. It bounds the result of relocalization.
   double dead_reckoning_s() const { return dead_reckoning_s_; }
 
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
-  /// What was found in the image of that instant.
+  /// The map matches in the image of that instant.
   std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
   /// In M.
   FinalTrajectory final_trajectory() const;
 
-  /// Takes up a map that was made before, in place of what there is. Where this run is in it is not known until a place
-  /// of it has been recognised: so long M is a frame of this run's own.
+  /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
   void load(const SavedMap& map);
   bool started() const { return !record_.empty(); }
-  /// All but the cameras. Nothing while awaiting relocalization in a loaded map: what this run has seen lies
-  /// in another frame than that.
+  /// All but the cameras. Nothing while awaiting relocalization in a loaded map: keyframes of this run are in another
+  /// frame than that.
   std::optional<SavedMap> save() const;
   bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
 
  private:
-  /// Points that should be in view, and what was found of them.
+  /// Points that should be in view, and their matches.
   struct Search {
     std::vector<Candidate> candidates;
     SE3 T_B_C;
     std::vector<MapObservation> observations() const;
   };
-  /// When keyframes were made whose place against the body is known: not those of a map that has not been found yet.
+  /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
+  /// it.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   void begin_start(const OdomState& now);
   Search search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C, Period made);
@@ -87,17 +86,17 @@ class Mapper {
   MapFilter filter_;
   TrajectorySmoother record_;
   OdomToMap odom_to_map_;
-  std::deque<MapKeyframe> in_window_;  ///< what keyframes look like whose poses and depths the window still refines
-  std::vector<MapMatch> found_;        ///< in the newest image that was looked at
+  std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
+  std::vector<MapMatch> found_;        ///< in the newest image that was matched
   std::optional<Timestamp> looked_at_;
-  Timestamp predicted_;            ///< newest word of the odometry
+  Timestamp predicted_;            ///< newest pose of the odometry
   Timestamp started_;              ///< the estimator's newest start
   SE3 T_M_O_guess_;                ///< there, by dead reckoning
-  double dead_reckoning_s_ = 0.0;  ///< how long it had gone on that alone, since what is older was last found
+  double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes
   bool searching_ = false;         ///< since then nothing older has been matched
-  /// While set, keyframes before that are of a map that was taken up, and where the body is in it is not known.
+  /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
   std::optional<Timestamp> unlocated_before_;
-  std::optional<SE3> recognised_;  ///< T_M_O by the last image's looks, waiting for another that agrees
+  std::optional<SE3> recognised_;  ///< T_M_O by place recognition in the last image, to be confirmed by another
 };
 
 }  // namespace edged

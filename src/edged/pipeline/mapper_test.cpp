@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The mapper before a wall, with odometry that is off by a known shift.
+// The mapper in front of a wall, with odometry that is off by a known shift.
 #include "edged/pipeline/mapper.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Timestamp second(double t_s) { return timestamp_from_seconds(t_s); }
 
 class MapperBeforeAWall : public testing::Test {
  protected:
-  /// x of the body looks at the wall, z is up.
+  /// The camera axis is x of the body, towards the wall; z is up.
   const SE3 T_B_C_{Eigen::Quaterniond(Eigen::Matrix3d{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}}), Eigen::Vector3d::Zero()};
 
   static SE3 shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
@@ -74,7 +74,7 @@ TEST_F(MapperBeforeAWall, CorrectsTheDriftByWhatWasSeenBefore) {
   EXPECT_GT(mapper.map_matches(second(12.0)).size(), 20U);
   EXPECT_TRUE(mapper.map_matches(second(11.0)).empty());
   const SE3 corrected = mapper.odom_to_map().T_M_O() * T_O_B;
-  const Eigen::Vector3d wall_B(2.0, 0.0, 0.0);  // before it a shift and a turn look much the same
+  const Eigen::Vector3d wall_B(2.0, 0.0, 0.0);  // in front of it translation and rotation are hard to separate
   EXPECT_LT((corrected * wall_B - T_M_B * wall_B).norm(), 0.006) << "it was off by 0.01";
 }
 

@@ -71,7 +71,7 @@ std::string mode_name(Mode mode) {
 
 Mode parse_mode(const std::string& name) {
   const auto found = kModes.find(name);
-  if (found == kModes.end()) throw InputError::format("mode '{}': there are events, frames and fused", name);
+  if (found == kModes.end()) throw InputError::format("mode '{}': use events, frames or fused", name);
   return found->second;
 }
 

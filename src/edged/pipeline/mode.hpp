@@ -17,15 +17,15 @@ constexpr bool uses(Mode mode, Modality modality) {
   return mode != (modality == Modality::Events ? Mode::Frames : Mode::Events);
 }
 
-/// Of the option `cameras`: what stands between its commas, without the blanks around.
+/// The names in the option `cameras`, separated by commas, without blanks.
 std::vector<std::string> camera_names(const std::string& list);
 
-/// The cameras of a run: those of events, then those of frames, each as the rig has them. wanted: their names,
-/// separated by commas, of which the mode uses what is of its modalities; empty: the first of each. Throws InputError,
-/// with the names there are, for a name that there is not or that comes twice, and where none is left of a modality.
+/// The cameras of a run: event cameras, then frame cameras, each in the order of the rig. wanted: their names,
+/// separated by commas, of which the mode uses those of its modalities; empty: the first of each. Throws an InputError
+/// that lists the known names, for a name that is unknown or given twice, and if a modality has none.
 Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted = "");
 
-/// The mode asked for, or for "auto" the most that the recording holds. Throws InputError where it lacks a sensor.
+/// The given mode, or for "auto" the one with all modalities of the recording. Throws InputError if it lacks a sensor.
 Mode choose_mode(const std::string& wanted, const DatasetInfo& info);
 
 }  // namespace edged

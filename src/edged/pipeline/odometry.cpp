@@ -29,7 +29,7 @@ struct Odometry::Impl {
   StatePrediction prediction;  // any thread's
   std::function<Packetizer(const PacketizerCounters& so_far)> new_packetizer;
   Packetizer packetizer;
-  std::optional<Measurement> begins_time;  // waits for the packets of the time before
+  std::optional<Measurement> begins_time;  // held back until the packets of the time before are done
   PacketOdometry packet_odometry;
   bool finished = false;
 };
@@ -64,7 +64,7 @@ Odometry::Odometry(Odometry&& other) noexcept = default;
 Odometry& Odometry::operator=(Odometry&& other) noexcept = default;
 
 void Odometry::add(Measurement measurement) {
-  // First the prediction: a step may end at the sample as soon as the intake has it.
+  // The prediction first: a step may end at the sample as soon as the intake has it.
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) impl_->prediction.add(*sample);
   impl_->intake.add(std::move(measurement));
 }

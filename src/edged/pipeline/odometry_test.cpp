@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A body at rest before a picture of blocks: small enough for every sanitizer, and yet the whole odometry.
+// A body at rest in front of an image of blocks: the whole odometry, small enough for every sanitizer.
 #include "edged/odometry.hpp"
 
 #include <gtest/gtest.h>
@@ -131,12 +131,12 @@ TEST(Odometry, ComesBackWhereTheClocksOfItsSensorsAreDecadesApart) {
   for (int ms = 0; ms < 500; ms += 5) {
     odometry.add(resting(stamp(ms) + std::chrono::years(50)));
     if (ms >= 200) odometry.add(EventBatch{"dvs", {{stamp(ms), 1, 2, true}}});
-    while (odometry.next()) ++steps;  // at standstill, as far as the IMU's clock says
+    while (odometry.next()) ++steps;  // at standstill, on the clock of the IMU
   }
   EXPECT_LT(steps, 20);
 }
 
-/// As of the clock that measured them.
+/// On the clock of their sensor.
 Measurement shifted(Measurement m, Duration by) {
   if (auto* batch = std::get_if<EventBatch>(&m)) {
     for (Event& event : batch->events) event.t += by;
@@ -315,7 +315,7 @@ TEST(Odometry, CountsWhatIsBadAndNeverThrows) {
 TEST(Odometry, LosesNothingOfSensorsThatLagWithinTheirDelaysAndCountsWhatTheyLoseBeyond) {
   std::vector<Measurement> all = measurements(1500);
   const Numbers wanted = fed_in_order(all, Mode::Fused);
-  // The events come 30 ms, the frames 45 ms after the IMU sample of their time.
+  // The events arrive 30 ms, the frames 45 ms after the IMU sample of their time.
   const auto arrival = [](const Measurement& m) {
     const int lag_ms = std::holds_alternative<EventBatch>(m) ? 30 : std::holds_alternative<Frame>(m) ? 45 : 0;
     return *last_stamp(m) + std::chrono::milliseconds(lag_ms);
@@ -391,10 +391,10 @@ TEST(Odometry, RefusesOptionsRigsAndNoiseThatCannotBe) {
   ImuNoise silent;
   silent.gyro_noise = 0.0;
   EXPECT_THROW(Odometry(small_rig(), silent, Mode::Fused), InputError);
-  Rig blind = small_rig();
-  blind.cameras.pop_back();
-  EXPECT_THROW(Odometry(blind, {}, Mode::Fused), InputError);
-  EXPECT_NO_THROW(Odometry(blind, {}, Mode::Events));
+  Rig events_only = small_rig();
+  events_only.cameras.pop_back();
+  EXPECT_THROW(Odometry(events_only, {}, Mode::Fused), InputError);
+  EXPECT_NO_THROW(Odometry(events_only, {}, Mode::Events));
 }
 
 }  // namespace

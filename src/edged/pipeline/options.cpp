@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-/// What a user may have reason to change; all else is for who works on the method.
+/// Options for users; all others are for developers of the method.
 constexpr std::string_view kForEveryone[] = {
     "cameras",
     "packets.events_per_pixel",
@@ -160,7 +160,7 @@ void AlignmentConfig::visit(ConfigFields& fields) {
 }
 
 OdometryConfig::OdometryConfig() {
-  event_tracker.sigma_px = 1.5;      // the look of an event frame changes with the direction of motion,
+  event_tracker.sigma_px = 1.5;      // the appearance of an event frame changes with the direction of motion,
   event_tracker.klt.window_px = 15;  // and in the dark, and in fast motion, it is noisy
   event_tracker.templates.patch.min_similarity = 0.7;
 }

@@ -19,7 +19,7 @@ TEST(OdometryConfig, MostOptionsAreForExpertsAndStandLast) {
   OdometryConfig config;
   const ConfigFields fields = ConfigFields::of(config);
   const auto first_expert = std::ranges::find_if(fields.all(), &ConfigField::expert);
-  EXPECT_EQ(first_expert - fields.all().begin(), 48) << "a name in the list that is no option, or one declared anew";
+  EXPECT_EQ(first_expert - fields.all().begin(), 48) << "a name in the list that is no option, or one declared again";
   EXPECT_TRUE(std::all_of(first_expert, fields.all().end(),
                           [](const ConfigField& field) { return field.expert && field.key.starts_with("expert."); }));
 }
@@ -36,7 +36,7 @@ TEST(OdometryConfig, HasAtMost152OptionsAndOneTrackerGroup) {
   EXPECT_EQ(config.frame_tracker.sigma_px, OdometryConfig().frame_tracker.sigma_px);
 }
 
-/// Of one option of the tracker two keys, where and only where the defaults differ.
+/// Two keys for an option of the tracker if and only if the defaults differ.
 TEST(OdometryConfig, HasTrackerOptionsPerKindWhereDefaultsDiffer) {
   OdometryConfig config;
   const auto texts = [](TrackerConfig& tracker) {

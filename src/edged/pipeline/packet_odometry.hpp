@@ -14,7 +14,7 @@
 
 namespace edged {
 
-/// Synchronous and deterministic: the same packets give the same bits; but for a depth network that has a thread of its
+/// Synchronous and deterministic: the same packets give the same bits, except with a depth network in a thread of its
 /// own.
 class PacketOdometry {
  public:
@@ -25,11 +25,11 @@ class PacketOdometry {
 
   /// Packets in time order. Never throws on data; lost tracking is a status.
   Step process(Packet packet);
-  /// A clock was set back, and the packets that follow are of a new time: tracks and estimate end.
+  /// A clock was set back and a new time begins: tracks and estimate end.
   void begin_time();
 
   Localization& localization() { return localization_; }
-  /// Of the stages; whoever calls may add his own.
+  /// Of the stages; callers may add their own.
   StageTimings& timings() { return timings_; }
 
  private:

@@ -14,17 +14,17 @@ namespace edged {
 namespace {
 
 constexpr Duration kTick(1);
-constexpr Duration kHole = std::chrono::seconds(1);  // a silence of all sensors: no heartbeats inside
+constexpr Duration kHole = std::chrono::seconds(1);  // a gap of all sensors: no cuts by time inside
 constexpr Duration kImuBeforeFirst = std::chrono::seconds(20);
-constexpr Duration kFramesGivenUp = std::chrono::seconds(5);          // longer than any status takes to become Lost
-constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // slower frames are not waited for
+constexpr Duration kFramesGivenUp = std::chrono::seconds(5);          // longer than the status takes to become Lost
+constexpr Duration kMaxFramePeriod = std::chrono::milliseconds(500);  // no waiting for slower frames
 constexpr std::size_t kMaxWaitingPackets = 256;
 constexpr std::size_t kMaxWaitingExternal = 100'000;
 
-/// Frames of several cameras that lie closer belong together.
+/// Frames of several cameras closer in time than this belong together.
 constexpr Duration kSynchronised = std::chrono::milliseconds(1);
-/// Batches of two event cameras overlap, and where they are cut is chance: so long as IMU samples or frames come, which
-/// events they follow does not depend on that, they alone tell how far all has come.
+/// Batches of two event cameras overlap, and their boundaries are arbitrary. While IMU samples or frames arrive, only
+/// these mark the progress of the stream, as their order among the events does not depend on the boundaries.
 constexpr Duration kEventsAlone = std::chrono::seconds(1);
 
 std::size_t events_in(const Packet& packet) {
@@ -74,8 +74,8 @@ Packetizer::FrameCamera* Packetizer::find_frame_camera(const std::string& name) 
   return found == frame_cameras_.end() ? nullptr : &*found;
 }
 
-/// The stream is in the order of the recorded stamps, ties broken IMU, events, frame: what can still come is not before
-/// that of the newest measurement, and after a frame not at it either, unless there is another frame camera.
+/// The stream is in the order of the recorded stamps, ties broken IMU, events, frame: later measurements are not before
+/// the stamp of the newest one, and after a frame not at it either, unless there is another frame camera.
 void Packetizer::add(Measurement measurement) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
     if (batch->events.empty()) return;
@@ -101,12 +101,12 @@ void Packetizer::advance_clock(Timestamp recorded, Timestamp complete) {
   complete_ = std::max(complete_, complete);
 }
 
-/// The first event or frame: time starts just before it.
+/// The first event or frame: packets start just before it.
 void Packetizer::start_at(Timestamp t) {
   if (started_) return;
   started_ = true;
   last_cut_ = heartbeat_from_ = t - kTick;
-  // Another sensor is far ahead already, by another clock or a damaged stamp: no heartbeats from here to there.
+  // Another sensor is far ahead already, by another clock or a damaged stamp: no cuts by time from here to there.
   const Timestamp complete = complete_ + event_offset_;
   if (complete - t > kHole) heartbeat_from_ = complete;
 }
@@ -162,7 +162,7 @@ void Packetizer::add_external(const ExternalSample& sample) {
   ++counters_.external_lost;
 }
 
-/// Those after `from`, up to `to`; what is older is dropped.
+/// Those after `from`, up to `to`; older ones are dropped.
 std::vector<ExternalSample> Packetizer::take_external(Timestamp from, Timestamp to) {
   std::vector<ExternalSample> taken;
   for (; !external_.empty() && time_of(external_.front()) <= to; external_.pop_front()) {
@@ -191,10 +191,10 @@ std::optional<Packetizer::Cut> Packetizer::next_cut(Timestamp complete_until) co
   return std::nullopt;
 }
 
-/// Without event cameras: where a packet without a frame is cut.
+/// Without event cameras: the cut of a packet without a frame.
 Timestamp Packetizer::frames_given_up() const { return heartbeat_from_ + kFramesGivenUp; }
 
-/// Where a count or the longest time cuts, unless a frame comes before.
+/// The cut by a count or by the longest time, unless a frame is before it.
 Timestamp Packetizer::next_event_cut() const {
   Timestamp t = heartbeat_from_ + duration_from_seconds(config_.max_interval_s);
   for (const EventHistory& history : events_) t = std::min(t, history.complete().value_or(t));
@@ -226,12 +226,12 @@ void Packetizer::make_packet(const Cut& cut) {
   drop_overflow();
 }
 
-/// The one that cuts, and those of other cameras that belong to it.
+/// The frame that cuts, and those of other cameras that belong to it.
 void Packetizer::take_frames(Packet& packet) {
   while (!frames_.empty() && frames_.front().t <= packet.t + frame_patience_) {
     const Timestamp t = frames_.front().t;
     FrameCamera& camera = *find_frame_camera(frames_.front().camera);
-    if (camera.cut >= packet.t) return;  // is in already: this one cuts the next packet
+    if (camera.cut >= packet.t) return;  // has a frame already: this one cuts the next packet
     if (camera.cut) {
       camera.period = t - *camera.cut;
       camera.expected.reset();

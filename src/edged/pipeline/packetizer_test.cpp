@@ -58,7 +58,7 @@ struct Result {
   PacketizerCounters counters;
 };
 
-constexpr PacketizerConfig kQuick{.min_interval_s = 0.015};  // little data makes many packets
+constexpr PacketizerConfig kQuick{.min_interval_s = 0.015};  // little data for many packets
 Result run(Stream stream, Mode mode, const Rig& rig = make_rig(), const PacketizerConfig& config = kQuick) {
   const auto rank = [](const Measurement& m) {
     return std::holds_alternative<ExternalSample>(m) ? -1
@@ -156,7 +156,7 @@ TEST(Packetizer, CutsAtEveryFrameWithTheEventsUpToItsStamp) {
     ASSERT_EQ(packet.frames.size(), 1U);
     EXPECT_EQ(packet.frames[0].t, packet.t);
     EXPECT_NEAR(to_ms(packet.t), 10.0 + 20.0 * static_cast<double>(i), 1e-6);
-    EXPECT_EQ(packet.events[0].events.back().t, packet.t);  // the event at the frame's own stamp is in
+    EXPECT_EQ(packet.events[0].events.back().t, packet.t);  // the event at the frame's own stamp is included
     EXPECT_EQ(packet.events[0].new_events, i == 0 ? 6U : 10U);
   }
   EXPECT_EQ(result.counters.events_lost, 5U);  // after the last frame, 10 ms: too short for a packet
@@ -189,7 +189,7 @@ TEST(Packetizer, CutsWithoutAFrameThatFailsToCome) {
 
 TEST(Packetizer, CutsAtAFrameHoweverShortlyAfterAnEventPacket) {
   Stream stream = Stream().imu(-10, 100, 1).events(0, 60, 1);
-  stream.frames(36, 36, 1);  // the count is reached at 34 ms; nothing told of this frame
+  stream.frames(36, 36, 1);  // the count is reached at 34 ms; this frame was not expected
   const Result result = run(stream, Mode::Fused);
   ASSERT_GE(result.packets.size(), 2U);
   EXPECT_TRUE(result.packets[0].frames.empty());

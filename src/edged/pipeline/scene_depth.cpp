@@ -7,7 +7,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kFresh = std::chrono::milliseconds(500);  // a held depth is good for the warp, but measures nothing
+constexpr Duration kFresh = std::chrono::milliseconds(500);  // a held depth serves the warp, but is no measurement
 
 }  // namespace
 

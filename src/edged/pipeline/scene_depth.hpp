@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The depth of the scene at work: for the warp and the prediction of tracks (paper Eq. 2, 4), and for the estimator's
-// depth factor (Eq. 5), which needs a source that does not know the landmarks.
+// The scene depth of a run: for the warp and the prediction of tracks (paper Eq. 2, 4), and for the estimator's depth
+// factor (Eq. 5), whose source must not use the landmarks.
 #pragma once
 
 #include <memory>
@@ -17,19 +17,19 @@ namespace edged {
 
 class SceneDepth {
  public:
-  /// camera: the event camera, or the frame camera where there is none: then a network has nothing to say. for_factor:
-  /// run the network for the depth factor, whatever the source of the warp's depth is.
+  /// camera: the event camera, or the frame camera if there is none: then a network has no input. for_factor: run the
+  /// network for the depth factor, independent of the depth source of the warp.
   SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor,
              Inference inference = Inference::Synchronous);
 
   /// New events, raw pixels, in time order.
   void add_events(std::span<const Event> events);
-  /// All landmarks in view at t, as the camera sees them.
+  /// All landmarks in view at t, in the camera.
   void add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) { prior_->add_landmarks(t, landmarks); }
 
-  /// z-depth [m]; the constant where nothing is known.
+  /// z-depth [m]; the constant if no source has one.
   double at(Timestamp t) const;
-  /// What Eq. 5 compares the landmarks with.
+  /// The depth that Eq. 5 compares with the landmarks.
   std::optional<RegionDepth> for_factor(Timestamp t) const;
 
  private:

@@ -20,7 +20,7 @@ constexpr std::size_t kMostSamples = 1'000'000;
 
 std::size_t bytes_of(const EventBatch& batch) { return batch.events.size() * sizeof(Event); }
 std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.image.elemSize(); }
-// Samples are bounded by their number: none makes way for an image.
+// Samples are bounded by their number: none is dropped for an image.
 std::size_t bytes_of(const ImuSample&) { return 0; }
 std::size_t bytes_of(const ExternalSample&) { return 0; }
 
@@ -43,9 +43,9 @@ void SensorDelays::validate() const {
 
 Sequencer::Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes)
     : most_bytes_(most_bytes), imu_{"", {}} {
-  Duration least(0);  // of t_imu - t_cam: whose clock is the farthest ahead
+  Duration least(0);  // maximum of t_imu - t_cam: the clock that is farthest ahead
   for (const RigCamera& camera : cameras.cameras) least = std::min(least, camera.time_offset);
-  // What a clock is behind that by, its sensor lags by.
+  // The lag of a clock behind that adds to the lag of its sensor.
   const auto delay = [&](double seconds, Duration offset) {
     return delays == kInOrder ? Duration(0) : duration_from_seconds(seconds) + offset - least;
   };
@@ -81,7 +81,7 @@ bool Sequencer::add(Measurement measurement) {
         }
       },
       measurement);
-  // Another clock of an external sensor must not make all others late.
+  // An external sensor with another clock must not make all others late.
   if (taken && !external) newest_ = std::max(newest_.value_or(*last), *last);
   return taken;
 }
@@ -104,7 +104,8 @@ bool Sequencer::push(Line<T>& line, T item, Timestamp last) {
   return true;
 }
 
-/// Of what the line may still give: of the first that waits, else of the first that can still come.
+/// The lower bound of the line's next stamp: that of its first queued measurement, else of the earliest that can still
+/// arrive.
 template <typename T>
 Timestamp Sequencer::earliest(const Line<T>& line) const {
   if (!line.waiting.empty()) {
@@ -115,14 +116,14 @@ Timestamp Sequencer::earliest(const Line<T>& line) const {
     }
   }
   if (finished_ || bytes_ > most_bytes_ / 2) return Timestamp::max();
-  if (std::is_same_v<T, ExternalSample> && !line.newest) return Timestamp::max();  // there may be no such sensor
+  if (std::is_same_v<T, ExternalSample> && !line.newest) return Timestamp::max();  // such a sensor may be missing
   const Timestamp not_too_late = *newest_ - line.delay + kNextTick;
   if (!line.newest) return not_too_late;
   const Duration step = std::is_same_v<T, EventBatch> ? Duration(0) : kNextTick;  // two batches may share a stamp
   return std::max(*line.newest + step, not_too_late);
 }
 
-/// Whose turn comes first; ties in the order of the cameras. Null without any.
+/// The line with the earliest stamp; ties in the order of the cameras. Null without any.
 template <typename T>
 Sequencer::Line<T>* Sequencer::first_of(std::vector<Line<T>>& lines) {
   const auto first = std::ranges::min_element(lines, {}, [this](const Line<T>& line) { return earliest(line); });
@@ -153,7 +154,7 @@ std::optional<Measurement> Sequencer::next() {
 
 template <typename T>
 std::optional<Measurement> Sequencer::pop(Line<T>& line) {
-  if (line.waiting.empty()) return std::nullopt;  // it may still come
+  if (line.waiting.empty()) return std::nullopt;  // it may still arrive
   T item = std::move(line.waiting.front());
   line.waiting.pop_front();
   bytes_ -= bytes_of(item);

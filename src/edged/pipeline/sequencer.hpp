@@ -15,32 +15,33 @@
 
 namespace edged {
 
-/// Each sensor's own measurements in order, those of different sensors as they come. What a sensor may still precede is
-/// held back; what comes later than its delay goes out at once, out of order, for the packetizer to use or to count.
-/// With kInOrder all goes out as it came, a sample of an external sensor with the next measurement of another. The
-/// order that comes out does not depend on how the sensors lag, as long as they keep to their delays.
+/// Input: each sensor's own measurements in order, those of different sensors interleaved in any way. A measurement is
+/// held back while another sensor may still precede it; one that is later than its delay is returned at once, out of
+/// order, and the packetizer uses or counts it. With kInOrder the order is that of the input, with samples of external
+/// sensors before the next measurement of another. The order does not depend on the lags of the sensors, as long as
+/// these are within their delays.
 ///
-/// When half of most_bytes waits, no sensor is waited for any longer; beyond most_bytes of events and frames, or a
-/// million IMU samples, nothing more is taken.
+/// When the queues reach half of most_bytes, nothing is held back any longer; beyond most_bytes of events and frames,
+/// or a million IMU samples, no more input is accepted.
 class Sequencer {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
 
-  /// Waits for these cameras and the IMU. The delays are valid, as of validate(); what the clocks of the cameras differ
-  /// by comes on top of them, as stamps are compared as recorded.
+  /// Waits for these cameras and the IMU. The delays are valid, as of validate(); the differences of the camera clocks
+  /// are added to them, as stamps are compared as recorded.
   Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
 
-  /// False when there is no room for it, or after finish(). Batches without events are passed over. Of those cameras.
+  /// False when there is no room for it, or after finish(). Empty batches are ignored. Only of those cameras.
   bool add(Measurement measurement);
-  /// No more will come: all that waits goes out.
+  /// The end of the input: next() returns all that is held back.
   void finish() { finished_ = true; }
 
-  /// The next measurement, a batch of events up to the next IMU sample or frame; nothing as long as another may precede
-  /// it. Batches of two event cameras may overlap, in the order of their first events.
+  /// The next measurement, a batch of events up to the next IMU sample or frame; nothing while another may precede it.
+  /// Batches of two event cameras may overlap, in the order of their first events.
   std::optional<Measurement> next();
-  /// After finish(), and all has gone out.
+  /// After finish(), when all has been returned.
   bool ended() const { return finished_ && waiting() == 0; }
-  /// How many measurements have not gone out.
+  /// Number of measurements held back.
   std::size_t waiting() const;
 
  private:
@@ -49,7 +50,7 @@ class Sequencer {
     std::string camera;  ///< or sensor
     Duration delay;
     std::deque<T> waiting = {};
-    std::size_t events_out = 0;  ///< of the first batch that waits
+    std::size_t events_out = 0;  ///< of the first queued batch
     std::optional<Timestamp> newest = {};
   };
 
@@ -64,11 +65,12 @@ class Sequencer {
   Line<T>* first_of(std::vector<Line<T>>& lines);
 
   std::size_t most_bytes_;
-  std::vector<Line<EventBatch>> events_;  // one a camera, no batch empty
-  std::vector<Line<Frame>> frames_;       // one a camera
+  std::vector<Line<EventBatch>> events_;  // one per camera, no batch empty
+  std::vector<Line<Frame>> frames_;       // one per camera
   Line<ImuSample> imu_;
-  std::vector<Line<ExternalSample>> external_;  // one a sensor, as in ExternalSample; their stamps move no other line
-  std::size_t bytes_ = 0;                       // of the events and frames that wait
+  std::vector<Line<ExternalSample>>
+      external_;           // one per sensor, as in ExternalSample; their stamps do not affect other lines
+  std::size_t bytes_ = 0;  // of the queued events and frames
   std::optional<Timestamp> newest_;
   bool finished_ = false;
 };

@@ -99,9 +99,9 @@ TEST(Sequencer, WaitsForASilentSensorAsLongAsItsDelayAndNoLonger) {
   EXPECT_EQ(ready(sequencer), "i10");
   sequencer.add(events({35}));
   sequencer.add(frame(38));
-  EXPECT_EQ(ready(sequencer), "e35") << "before the frame events up to 38 may still come";
+  EXPECT_EQ(ready(sequencer), "e35") << "before the frame events up to 38 may still arrive";
   sequencer.add(events({39}));
-  EXPECT_EQ(ready(sequencer), "f38") << "before the sample at 39 a frame may still come";
+  EXPECT_EQ(ready(sequencer), "f38") << "before the sample at 39 a frame may still arrive";
 }
 
 TEST(Sequencer, DoesNotWaitForSensorsThatTheModeDoesNotUse) {
@@ -131,7 +131,7 @@ std::vector<Measurement> one_second() {
   return all;
 }
 
-/// Every event by itself, as batches may be cut anywhere.
+/// Every event by itself, as batch boundaries are arbitrary.
 std::string order_of(Sequencer& sequencer) {
   std::string text;
   while (const auto m = sequencer.next()) {
@@ -178,7 +178,7 @@ TEST(Sequencer, HoldsABoundedAmountAndStopsWaitingBefore) {
   EXPECT_EQ(ready(waiting), "e0") << "and waits again";
   for (int ms = 51; ms < 101; ++ms) EXPECT_TRUE(waiting.add(events({ms})));
   EXPECT_FALSE(waiting.add(events({101})));
-  EXPECT_TRUE(waiting.add(imu(101))) << "a hole in the IMU would end the estimate";
+  EXPECT_TRUE(waiting.add(imu(101))) << "a gap in the IMU would end the estimate";
 }
 
 TEST(Sequencer, TakesNothingAfterTheEndAndPassesOverEmptyBatches) {

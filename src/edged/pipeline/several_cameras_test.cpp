@@ -43,7 +43,7 @@ cv::Mat random_blocks(unsigned seed) {
   return image;
 }
 
-/// In the order of a Dataset. The second frame camera's come so much later.
+/// In the order of a Dataset. Frames of the second frame camera arrive so much later.
 std::vector<Measurement> recording(int length_ms, double second_frame_ms = 0.0) {
   std::vector<Measurement> all;
   std::mt19937 random(2);

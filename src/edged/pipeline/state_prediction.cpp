@@ -13,14 +13,14 @@ namespace {
 
 constexpr Duration kKept = std::chrono::seconds(20);
 constexpr Duration kBack = std::chrono::seconds(1);
-constexpr Duration kLongest = std::chrono::seconds(1);  // of a prediction: the IMU alone drifts by metres soon
+constexpr Duration kLongest = std::chrono::seconds(1);  // longest prediction: dead reckoning soon drifts by metres
 
-/// The last of what propagates from `start`, which is at the first sample.
+/// The state at the last sample, propagated from `start` at the first one.
 OdomState propagated(const OdomState& start, std::span<const ImuSample> samples) {
   return propagate_all(start, samples).back();
 }
 
-/// The IMU asks no more of a frame than that z is up, and M does for O as long as the map does not move O.
+/// The IMU only needs a frame with z up, so M can replace O while the map does not change T_M_O.
 OdomState as_odometry(const NavState& s) { return {s.t, s.T_W_B, s.v_W, s.bias_gyro, s.bias_accel}; }
 NavState in_map(const OdomState& s) { return {s.t, s.T_O_B, s.v_O, s.bias_gyro, s.bias_accel}; }
 

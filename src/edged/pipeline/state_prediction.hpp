@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The state of the body between the newest estimate and the newest IMU sample: what a controller needs.
+// The state of the body between the newest estimate and the newest IMU sample: for a controller.
 #pragma once
 
 #include <mutex>
@@ -13,17 +13,17 @@
 
 namespace edged {
 
-/// From any thread, and cheap: a sample costs one step of integration, an estimate as many as samples have come since.
+/// From any thread, and cheap: a sample costs one step of integration, an estimate one per sample since.
 class StatePrediction {
  public:
-  /// Samples in time order; one that is not, or holds what is no number, is passed over; after a jump of more than 20 s
-  /// ahead or 1 s back it begins anew. Without an estimate for long, those of the last 20 to 40 s are kept.
+  /// Samples in time order; one that is not, or is not finite, is ignored; after a jump of more than 20 s ahead or 1 s
+  /// back it starts again. Without an estimate the samples of the last 20 to 40 s are kept.
   void add(const ImuSample& sample);
 
-  /// The newest estimate; nothing when there is none to go by.
+  /// The newest estimate; nothing without one.
   void correct(const std::optional<NavState>& estimate);
 
-  /// At the newest sample; the estimate itself where none has come since. Nothing without an estimate.
+  /// At the newest sample; the estimate itself without later samples. Nothing without an estimate.
   std::optional<NavState> newest() const;
   /// At a time between the estimate and the newest sample, else nothing.
   std::optional<NavState> at(Timestamp t) const;

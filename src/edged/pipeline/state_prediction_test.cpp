@@ -62,7 +62,7 @@ TEST(StatePrediction, StartsAnewFromEveryEstimateAndEndsWithTheLast) {
   EXPECT_GT((prediction.newest()->v_W - true_state(0.5).v_W).norm(), 0.9);
   prediction.correct(true_state(0.3));
   expect_near(prediction.newest(), 0.5);
-  prediction.correct(true_state(0.5));  // no sample has come since
+  prediction.correct(true_state(0.5));  // no later sample
   expect_near(prediction.newest(), 0.5);
   prediction.add(sample(0.505));
   expect_near(prediction.newest(), 0.505);

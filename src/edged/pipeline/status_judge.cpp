@@ -41,7 +41,7 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
   const double drifting_s = last_velocity_ ? std::min(alone_s, to_seconds(t - *last_velocity_)) : alone_s;
   reason_.clear();
   if (!result.plausible) {
-    reason_ = "the solution has broken down";
+    reason_ = "the solution has diverged";
   } else if (const double most = patience_ * config_.lost_strain; result.imu_strain > most) {
     reason_ = fmt::format(
         "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "

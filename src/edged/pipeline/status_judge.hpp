@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Judges how far the present pose can be relied on.
+// Determines the tracking status.
 #pragma once
 
 #include <optional>
@@ -14,26 +14,27 @@
 
 namespace edged {
 
-/// Judges what the estimator says, packet by packet. Each loss by strain makes it bear half as much again: what comes
-/// back after a new start is not the world's doing, but an IMU noisier than its calibration says.
+/// Determines the tracking status from the estimator's results, packet by packet. Each loss by IMU strain raises its
+/// limit by half: strain that recurs after a new start is not caused by the scene, but by an IMU noisier than its
+/// calibration.
 class StatusJudge {
  public:
   explicit StatusJudge(const StatusConfig& config) : config_(config) {}
 
   /// Of a packet at t; while the estimator has not started, Initializing before its first start and Lost after.
   TrackingStatus judge(const EstimatorResult& result, bool started, Timestamp t);
-  /// The estimate has been ended from outside.
+  /// The estimate was ended by another part.
   void lose(std::string reason) { reason_ = std::move(reason); }
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
-  /// The last one was Lost only because nothing was seen any more: it was right until then.
+  /// The last loss was only a loss of vision: the estimate was valid until then.
   bool vision_lost() const { return vision_lost_; }
 
  private:
   StatusConfig config_;
   bool ever_started_ = false;
   double patience_ = 1.0;                    ///< multiplies the limits of strain
-  std::optional<Timestamp> last_supported_;  ///< by landmarks or rest, since the start
+  std::optional<Timestamp> last_supported_;  ///< by landmarks or standstill, since the start
   std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
   std::string reason_;
   bool vision_lost_ = false;

@@ -63,7 +63,7 @@ TEST(StatusJudge, DoubtsAWindowThatStrainsTheImu) {
   strained.imu_strain = 1.0;
   EXPECT_EQ(judge.judge(strained, true, at(0.1)), TrackingStatus::Lost);
   EXPECT_THAT(judge.reason(), testing::HasSubstr("contradict"));
-  EXPECT_FALSE(judge.vision_lost()) << "where the body went is not to be believed";
+  EXPECT_FALSE(judge.vision_lost()) << "the pose is not reliable";
 }
 
 TEST(StatusJudge, BearsMoreStrainAfterALossByIt) {

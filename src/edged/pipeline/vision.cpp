@@ -8,10 +8,10 @@
 namespace edged {
 namespace {
 
-/// Without a frame for so long, events no longer count on them.
+/// After this time without a frame, event frames keep all their features.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
-/// The body at the instant of the channel's image: the packet's, but for what the camera's clock is still off by.
+/// The body at the instant of the channel's image: that of the packet, plus the residual time offset of the camera.
 SE3 T_O_B_of(const Channel& channel, const BodyMotion& body) { return body.moved_on(channel.camera.time_offset); }
 
 }  // namespace
@@ -90,7 +90,7 @@ void Vision::correct(const VisionCorrection& correction, const BodyMotion& body)
 
 std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& output) const {
   std::vector<CameraStep> cameras;
-  cameras.reserve(channels_.size());  // OpenCV's images may throw when moved: growing would copy the events
+  cameras.reserve(channels_.size());  // OpenCV's images may throw when moved: a reallocation would copy the events
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Channel& channel = channels_[i];
     CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
@@ -132,7 +132,7 @@ std::vector<EventImage> Vision::render(const VisionInput& input, double scene_de
   return images;
 }
 
-/// The landmarks of all cameras as that one sees them now.
+/// The landmarks of all cameras, in that one now.
 std::vector<SeenDepth> Vision::landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const {
   std::vector<SeenDepth> seen;
   const SE3 T_C_O = viewer.T_O_C(T_O_B_of(viewer, body)).inverse();
@@ -148,7 +148,7 @@ std::vector<SeenDepth> Vision::landmarks_seen_by(const Channel& viewer, const Bo
   return seen;
 }
 
-/// Of every event in its place; nothing where one depth does for the whole scene, or no other is known.
+/// One depth per event in the same order; nothing if one depth serves for the whole scene, or no other is known.
 std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const BodyMotion& body, double scene_depth) const {
   if (config_.event_frame.depth != EventDepth::Landmarks || !landmarks_) return std::nullopt;
   const CameraModel& ideal = event_views_[camera].ideal();
@@ -160,7 +160,7 @@ std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const BodyMoti
   return DepthGrid(ideal.width(), ideal.height(), config_.event_frame.depth_grid, samples, scene_depth);
 }
 
-/// The cameras that the packet brought an image of.
+/// The cameras with an image in the packet.
 std::vector<ChannelView> Vision::views_of(const Packet& packet, std::span<const EventImage> event_images) {
   std::vector<ChannelView> views;
   for (std::size_t i = 0; i < event_images.size(); ++i) {
@@ -187,8 +187,8 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
     const auto landmark = landmarks_->find(id);
     return landmark == landmarks_->end() ? std::nullopt : std::optional(landmark->second);
   };
-  // Against one look all errors of a track hang together, and the thresholds of a start do not know that: with events
-  // alone 3 of 72 starts are wrong by their scale, 1 without.
+  // With one reference patch all errors of a track correlate, which the thresholds of initialization do not model: with
+  // events alone 3 of 72 initializations have a wrong scale, 1 without.
   prediction.reference_patches = !provisional_;
   channel.track(view.track, input.packet.t, T_O_B_of(channel, input.body), std::move(prediction));
 }
@@ -202,7 +202,7 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   const Packet& packet = input.packet;
   const Channel* leader = leading_channel(views);
   if (leader == nullptr) return false;
-  // With both cameras at work a keyframe waits for the next frame, so that both see it.
+  // With both cameras a keyframe waits for the next frame, so that both have it.
   const bool frame_due =
       is_fused() && packet.frames.empty() && last_frame_ && packet.t - *last_frame_ < std::chrono::milliseconds(60);
   if (frame_due) return false;
@@ -210,8 +210,8 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   since.any = last_keyframe_.has_value();
   if (!since.any) return true;
   since.time = packet.t - *last_keyframe_;
-  // Only the camera that carries the most: features on event frames drift and end sooner, and would ask for keyframes
-  // that good frames do not need.
+  // Only the camera with most tracks: features on event frames drift and end earlier, and would cause keyframes that
+  // good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_O_B_of(*leader, input.body));
   since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
   since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
@@ -239,14 +239,14 @@ bool Vision::frames_at_work(Timestamp t) const {
   return is_fused() && last_frame_ && t - *last_frame_ < kFramesMissing;
 }
 
-/// As many features as event frames keep beside them.
+/// Whether frames have enough features for event frames to keep few.
 bool Vision::frames_carry(Timestamp t) const {
   return frames_at_work(t) && carried_by_frames() >= config_.health.min_event_features;
 }
 
-/// Frames tell more about a feature than events do, where they see it at all: in good light a few features on the event
-/// frame are enough, in the dark, in glare and without frames it takes all it can get. Cameras of a kind share what one
-/// alone would have: more views of the same scene should not cost more.
+/// Frames give more accurate observations than events, if they show the feature: in good light a few features on the
+/// event frame are enough; in the dark, in glare and without frames it keeps all. Cameras of a kind share the budget of
+/// one: more views of the same scene should not cost more.
 int Vision::features_wanted(const Channel& channel, Timestamp t) const {
   if (channel.camera.modality == Modality::Frames)
     return config_.frame_tracker.detector.max_features / static_cast<int>(low_light_.size());

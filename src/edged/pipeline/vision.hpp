@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Vision: from a packet and the body's predicted motion to images and observations of features. Knows no estimator.
+// Vision: from a packet and the body's predicted motion to images and observations of features. Independent of the
+// estimator.
 #pragma once
 
 #include <map>
@@ -30,29 +31,29 @@ struct VisionInput {
 
 struct VisionOutput {
   double scene_depth = 0.0;                      ///< z-depth [m] used by the warp
-  std::vector<EventImage> event_images;          ///< one an event camera, empty where there were too few events
-  std::vector<TrackedImage> images;              ///< one a camera of the run
-  std::vector<CameraObservations> observations;  ///< of those cameras that the packet has brought an image of
-  bool keyframe = false;                         ///< the packet should become one, and vision has made it its own
-  bool events_quiet = false;                     ///< nothing moves before any event camera
+  std::vector<EventImage> event_images;          ///< one per event camera, empty if there were too few events
+  std::vector<TrackedImage> images;              ///< one per camera of the run
+  std::vector<CameraObservations> observations;  ///< of the cameras with an image in the packet
+  bool keyframe = false;                         ///< the packet should become a keyframe, and vision has made it one
+  bool events_quiet = false;                     ///< the view of every event camera is static
   std::optional<RegionDepth> depth;              ///< for Eq. 5
 };
 
 /// z-depths of landmarks, each in its own camera at the newest state [m].
 using LandmarkDepths = std::map<FeatureId, double>;
 
-/// What localization has made of the output.
+/// The feedback of localization.
 struct VisionCorrection {
-  std::vector<FeatureId> outliers;          ///< tracks that are wrong and should end
-  std::optional<LandmarkDepths> landmarks;  ///< nothing without an estimate, and then nothing below either
+  std::vector<FeatureId> outliers;          ///< outlier tracks, which should end
+  std::optional<LandmarkDepths> landmarks;  ///< nothing without an estimate; then all below is unset, too
   std::vector<RigCamera> cameras = {};      ///< as calibrated
   std::optional<SE3> T_new_old = {};        ///< from the old odometry frame to the new one, where the estimator started
   bool ended = false;                       ///< the estimate has ended with this packet
-  bool provisional = true;                  ///< there is no estimate, or its scale is not known well yet
+  bool provisional = true;                  ///< there is no estimate, or its scale is not certain yet
 };
 
-/// One object for all cameras of a run. A cycle is process, then correct. Deterministic, but for a depth network that
-/// has a thread of its own.
+/// One object for all cameras of a run. A cycle is process, then correct. Deterministic, except with a depth network in
+/// a thread of its own.
 class Vision {
  public:
   /// cameras: those of the run, event cameras first, without time offsets: packets have none; config: validated.
@@ -61,15 +62,15 @@ class Vision {
   VisionOutput process(const VisionInput& input);
   /// body: as estimated, at the time of the packet.
   void correct(const VisionCorrection& correction, const BodyMotion& body);
-  /// A clock was set back: the packets that follow are of a new time, and tracks end.
+  /// A clock was set back and a new time begins: tracks end.
   void begin_time();
 
-  /// For those who look on; output: of that packet.
+  /// For observers; output: of that packet.
   std::vector<CameraStep> describe(Packet packet, const VisionOutput& output) const;
 
  private:
-  /// One depth for all cameras, as the first sees it, of the event cameras where there is one: a depth network looks
-  /// through one camera only.
+  /// One depth for all cameras: that of the first event camera, or of the first camera without one, as a depth network
+  /// has one camera only.
   SceneDepth fresh_depth() const {
     return {config_.depth, rig_.cameras.front(), config_.estimator.depth_factor.enabled, inference_};
   }
@@ -93,7 +94,7 @@ class Vision {
 
   OdometryConfig config_;
   Inference inference_;
-  Rig rig_;  ///< as calibrated so far
+  Rig rig_;  ///< with online calibration
   StageTimings* timings_;
   std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
   std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others

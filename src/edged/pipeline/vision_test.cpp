@@ -14,7 +14,7 @@ namespace {
 
 Timestamp at_image(int image) { return timestamp_from_ns(40'000'000LL * (image + 1)); }
 
-/// A camera that is the body, and moves sideways before a plane 2 m away.
+/// A camera with the frame of the body, moving sideways in front of a plane 2 m away.
 class PlaneVision : public testing::Test {
  protected:
   PlaneVision() {
@@ -100,7 +100,7 @@ TEST_F(PlaneVision, TakesTheSceneDepthFromLandmarksAndGivesItUpWithTheEstimate) 
     vision.correct({{}, std::nullopt}, body_);
     output = process(vision, packet(image), image);
   }
-  EXPECT_EQ(output.scene_depth, 5.0) << "what was measured is too old";
+  EXPECT_EQ(output.scene_depth, 5.0) << "the measurement is too old";
 }
 
 TEST_F(PlaneVision, EndsTracksThatLocalizationFindsWrong) {

@@ -13,7 +13,7 @@ namespace edged {
 
 enum class AlignmentKind {
   None,
-  PositionYaw,  ///< 4 degrees of freedom: what gravity leaves unobservable in a visual-inertial estimate
+  PositionYaw,  ///< 4 degrees of freedom: those unobservable in a visual-inertial estimate
   SE3,
   Sim3,  ///< SE(3) and a scale
 };
@@ -27,7 +27,7 @@ struct Similarity {
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
     return scale * (T.rotation() * point) + T.translation();
   }
-  /// A pose keeps its rotation rigid: only its position is scaled.
+  /// Only the position of a pose is scaled.
   SE3 operator*(const SE3& pose) const { return {T.rotation() * pose.rotation(), *this * pose.translation()}; }
 };
 
@@ -47,8 +47,8 @@ std::vector<PosePair> within(const std::vector<PosePair>& pairs, const TimeWindo
 /// three pairs, or when the positions do not fix the rotation (all on one point or line).
 Similarity align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
-/// SE(3) in the same sense, where the positions need not fix it: at rest or on a line it is one of those that fit
-/// best. At least one pair.
+/// SE(3) in the same sense, where the positions need not determine it: at rest or on a line it is one of the best. At
+/// least one pair.
 Similarity align_rigidly(const std::vector<PosePair>& pairs);
 
 }  // namespace edged

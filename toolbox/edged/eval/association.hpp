@@ -25,7 +25,7 @@ struct Association {
   Timestamp truth_begin{};      ///< of the first true pose
 };
 
-/// True poses further apart than this [s] are not interpolated between.
+/// No interpolation between true poses further apart than this [s].
 constexpr double kDefaultMaxGap_s = 0.2;
 
 /// The truth at the estimate's stamps: position linear, rotation slerp between the two neighbours in time.

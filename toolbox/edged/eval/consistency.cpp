@@ -16,7 +16,7 @@ constexpr double kChiSquare = 14.156;  // of three degrees of freedom, 99.73 %
 constexpr double kLeastSigma = 1e-4;   // [m], [rad]
 constexpr Duration kSilentAfter = std::chrono::milliseconds(500);
 
-/// Position and yaw that lay the estimate onto the truth.
+/// Alignment of the estimate with the truth in position and yaw.
 SE3 gauge(const SE3& truth, const SE3& estimate) {
   const Eigen::Matrix3d R = (truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix();
   const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
@@ -24,8 +24,8 @@ SE3 gauge(const SE3& truth, const SE3& estimate) {
   return {q, truth.translation() - q * estimate.translation()};
 }
 
-/// Where the estimate has been laid onto the truth. The sample there is itself uncertain, and so is all that is
-/// compared through it.
+/// The alignment of the estimate with the truth at one sample. That sample is itself uncertain, and so are all errors
+/// relative to it.
 struct Anchor {
   SE3 T_Wtrue_W, truth;
   Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the sample, in the true W [m^2]
@@ -37,7 +37,7 @@ struct Anchor {
     const Eigen::Vector3d up_B = sample.T_W_B.R().row(2);
     yaw = up_B.dot(sample.rotation * up_B);
   }
-  /// What it adds to the covariance of a position.
+  /// Its part in the covariance of a position.
   Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const {
     const Eigen::Vector3d swing = Eigen::Vector3d::UnitZ().cross(p - truth.translation());
     return position + yaw * swing * swing.transpose();
@@ -52,7 +52,7 @@ struct Anchor {
 /// Adds up the errors of one kind.
 class Sum {
  public:
-  /// Whether the error is one that its covariance makes believable.
+  /// Whether the error is consistent with its covariance.
   bool add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
     const Eigen::Matrix3d P = covariance + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
     const double nees = error.dot(P.ldlt().solve(error));
@@ -78,7 +78,7 @@ class Sum {
   Eigen::Vector3d axes_within_ = Eigen::Vector3d::Zero();
 };
 
-/// Collects spans of time in which something holds without a break for longer than kSilentAfter.
+/// Collects time spans longer than kSilentAfter in which a condition holds without a break.
 class Spans {
  public:
   void add(Timestamp t, bool holds) {

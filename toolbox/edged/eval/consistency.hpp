@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether an estimator knows how far it is from the truth: its errors in units of what it says about them.
+// Consistency of an estimator: its errors relative to its covariances.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,14 @@
 
 namespace edged {
 
-/// A pose of the body as estimated, and how well the estimator says to know it since its start, where position and yaw
-/// are exact.
+/// An estimated pose of the body with its covariance relative to the start, where position and yaw are exact.
 struct PoseCovarianceSample {
   Timestamp t;
   SE3 T_W_B;
   Eigen::Matrix3d position;  ///< covariance in W [m^2]
   Eigen::Matrix3d rotation;  ///< covariance in B of phi in R_true = R Exp(phi) [rad^2]
   bool good = true;          ///< the status was Good
-  int start = 0;             ///< another number after each new start
+  int start = 0;             ///< number of the start of the estimator
 };
 
 /// A normal error of three dimensions has a mean of 3 and shares of 99.73 %. No share where there are no poses.
@@ -32,7 +31,7 @@ struct TimeSpan {
   Timestamp begin, end;
 };
 
-/// One position error, estimate less truth, laid on as below, and how large it may be.
+/// One position error, estimate minus truth, aligned as below, with its limit.
 struct PoseErrorSample {
   Timestamp t;
   Eigen::Vector3d error, sigma;  ///< in the true W [m]
@@ -41,18 +40,18 @@ struct PoseErrorSample {
 struct Consistency {
   std::size_t poses = 0, starts = 0;
   NormalizedErrors position, rotation;
-  /// Where the estimate had diverged silently: all of the poses for more than 0.5 s are Good, but with the position or
-  /// the rotation beyond the 99.73 %.
+  /// Time spans of silent divergence: for more than 0.5 s all poses are Good, but position or rotation are beyond the
+  /// 99.73 %.
   std::vector<TimeSpan> silent;
   std::vector<PoseErrorSample> errors;  ///< of each pose
 
   double silent_s() const;
 };
 
-/// Compares what is claimed with the truth: the same body on the same clock, both in time order. The first Good pose of
-/// each start is laid onto the truth, position and yaw; what comes before it is left out. As that pose is not exact
-/// either (after a start in motion it is centimetres off), its covariance counts with each error. Errors below 0.1 mm
-/// and 0.1 mrad are never too large.
+/// Compares pose covariance samples with the ground truth: the same body on the same clock, both in time order. The
+/// first Good pose of each start is aligned with the truth, position and yaw; poses before it are ignored. As that pose
+/// is not exact either (after a start in motion it is centimetres off), its covariance is added to that of each error.
+/// Errors below 0.1 mm and 0.1 mrad are never too large.
 Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCovarianceSample>& samples);
 
 }  // namespace edged

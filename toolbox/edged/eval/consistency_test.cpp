@@ -136,7 +136,7 @@ TEST(Consistency, AFirstPoseThatIsOffByWhatItClaimsCondemnsNoOther) {
   std::vector<PoseCovarianceSample> samples;
   const Eigen::Matrix3d small = 1e-8 * Eigen::Matrix3d::Identity();
   for (const StampedPose& pose : truth) samples.push_back({pose.t, kGauge * pose.T, small, small});
-  // Two centimetres and a degree of yaw off, and known to be.
+  // Two centimetres and a degree of yaw off, with a covariance to match.
   samples.front().T_W_B = SE3(so3::exp({0.0, 0.0, 0.017}), Eigen::Vector3d(0.02, -0.01, 0.01)) * samples.front().T_W_B;
   EXPECT_LT(check_consistency(truth, samples).position.within, 0.01);
   samples.front().position = 4e-4 * Eigen::Matrix3d::Identity();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of a trajectory, as json.
+// The errors of a trajectory, as json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Numbers that are none (no window, nothing moved) become null when it is printed.
+/// NaN (no window, no motion) becomes null when it is printed.
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
 nlohmann::ordered_json to_json(const Consistency& consistency);
 

@@ -17,9 +17,9 @@ namespace {
 constexpr double kDeltaTolerance = 0.1;  // share of delta by which a pair may come late
 constexpr double kStart_s = 5.0;
 constexpr TimeWindow kFirst = {0.0, 2.0}, kLater = {10.0, 12.0};
-constexpr double kLeastStartPath_m = 0.1;  // less says nothing of the scale
-constexpr double kLocalAfter_s = 4.0;      // before, the start is judged, not the estimate
-constexpr double kLocalSteps = 4.0;        // windows begin so often in the length of one
+constexpr double kLeastStartPath_m = 0.1;  // less does not determine the scale
+constexpr double kLocalAfter_s = 4.0;      // earlier errors are those of initialization
+constexpr double kLocalSteps = 4.0;        // number of windows that begin within the length of one
 constexpr std::size_t kLeastLocalPairs = 11;
 
 double angle_deg(const Eigen::Quaterniond& q) { return kDegreesPerRadian * so3::log(q).norm(); }
@@ -35,7 +35,7 @@ std::vector<PosePair> aligned(std::vector<PosePair> pairs, const Similarity& ali
   return pairs;
 }
 
-/// NaN when the positions do not fix it.
+/// NaN when the positions do not determine it.
 double sim3_scale(const std::vector<PosePair>& pairs) {
   try {
     return align(pairs, AlignmentKind::Sim3).scale;
@@ -103,7 +103,7 @@ Protocol protocol(std::string_view name) {
   if (name == "P2") return {"P2", AlignmentKind::SE3, {0.0, 5.0}};
   if (name == "P3") return {"P3", AlignmentKind::SE3, {}};
   if (name == "P4") return {"P4", AlignmentKind::Sim3, {}};
-  throw InputError::format("unknown protocol '{}'; there are P1, P2, P3, P4", name);
+  throw InputError::format("unknown protocol '{}'; use P1, P2, P3 or P4", name);
 }
 
 RelativeError relative_error(const std::vector<PosePair>& pairs, double delta_s) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How far an estimate is from the truth: absolute and relative errors under a named protocol.
+// Absolute and relative errors of an estimate under a named protocol.
 #pragma once
 
 #include <array>
@@ -43,14 +43,14 @@ struct RelativeError {
 /// true against estimated. Every i counts.
 RelativeError relative_error(const std::vector<PosePair>& pairs, double delta_s);
 
-/// How well the shape of the path is known over window_s: the ATE of windows that are each aligned by themselves.
+/// Local error: the ATE of windows of window_s that are each aligned by themselves.
 struct LocalError {
   double window_s = 0.0;
   std::size_t windows = 0;
   double rmse_m = 0.0;  ///< over the windows; NaN where there is none
 };
 
-/// Those by which variants are compared.
+/// The windows for the comparison of variants.
 constexpr std::array<double, 3> kLocalWindows_s = {1.0, 3.0, 10.0};
 
 /// RMS over all windows [s, s + window_s), a quarter of a window apart, of the RMS position error after SE(3) alignment
@@ -65,7 +65,7 @@ struct Evaluation {
   double path_length_m = 0.0;  ///< of the true poses at the pairs
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate
-  double start_scale = 1.0;         ///< the same over the first 5 s of the estimate; NaN when too little moved to tell
+  double start_scale = 1.0;         ///< the same over the first 5 s of the estimate; NaN with too little motion
   double first_scale = 1.0;         ///< extent of the truth over that of the estimate in its first 2 s; NaN as above
   double later_scale = 1.0;         ///< the same ten seconds later
   Statistics ate_m;                 ///< position error

@@ -169,7 +169,7 @@ TEST(LocalError, ForgivesAStepOutsideItsWindowsAndTheStart) {
     if (pose.t < timestamp_from_seconds(104.0)) pose.T.translation().x() += 0.5 * std::sin(8.0 * to_seconds(pose.t));
   }
   EXPECT_LT(local_error(associate(truth, estimate), 3.0).rmse_m, 1e-12);
-  // The truth, not the estimate, says where the 4 s begin.
+  // The 4 s begin at the first pose of the truth, not of the estimate.
   estimate.erase(estimate.begin(), estimate.begin() + 150);
   EXPECT_LT(local_error(associate(truth, estimate), 3.0).rmse_m, 1e-12);
   EXPECT_EQ(local_error(associate(truth, estimate), 3.0).windows, 18U);

@@ -9,7 +9,7 @@
 
 namespace edged {
 
-/// Some frame that is turned and moved against the world.
+/// A frame that is rotated and shifted against the world.
 inline const SE3 kTilted(so3::exp({0.4, -0.7, 1.9}), Eigen::Vector3d(3, -5, 2));
 
 /// A winding motion sampled at rate_hz over duration_s, starting at stamp 100 s: curved in all three axes, turning.

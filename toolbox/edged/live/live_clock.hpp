@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording's clock tied to the wall clock, for a run at the recording's own speed.
+// Maps a recording's clock to the wall clock, for a run at the speed of the recording.
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,11 @@ namespace edged {
 
 class LiveClock {
  public:
-  /// Sleeps until t is due: as long after the first t as its stamp says. Asks `stopped` now and then, and ends early
-  /// when it says so.
+  /// Sleeps until t is due, relative to the first t. Polls `stopped`, and returns early when that is true.
   void wait_for(Timestamp t, const std::function<bool()>& stopped);
 
-  /// Since t was due [s], negative before; 0 when nothing has been waited for. Of a thread that has the measurement
-  /// from the one that waited for it.
+  /// Time since t was due [s], negative before; 0 before the first wait_for. For threads that get the measurement from
+  /// the one that waited.
   double since_due_s(Timestamp t) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording played at its own speed by a thread of its own, as sensors would: who is too slow for it misses events.
+// A recording played in real time by a thread of its own, as by sensors: a slow consumer loses events.
 #pragma once
 
 #include <functional>
@@ -16,15 +16,15 @@ namespace edged {
 
 class LiveSource {
  public:
-  /// Plays `dataset` from now on, which is the thread's until stop, but for info(). The end comes at once when
-  /// `interrupted` says so.
+  /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
+  /// returns true.
   LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted);
 
-  /// As Dataset::next, but for what has been shed; waits until the next measurement is due. Throws what the dataset
-  /// threw, after all that came before. Warns in the log when shedding begins and ends.
+  /// As Dataset::next, without shed measurements; waits until the next one is due. Rethrows errors of the dataset after
+  /// all measurements before them. Warns in the log when shedding begins and ends.
   std::optional<Measurement> next();
 
-  /// What was measured until t has been worked up now. Returns its latency [s].
+  /// Measurements up to t have been processed now. Returns their latency [s].
   double note_result(Timestamp t) {
     latency_.add(clock_.since_due_s(t));
     return latency_.last_s();
@@ -33,7 +33,7 @@ class LiveSource {
   /// Ends the thread. Statistics stay.
   void stop() { reader_.stop(); }
 
-  /// From when a measurement was due to its result.
+  /// From the due time of a measurement to its result.
   const StageTiming& latency() const { return latency_; }
   ShedCounters shed() const { return reader_.queue().shed(); }
   const StageTiming& reading() const { return reader_.reading(); }
@@ -43,7 +43,7 @@ class LiveSource {
   LiveClock clock_;
   StageTiming latency_;
   ShedReport report_;
-  ReadAhead reader_;  // last: its thread uses the clock
+  ReadAhead reader_;  // last member: its thread uses the clock
 };
 
 }  // namespace edged

@@ -28,13 +28,12 @@ Measurement take_first(Line& line) {
 }  // namespace
 
 void QueueConfig::visit(ConfigFields& fields) {
-  fields.add(
-      "max_age_s", max_age_s,
-      {"s", 0.001, 3600, "--live: events that have waited longer are left out, oldest first; frames at twice that"});
+  fields.add("max_age_s", max_age_s,
+             {"s", 0.001, 3600, "--live: events that wait longer are dropped, oldest first; frames at twice that"});
   fields.add("max_megabytes", max_megabytes,
-             {"MB", 1, 65536, "--live: events and frames that may wait; beyond, the oldest events are left out"});
+             {"MB", 1, 65536, "--live: size of waiting events and frames; beyond it the oldest events are dropped"});
   fields.add("max_imu_samples", max_imu_samples,
-             {"", 1000, 1e9, "--live: IMU samples that may wait; none is left out, with more the reading waits"});
+             {"", 1000, 1e9, "--live: number of waiting IMU samples; none is dropped, beyond it reading pauses"});
 }
 
 bool MeasurementQueue::push(Measurement measurement) {
@@ -57,7 +56,7 @@ bool MeasurementQueue::push(Measurement measurement) {
   return true;
 }
 
-/// Of what is not shed.
+/// Of measurements that are not shed.
 bool MeasurementQueue::full() const {
   return samples_.size() >= static_cast<std::size_t>(config_.max_imu_samples) ||
          (when_full_ == WhenFull::Wait && bytes() >= room());

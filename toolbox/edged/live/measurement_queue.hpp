@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A bounded queue of measurements between the thread that reads the sensors and the one that works on them.
+// A bounded queue of measurements between the thread that reads the sensors and the one that processes them.
 #pragma once
 
 #include <condition_variable>
@@ -16,60 +16,61 @@
 
 namespace edged {
 
-/// How much may wait.
+/// Bounds of the queue.
 struct QueueConfig {
   double max_age_s = 0.25;       ///< of an event, against the newest measurement; of a frame twice that
   int max_megabytes = 64;        ///< of events and frames together
-  int max_imu_samples = 200000;  ///< then the sensors wait, as no IMU sample may be lost
+  int max_imu_samples = 200000;  ///< beyond it push blocks, as no IMU sample may be lost
 
   void visit(ConfigFields& fields);
 };
 
-/// What happens when more than QueueConfig allows would wait.
+/// The behaviour of a queue at the bounds of QueueConfig.
 enum class WhenFull {
-  Shed,  ///< the oldest is left out: what comes late is worth little
-  Wait   ///< the thread that reads waits: each measurement counts, whenever it comes. Ages count for nothing
+  Shed,  ///< the oldest is dropped: late results are worth little
+  Wait   ///< the reading thread blocks: no measurement is dropped. Ages do not matter
 };
 
-/// Measurements left out because the queue was full.
+/// Measurements dropped because the queue was full.
 struct ShedCounters {
   std::size_t events = 0, frames = 0;
   bool operator==(const ShedCounters&) const = default;
 };
 
-/// The most that has waited at any time, each by itself.
+/// The maxima of the queue over time, each by itself.
 struct QueuePeaks {
   std::size_t events = 0, frames = 0, imu = 0, bytes = 0;
   double age_s = 0.0;  ///< of the oldest event or frame
 };
 
-/// First in, first out; when too much waits push waits, or the queue sheds, never the IMU. The oldest events go first:
-/// they come in excess, and a late result is worth less than one from fewer events. A frame stands for more than the
-/// events of its time and costs less, so frames go after all events or at twice their age, the oldest first. Samples
-/// of the IMU and of external sensors are small and cannot be replaced: with too many of them push waits.
+/// First in, first out; when the queue is full, push blocks or the queue sheds, but never the IMU. The oldest events
+/// are shed first: there are many, and a late result is worth less than one from fewer events. A frame has more
+/// information than the events of its time and costs less, so frames are shed after all events or at twice their age,
+/// the oldest first. Samples of the IMU and of external sensors are small and cannot be replaced: with too many of them
+/// push blocks.
 ///
-/// One thread may push while another pops. Where push waits, it waits until half of what is allowed is left: threads
-/// that wake each other for every measurement cost more than they read.
+/// One thread may push while another pops. A blocked push waits until the queue is half empty: waking a thread for
+/// every measurement costs more than reading it.
 class MeasurementQueue {
  public:
   explicit MeasurementQueue(const QueueConfig& config, WhenFull when_full = WhenFull::Shed)
       : config_(config), when_full_(when_full) {}
 
-  /// False, and nothing taken, after close or interrupt.
+  /// False, without effect, after close or interrupt.
   bool push(Measurement measurement);
-  /// The oldest measurement; waits for one. Nothing when no more will come.
+  /// The oldest measurement; waits for one. Nothing at the end.
   std::optional<Measurement> pop();
 
-  /// No more will be pushed; what waits can still be popped.
+  /// No more will be pushed; queued measurements can still be popped.
   void close();
-  /// Nobody wants any more: what waits is forgotten, and both sides return at once.
+  /// Aborts: queued measurements are dropped, and both sides return at once.
   void interrupt();
 
   ShedCounters shed() const;
   QueuePeaks peaks() const;
 
  private:
-  /// Measurements of one kind with their places in the order of all.
+  /// Measurements of one kind with their positions in the order of all.
   template <typename T>
   using Line = std::deque<std::pair<std::uint64_t, T>>;
 

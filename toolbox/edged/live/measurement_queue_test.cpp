@@ -125,7 +125,7 @@ TEST(MeasurementQueue, ThatWaitsLeavesNothingOutHoweverOldAndGoesOnWhenHalfIsGon
   queue.push(frame_at(200));
   queue.push(events_until(10'000, half));
   auto pushed = std::async(std::launch::async, [&queue] { return queue.push(imu_at(10'001)); });
-  EXPECT_EQ(pushed.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "all that is allowed waits";
+  EXPECT_EQ(pushed.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "the queue is full";
   EXPECT_EQ(last_stamp(*queue.pop()), queue_ms(100));
   EXPECT_EQ(last_stamp(*queue.pop()), queue_ms(200));
   EXPECT_TRUE(pushed.get());
@@ -142,7 +142,7 @@ TEST(MeasurementQueue, AnInterruptWakesBothSides) {
   empty.interrupt();
   EXPECT_FALSE(pushed.get());
   EXPECT_FALSE(popped.get());
-  EXPECT_FALSE(full.pop()) << "what waited is forgotten";
+  EXPECT_FALSE(full.pop()) << "queued measurements are dropped";
   EXPECT_FALSE(empty.push(imu_at(1)));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording read by a thread of its own into a bounded queue, so that decoding goes on while others work.
+// A recording read by a thread of its own into a bounded queue, so that decoding runs in parallel.
 #pragma once
 
 #include <exception>
@@ -15,25 +15,25 @@
 
 namespace edged {
 
-/// The measurements, and their order, are those of the dataset, but for what a queue that sheds leaves out.
+/// The measurements, and their order, are those of the dataset, except those that the queue sheds.
 class ReadAhead {
  public:
-  /// May hold back what has been read, in the thread; the function says whether to give up.
+  /// May delay measurements, in the thread; the function returns whether to give up.
   using Pace = std::function<void(const Measurement&, const std::function<bool()>& stopped)>;
 
-  /// `dataset` is the thread's until stop, but for info(). The end comes at once when `interrupted` says so.
+  /// Only the thread may use `dataset` until stop, except info(). Ends at once when `interrupted` returns true.
   ReadAhead(Dataset& dataset, const QueueConfig& config, WhenFull when_full, std::function<bool()> interrupted,
             Pace pace = {});
   ~ReadAhead() { stop(); }
 
-  /// As Dataset::next; throws what the dataset threw, after all that came before.
+  /// As Dataset::next; rethrows errors of the dataset after all measurements before them.
   std::optional<Measurement> next();
 
-  /// Ends the thread; what has been read and not handed out is forgotten.
+  /// Ends the thread; measurements read ahead are dropped.
   void stop();
 
   const MeasurementQueue& queue() const { return queue_; }
-  /// Of Dataset::next, call by call, and the thread's processor time. After stop.
+  /// Durations of Dataset::next per call, and the thread's processor time. After stop.
   const StageTiming& reading() const { return reading_; }
 
  private:
@@ -46,7 +46,7 @@ class ReadAhead {
   MeasurementQueue queue_;
   StageTiming reading_;
   std::exception_ptr failure_;  // set before the queue is closed
-  std::jthread thread_;         // last: it uses the others
+  std::jthread thread_;         // last member: it uses the others
 };
 
 }  // namespace edged

@@ -17,12 +17,12 @@ std::optional<std::string> ShedReport::update(const ShedCounters& total, Clock::
     if (telling_ || (said_ && now - *said_ < kBetweenBouts)) return std::nullopt;
     telling_ = true;
     said_ = now;
-    return "too slow for these sensors: the oldest events are left out";
+    return "too slow for these sensors: the oldest events are dropped";
   }
   if (!telling_ || now - last_shed_ < kQuiet) return std::nullopt;
   telling_ = false;
-  std::string line = fmt::format("in time again: {} events and {} frames were left out", total.events - told_.events,
-                                 total.frames - told_.frames);
+  std::string line = fmt::format("in real time again: {} events and {} frames were dropped",
+                                 total.events - told_.events, total.frames - told_.frames);
   told_ = total;
   return line;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When to tell the user that measurements are left out, and that it is over.
+// When to report to the user that shedding begins and ends.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@
 
 namespace edged {
 
-/// One line when shedding begins and one when nothing has been shed for a second, of one bout in ten seconds; what
-/// comes sooner is counted in the next.
+/// One line when shedding begins and one when nothing has been shed for a second, at most one pair in ten seconds;
+/// earlier shedding is counted in the next.
 class ShedReport {
  public:
   using Clock = std::chrono::steady_clock;
@@ -21,10 +21,10 @@ class ShedReport {
   std::optional<std::string> update(const ShedCounters& total, Clock::time_point now);
 
  private:
-  std::optional<Clock::time_point> said_;  // of the last line that told of a beginning
-  bool telling_ = false;                   // a beginning has been told, its end has not
+  std::optional<Clock::time_point> said_;  // time of the last line on a beginning
+  bool telling_ = false;                   // a beginning has been reported, its end has not
   Clock::time_point last_shed_;
-  ShedCounters seen_, told_;  // by now; up to the last end told
+  ShedCounters seen_, told_;  // by now; up to the last reported end
 };
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a camera at rest in flickering light, far more events than anybody can use.
+// For tests: a camera at rest in flickering light, with far more events than can be processed.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Made up on the way, one millisecond a batch; IMU samples at 1 kHz, at rest; a frame every 40 ms.
+/// Generated on the fly, one millisecond per batch; IMU samples at 1 kHz, at rest; a frame every 40 ms.
 class EventStorm : public Dataset {
  public:
   EventStorm(std::string event_camera, std::string frame_camera, cv::Size size, double events_per_s, int duration_ms)
@@ -29,7 +29,7 @@ class EventStorm : public Dataset {
 
   const DatasetInfo& info() const override { return info_; }
 
-  /// IMU, events, and where one is due a frame of every millisecond.
+  /// IMU, events and, if due, a frame of every millisecond.
   std::optional<Measurement> next() override {
     const Timestamp begin = Timestamp() + std::chrono::milliseconds(ms_);
     if (ms_ > duration_ms_) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a recording as their camera would have given them in less light; all else as recorded.
+// Simulates less light in the frames of a recording; all else is unchanged.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace edged {
 
-/// What a typical 8-bit camera gives at a share `factor` of the light, with unchanged exposure and gain: fewer
+/// The frame of a typical 8-bit camera at a share `factor` of the light, with unchanged exposure and gain: fewer
 /// electrons (10000 fill 255 grey levels), their noise, a read noise of 1.2 grey levels. The noise follows from the
-/// stamp: the same frame looks the same wherever reading began.
+/// stamp: a frame is the same wherever reading began.
 class DimmedFrames final : public Dataset {
  public:
   DimmedFrames(std::unique_ptr<Dataset> bright, double factor);

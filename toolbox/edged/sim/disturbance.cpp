@@ -83,7 +83,7 @@ Jet to_jet(const Ramp& ramp, double t, double length_s) {
   return {ramp.value, ramp.slope, within ? 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (length_s * length_s) : 0.0};
 }
 
-/// Rings out after t = 0: what a hard contact does to a light body. The phase of the sine is 0 there.
+/// Decaying vibration after t = 0, as of a light body after a hard contact. The phase of the sine is 0 there.
 Jet ring(double t) {
   if (t <= 0.0 || t >= kRing_s) return {};
   constexpr double kOmega = 2.0 * kPi * kRing_hz;
@@ -190,7 +190,8 @@ Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
 void DisturbedTrajectory::knock(double t, Kinematics& k) const {
   const Disturbance& d = disturbance_;
   const double peak = d.strength * kStandardGravity;
-  // It is lowered at the speed that the contact ends, into a ring with the wanted peak, and taken up by a blow.
+  // It is lowered at the speed at which the contact ends, with the required peak of the vibration, and taken up by a
+  // blow.
   static const double ring_peak = peak_change(ring), hit_peak = peak_change(hit);
   constexpr double kOmega = 2.0 * kPi * kRing_hz;
   const double reach_m = peak / ring_peak, speed = reach_m * kOmega;

@@ -46,7 +46,7 @@ std::vector<cv::Mat> frames(const Recorded& recorded, double from_s, double to_s
   return images;
 }
 
-/// What falls out of the sequence `all` when that within the disturbance is taken away.
+/// The elements of `all` outside the disturbance.
 template <typename Sample>
 std::vector<Sample> without(std::vector<Sample> all, double from_s, double to_s, Duration offset = Duration(0)) {
   std::erase_if(all, [=](const Sample& s) {

@@ -26,7 +26,7 @@ void EventCameraConfig::visit(ConfigFields& fields) {
   fields.add("threshold_on", threshold_on, {"ln", 0.01, 10, "rise of the log brightness that makes a positive event"});
   fields.add("threshold_off", threshold_off, {"ln", 0.01, 10, "fall that makes a negative event"});
   fields.add("threshold_sigma", threshold_sigma, {"ln", 0, 1, "spread of the thresholds over the pixels"});
-  fields.add("refractory_us", refractory_us, {"us", 0, 1e6, "a pixel is silent for so long after an event"});
+  fields.add("refractory_us", refractory_us, {"us", 0, 1e6, "refractory time of a pixel after an event"});
   fields.add("bandwidth_hz", bandwidth_hz,
              {"Hz", 0, 1e6, "of the pixel's front-end in the dark; 0: unlimited, or none but for the next"});
   fields.add("bandwidth_per_radiance_hz", bandwidth_per_radiance_hz,
@@ -62,7 +62,7 @@ std::vector<Event> EventCamera::update(Timestamp t, std::span<const float> radia
   if (!started_) {
     started_ = true, t_ = t;
     level_ = target_;
-    // Where in its cycle a pixel is when the recording starts is chance.
+    // The phase of a pixel at the start of the recording is random.
     for (std::size_t i = 0; i < n; ++i)
       reference_[i] = level_[i] + static_cast<float>(random_.uniform(-0.99, 0.99)) * std::min(on_[i], off_[i]);
     return {};
@@ -116,7 +116,7 @@ void EventCamera::step_pixel(std::size_t pixel, float before, const Interval& in
         after == before ? 1.0 : std::clamp((reference_[pixel] - before) / (after - before), 0.0F, 1.0F);
     const std::int64_t t_ns =
         interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
-    // A pixel in its refractory time takes the new level without telling.
+    // A pixel in its refractory time takes the new level without an event.
     if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
     last_ns_[pixel] = t_ns;
     events.push_back(make_event(pixel, t_ns, positive));
@@ -151,7 +151,7 @@ void EventCamera::add_hot_pixels(const Interval& interval, std::vector<Event>& e
 }
 
 void EventCamera::add_storm(const Interval& interval, double hz, std::vector<Event>& events) {
-  // As many more are drawn as fall into a refractory time. One after the other in time, so that each meets the last.
+  // More are drawn to replace those within a refractory time, in the order of time.
   const double drawn_hz = hz / std::max(0.1, 1.0 - hz * config_.refractory_us * 1e-6);
   const double length_ns = static_cast<double>(interval.length_ns);
   const int count = storm_random_.arrivals(drawn_hz * length_ns * 1e-9 * static_cast<double>(level_.size()));

@@ -19,15 +19,15 @@ const ExternalErrors& errors_of(const ExternalModelConfig& config, std::size_t i
 
 void ExternalErrors::visit(ConfigFields& fields, const char* unit) {
   fields.add("rate_hz", rate_hz, {"Hz", 0, 1000, "samples per second; 0: there is no such sensor"});
-  fields.add("noise", noise, {unit, 0, 100, "standard deviation of a sample, which it tells"});
+  fields.add("noise", noise, {unit, 0, 100, "standard deviation of a sample, stated in it"});
   fields.add("walk", walk,
-             {unit, 0, 100, "random walk of its offset, per square root of a second; it tells nothing of it"});
+             {unit, 0, 100, "random walk of its offset, per square root of a second; not stated in its samples"});
   fields.add("scale_error", scale_error, {"1", -0.9, 9, "reads 1 + this times the truth"});
   fields.add("outlier_share", outlier_share, {"1", 0, 1, "share of the samples that are wrong"});
   fields.add("outlier", outlier, {unit, 0, 1000, "standard deviation of these"});
   fields.add("gap_at_s", gap_at_s, {"s", 0, 3600, "when samples begin to be missing, on the camera's clock"});
   fields.add("gap_s", gap_s, {"s", 0, 3600, "for how long"});
-  fields.add("late_ms", late_ms, {"ms", 0, 5000, "samples are stamped so long after they were measured"});
+  fields.add("late_ms", late_ms, {"ms", 0, 5000, "delay of the stamps after the measurement"});
 }
 
 void HeightModelConfig::visit(ConfigFields& fields) {
@@ -49,7 +49,7 @@ ExternalModel::ExternalModel(const ExternalModelConfig& config, std::size_t inde
       shift_(shift + duration_from_seconds(1e-3 * errors_.late_ms)),
       random_(seed, kFirstExternalStream + index) {}
 
-/// Between the samples of the IMU, as a sensor that nothing is in step with.
+/// Between the samples of the IMU, as an unsynchronised sensor.
 double ExternalModel::sample_s() const {
   if (errors_.rate_hz <= 0.0) return std::numeric_limits<double>::infinity();
   return (static_cast<double>(count_) + 0.37) / errors_.rate_hz;
@@ -64,7 +64,7 @@ ExternalNumbers ExternalModel::true_numbers(const Kinematics& truth) const {
 
 std::optional<ExternalSample> ExternalModel::measure(const Kinematics& truth) {
   const double t_s = sample_s();
-  // All that is random is drawn always: a gap or a share of outliers moves nothing else.
+  // All random numbers are always drawn: a gap or a share of outliers changes nothing else.
   const Eigen::Vector3d noise = random_.normal3(), walk = random_.normal3(), wrong = random_.normal3();
   const bool is_outlier = random_.uniform() < errors_.outlier_share;
   ExternalNumbers numbers = true_numbers(truth);

@@ -26,7 +26,7 @@ double step(double x) {
   return x * x * x * x * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)));
 }
 
-/// Seconds at full pace after u of duration_s seconds, when ramp_s are taken to reach it and as many to give it up.
+/// Time at full speed after u of duration_s seconds, with ramps of ramp_s at both ends.
 double cruise(double u, double duration_s, double ramp_s) {
   const auto rise = [ramp_s](double t) {
     const double x = std::clamp(t / ramp_s, 0.0, 1.0);
@@ -154,7 +154,7 @@ Path path_of(Manoeuvre manoeuvre) {
 
 double airborne_s(const Path& path) { return kTakeOff_s + kHover_s + path.duration_s + kHover_s + kLanding_s; }
 
-/// What gusts and the controller add: per axis two sines of random phase within [-1, 1].
+/// The part of gusts and controller: per axis two sines of random phase within [-1, 1].
 class Wobble {
  public:
   Wobble(double slow_hz, double fast_hz, Random& random) {

@@ -44,7 +44,7 @@ void ImuModelConfig::visit(ConfigFields& fields) {
   fields.add("gyro_bias", gyro_bias, {"rad/s", 0, 10, "length of the gyroscope's bias at the start"});
   fields.add("accel_bias", accel_bias, {"m/s^2", 0, 100, "length of the accelerometer's bias at the start"});
   fields.add("scale_error", scale_error, {"1", 0, 0.2, "spread of the scales of gyroscope and accelerometer about 1"});
-  fields.add("cross_axis_mrad", cross_axis_mrad, {"mrad", 0, 200, "spread of what each axis feels of the others"});
+  fields.add("cross_axis_mrad", cross_axis_mrad, {"mrad", 0, 200, "spread of the cross-axis sensitivity"});
   fields.add("gyro_range", gyro_range, {"rad/s", 0.1, 1000, "the gyroscope reads no more than this"});
   fields.add("accel_range", accel_range, {"m/s^2", 10, 10000, "the accelerometer reads no more than this"});
   fields.add("vibration_hz", vibration_hz, {"Hz", 1, 5000, "speed of the motors"});

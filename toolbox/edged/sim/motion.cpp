@@ -128,7 +128,7 @@ ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, 
   if (config.flight != Manoeuvre::None)
     return {PoseSpline::fit(fly(config.flight, seed), {.knot_s = config.knot_s, .reweightings = 0}), config.rest_s,
             0.0};
-  // The clock loses half of the blend; a little more than needed keeps the end of the spline out of sight.
+  // The clock loses half of the blend; a small reserve keeps the end of the spline after the recording.
   const double moving_s = std::max(1.0, duration_s - config.rest_s - 0.5 * config.blend_s + 0.1);
   const bool random = config.file.empty();
   Trajectory poses = random ? random_camera_poses(config, moving_s, seed) : recorded_poses(config, moving_s);

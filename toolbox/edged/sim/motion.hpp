@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which way the simulated body moves: smooth random motion, a recorded one, or the flight of a quadrotor.
+// The motion of the simulated body: smooth random motion, a recorded one, or the flight of a quadrotor.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct MotionConfig {
 };
 
 /// The motion of the body for duration_s seconds. Random motion sways the camera around a point 1.3 m above the ground,
-/// its axis level and along +x on average. A flight is over when it is over, however long duration_s is. Throws
+/// its axis level and along +x on average. A flight has its own length, whatever duration_s is. Throws
 /// InputError when the file is shorter than asked for.
 ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, const SE3& T_B_C, std::uint64_t seed);
 

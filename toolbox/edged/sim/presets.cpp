@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The simulations that have a name.
+// The simulator presets.
 #include <cmath>
 #include <map>
 
@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-/// A DAVIS346 behind a lens of 4.6 mm, 5 cm before the IMU: looks along the body's x, 4 degrees down.
+/// A DAVIS346 behind a lens of 4.6 mm, 5 cm in front of the IMU, its axis along the body's x, 4 degrees down.
 void mount_davis346(SimulatorConfig& config) {
   config.camera = {.width = 346,
                    .height = 260,

@@ -13,7 +13,8 @@ namespace edged {
 
 class Random {
  public:
-  /// Different streams of one seed are independent: what one part of the simulator draws does not move the others.
+  /// Different streams of one seed are independent: one part of the simulator does not change the random numbers of
+  /// others.
   Random(std::uint64_t seed, std::uint64_t stream)
       : engine_(seed * 0x9E3779B97F4A7C15ULL + stream * 0xD1B54A32D192ED03ULL) {}
 

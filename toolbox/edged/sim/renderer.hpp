@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting of a scene into a distorted camera, and how fast its image moves.
+// Ray casting of a scene into a distorted camera, and the speed of its image.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ class Renderer {
   const Scene& scene() const { return scene_; }
 
   /// Fastest image motion [px/s] in the last picture, for a camera that moves with v_C [m/s] and turns with omega_C
-  /// [rad/s], both in its own frame; of surfaces and of the edge of a wandering light; looked at on every fourth pixel.
+  /// [rad/s], both in its own frame; of surfaces and of the edge of a wandering light; evaluated at every fourth pixel.
   double max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector3d& omega_C) const;
 
   int width() const { return width_; }
@@ -38,7 +38,7 @@ class Renderer {
 
  private:
   /// A face in the camera frame as three linear forms of the bearing b (pixel_to_ray): inverse depth w = a.b and plane
-  /// coordinates times w. No division is needed to decide what is seen.
+  /// coordinates times w. Visibility needs no division.
   struct View {
     Eigen::Vector3f inverse_depth, u, v;
     Eigen::Vector3f velocity;  // [m/s]

@@ -66,8 +66,8 @@ bool keeps_clear(const Cuboid& cuboid, double clearance, std::span<const SE3> pa
   });
 }
 
-/// The half of the room at -x, without a trace on it: its walls right before the room's own, all alike, so that not
-/// even their edges are seen.
+/// The blank half of the room at -x: uniform walls right in front of the room's own, so that not even their edges are
+/// visible.
 void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   Cuboid half = room;
   half.half -= Eigen::Vector3d::Constant(1e-3);
@@ -86,8 +86,8 @@ void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   scene.textures.emplace_back(cv::Mat(1, 1, CV_8UC1, cv::Scalar(180)));
 }
 
-/// Of the faces from `first` on: with the newest dynamic_object, and lit by themselves: where they come from may be no
-/// light map.
+/// Of the faces from `first` on: moves them with the newest dynamic_object, with an own light, as their starting place
+/// may have no light map.
 void set_moving(Scene& scene, std::size_t first) {
   for (std::size_t i = first; i < scene.faces.size(); ++i) {
     Face& face = scene.faces[i];
@@ -111,12 +111,12 @@ void add_person(Scene& scene, const SE3& T_W_C, double at_s, double light, Rando
   set_moving(scene, first);
 }
 
-/// Where a camera is and looks on average.
+/// Mean position and axis of a camera.
 struct Outlook {
   Eigen::Vector3d mean_W = Eigen::Vector3d::Zero(), left_W;
   Eigen::Vector3d ahead_W = Eigen::Vector3d::Zero();  // level
   double slope = 0.0;                                 // of its axis, upwards
-  double foremost_m = 0.0;                            // how far ahead of its mean place it comes
+  double foremost_m = 0.0;                            // largest displacement ahead of the mean position
 };
 
 Outlook outlook(std::span<const SE3> path_W_C) {
@@ -164,7 +164,7 @@ void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const DynamicO
 void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance& disturbance, double light,
                  Random random) {
   constexpr double kClearance_m = 0.9, kBehind_m = 0.35, kReach_m = 1.1, kAway_m_s = 2.0;
-  constexpr double kViewPerDepth = 1.2;    // width of what a usual camera sees
+  constexpr double kViewPerDepth = 1.2;    // width of the view of a usual camera
   constexpr double kHeightCovered = 0.85;  // by somebody who stands before it
   const Outlook view = outlook(path_W_C);
   Eigen::Matrix3d R_W_P;
@@ -172,7 +172,7 @@ void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance&
   for (int i = 0; i < 2; ++i) {
     const double depth = view.foremost_m + kClearance_m + i * kBehind_m;
     const double omega = 2.0 * std::numbers::pi / random.uniform(4.2, 5.6);
-    // They come towards each other, so that the middle of the view is not left alone for long.
+    // They move towards each other, so that the middle of the view is rarely empty.
     const double phase = (i == 0 ? 0.0 : std::numbers::pi) + random.uniform(-0.4, 0.4) - omega * disturbance.at_s;
     const DynamicObject walk{.swings = {{kReach_m * view.left_W, omega, phase}},
                              .from_s = disturbance.at_s,
@@ -185,7 +185,7 @@ void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance&
   }
 }
 
-/// Held beside the camera's mean place, aimed at what it looks at.
+/// Held beside the camera's mean position, aimed along its mean axis.
 /// unit: radiance of the light 1 of the scene's faces.
 Spotlight make_spotlight(std::span<const SE3> path_W_C, const Disturbance& disturbance, double unit, Random random) {
   const Outlook view = outlook(path_W_C);
@@ -249,7 +249,7 @@ Face glowing_face(const Eigen::Vector3d& centre_W, const Eigen::Vector3d& normal
   return face;
 }
 
-/// The lamps and the window, as bright as they look.
+/// The visible lamps and window.
 void add_light_sources(Scene& scene) {
   for (std::size_t i = 0; i < scene.lighting->lamps.size(); ++i) {
     const Lamp& lamp = scene.lighting->lamps[i];

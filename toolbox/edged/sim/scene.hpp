@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What there is to see: textured rectangles, put together to a room with boxes or a single wall.
+// The scene: textured rectangles that form a room with boxes or a single wall.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace edged {
 
 /// The motion of a dynamic object.
 struct DynamicObject {
-  /// To and fro: reach_W * sin(omega * t + phase).
+  /// Oscillation: reach_W * sin(omega * t + phase).
   struct Swing {
     Eigen::Vector3d reach_W;  ///< [m]
     double omega = 0.0, phase = 0.0;
@@ -27,7 +27,7 @@ struct DynamicObject {
 
   Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();  ///< [m/s]
   std::vector<Swing> swings = {};
-  /// Before and after its time it is on its way to there, and off again.
+  /// Before and after its time it approaches and leaves.
   double from_s = 0.0, to_s = 1e9;
   Eigen::Vector3d away_W = Eigen::Vector3d::Zero();  ///< [m/s]
 

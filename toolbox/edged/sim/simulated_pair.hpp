@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Two of the simulated cameras beside each other: a rig with two event cameras and two frame cameras.
+// A stereo pair of simulated cameras: a rig with two event cameras and two frame cameras.
 #pragma once
 
 #include <memory>

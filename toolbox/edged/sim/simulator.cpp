@@ -14,7 +14,7 @@ namespace {
 constexpr Timestamp kForever = Timestamp::max();
 constexpr Duration kMicrosecond(1000);
 constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
-// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are seen in time.
+// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are not missed.
 constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(SimulatorConfig config) {
@@ -227,7 +227,7 @@ double Simulator::image_speed(Timestamp t) const {
 }
 
 Timestamp Simulator::next_render_time() const {
-  // A tenth is kept in reserve for what moves between the pixels that are looked at.
+  // A reserve of a tenth for motion between the evaluated pixels.
   const double reach = 0.9 * config_.max_motion_px;
   const double speed = std::max(image_speed(*t_), 1e-3);
   double step = std::min(kLongestStep_s, reach / speed);

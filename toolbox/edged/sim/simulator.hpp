@@ -53,9 +53,9 @@ struct SimulatorConfig {
   void visit(ConfigFields& fields);
   static SE3 davis240c_extrinsics();
 
-  /// Of another camera of the same flight through the same scene, which are made for the one at T_B_C.
+  /// A further camera on the same flight through the same scene, which are designed for the one at T_B_C.
   struct Mount {
-    SE3 T_C_M;           ///< where it sits against that
+    SE3 T_C_M;           ///< its pose relative to that
     std::string suffix;  ///< of its cameras' names; with one its noise is its own
   };
   Mount mount;
@@ -94,7 +94,7 @@ class Simulator : public Dataset {
   std::size_t renderings() const { return renderings_; }
   Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
   const Rendering& last_rendering() const { return renderer_.last(); }
-  /// All there is to be seen.
+  /// The scene.
   const Scene& scene() const { return renderer_.scene(); }
 
  private:
@@ -127,8 +127,8 @@ class Simulator : public Dataset {
   std::optional<Timestamp> t_;       // rendered up to here
   int frame_count_ = 0;              // read out so far
   std::int64_t imu_count_ = 0;
-  std::vector<float> radiance_, previous_;  // what the sensors see of the last picture and of the one before
-  std::deque<Event> events_;                // rendered but not handed out, as frames_
+  std::vector<float> radiance_, previous_;  // input of the sensors: the last rendered image and the one before
+  std::deque<Event> events_;                // rendered but not returned yet, as frames_
   std::deque<Frame> frames_;
   std::optional<ImuSample> imu_;  // the next one
   std::size_t renderings_ = 0;

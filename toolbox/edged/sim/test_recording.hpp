@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// All of a recording, by sensor.
+/// All measurements of a recording, by sensor.
 struct Recorded {
   std::vector<Event> events;
   std::vector<Frame> frames;

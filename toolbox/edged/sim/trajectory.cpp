@@ -111,7 +111,8 @@ std::vector<Vector7d> solve(const Samples& samples, const std::vector<double>& w
   return control;
 }
 
-/// Cauchy weights, residuals in units of their own median; position and rotation are judged apart, the worse counts.
+/// Cauchy weights, residuals in units of their own median; separate for position and rotation, with the smaller weight
+/// for both.
 std::vector<double> reweight(const Samples& samples, const std::vector<Vector7d>& control, double knot_s) {
   const std::size_t n = samples.s.size();
   std::vector<double> position(n), rotation(n), weights(n);

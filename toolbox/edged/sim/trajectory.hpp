@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Where the body is and how it moves at one instant; all derivatives are exact.
+/// Pose and motion of the body at one instant; all derivatives are exact.
 struct Kinematics {
   SE3 T_W_B;
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();      ///< velocity of B [m/s]
@@ -18,7 +18,7 @@ struct Kinematics {
   Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< angular velocity [rad/s]
 };
 
-/// How a spline is put through samples.
+/// Parameters of the spline fit.
 struct SplineFit {
   /// Spacing of the control points [s]: motion faster than about 0.5 / knot_s [Hz] is smoothed away.
   double knot_s = 0.05;

@@ -9,12 +9,12 @@
 namespace edged {
 namespace {
 
-constexpr Duration kAround = std::chrono::seconds(2);  // for gravity: what a body is pushed by comes and goes
+constexpr Duration kAround = std::chrono::seconds(2);  // averaging time for gravity: other accelerations average out
 constexpr Duration kLeastAround = std::chrono::milliseconds(2500);
 constexpr Duration kLongestGap = std::chrono::milliseconds(60);  // between two turns
 constexpr double kLeastPush = 0.5;                               // [m/s^2]
 
-/// A turn in the axes of the first IMU sample.
+/// A rotation in the axes of the first IMU sample.
 struct Way {
   Timestamp begin, middle, end;  ///< on the IMU's clock
   Eigen::Vector3d direction;
@@ -37,7 +37,7 @@ std::vector<Way> ways_of(std::span<const Turn> turns, const GyroIntegral& imu, c
   return ways;
 }
 
-/// Specific force between two stamps beyond what is its mean around them, as a change of velocity [m/s].
+/// Specific force between two stamps minus its mean around them, as a change of velocity [m/s].
 std::optional<Eigen::Vector3d> push_between(const GyroIntegral& imu, Timestamp begin, Timestamp end) {
   const Timestamp from = std::max(imu.first(), begin - kAround);
   const Timestamp to = std::min(imu.last() - Duration(1), end + kAround);

@@ -11,8 +11,8 @@
 namespace edged {
 namespace {
 
-constexpr Duration kMean = std::chrono::milliseconds(250);  // shakes fall out
-constexpr std::size_t kApart = 8;                           // means that are compared: by then it has turned
+constexpr Duration kMean = std::chrono::milliseconds(250);  // averages vibration out
+constexpr std::size_t kApart = 8;                           // time between compared means, for a sufficient rotation
 constexpr Duration kHole = std::chrono::milliseconds(50);   // samples missing
 constexpr double kLeastTurn = 0.15;                         // [rad] between them
 constexpr std::size_t kFewest = 8;                          // pairs

@@ -13,23 +13,23 @@
 
 namespace edged {
 
-/// As the body turns, gravity turns the other way round in its axes. Where it does so only after the accelerometer's
-/// axes change signs, these are wrong against the gyro's. (The third is the same as both others; all three cannot be
-/// told: down for up.) The unit of the gyro must be right. Memory is bounded.
+/// As the body rotates, gravity rotates the opposite way in its axes. If it does so only after sign changes of
+/// accelerometer axes, these contradict the gyro's. (Negating the third axis is equivalent to negating both others;
+/// negating all three is not observable: down for up.) The unit of the gyro must be right. Memory is bounded.
 class AccelAxes {
  public:
   AccelAxes();
 
   void add(const ImuSample& sample);
 
-  /// What would make the two agree, such as "(-x, y, z)"; nothing while they agree as they are, or too little turned.
+  /// The axes that would make the two agree, such as "(-x, y, z)"; nothing if they agree, or after too little rotation.
   std::optional<std::string> better() const;
 
  private:
   /// Mean over a part of a second.
   struct Mean {
     Timestamp begin;
-    Eigen::Quaterniond q_0_B = Eigen::Quaterniond::Identity();  ///< in its middle, against the first sample
+    Eigen::Quaterniond q_0_B = Eigen::Quaterniond::Identity();  ///< at its middle, relative to the first sample
     Eigen::Vector3d accel = Eigen::Vector3d::Zero();
     std::size_t count = 0;
   };

@@ -11,7 +11,7 @@
 namespace edged {
 namespace {
 
-/// What is said of a body that turns about all axes and shakes, its accelerometer's axes changed by M.
+/// The result for a body that rotates about all axes and vibrates, with its accelerometer's axes changed by M.
 std::optional<std::string> said_of(const Eigen::Matrix3d& M) {
   AccelAxes axes;
   Eigen::Quaterniond q_W_B = Eigen::Quaterniond::Identity();

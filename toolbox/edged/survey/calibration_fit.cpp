@@ -10,13 +10,14 @@
 namespace edged {
 namespace {
 
-/// An offset and its sigma against what is still right.
+/// An offset and its sigma, with the limits of a correct calibration.
 struct Offset {
   double value = 0.0, sigma = 0.0;
-  double least = 0.0;  ///< less is right, however small the sigma: calibrations are no better, and a run corrects it
-  double known = 0.0;  ///< with a larger sigma nothing was learned
+  double least =
+      0.0;  ///< a smaller offset fits, whatever the sigma: calibrations are not more accurate, and a run corrects it
+  double known = 0.0;  ///< with a larger sigma the fit is undetermined
 
-  /// Sigmas of an estimate are inflated by two already. Where they are known, what is off by 2 * known is found.
+  /// Sigmas of an estimate are already inflated by two. With sigmas at `known`, an offset of 2 * known is detected.
   bool off() const { return std::abs(value) > std::max(least, 2.0 * sigma); }
   bool unknown() const { return sigma > known && !off(); }
 };
@@ -32,7 +33,7 @@ std::string figures(const Offset& rotation, const Offset& clock) {
                      rotation.sigma, clock.value, clock.sigma);
 }
 
-/// What the run found is off, and how to write what it found.
+/// The offsets that the run estimated, and how to write the estimate.
 std::string contradiction(const CalibrationFound& c, const Offset& rotation, const Offset& clock) {
   std::string text;
   if (clock.off())

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What fits, what does not, and what nobody can tell are kept apart, and each says why.
+// Calibrations that fit, that do not fit, and undetermined ones, each with its reason.
 #include "edged/survey/calibration_fit.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One function a subject; the limits stand where they are used.
+// One function per subject; limits are defined where they are used.
 #include "edged/survey/diagnosis.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -17,8 +17,8 @@
 namespace edged {
 namespace {
 
-constexpr double kShortest_s = 1.0;  // a run needs as much to start
-constexpr double kSigmas = 6.0;      // errors of corners are not independent, so sigmas are too small
+constexpr double kShortest_s = 1.0;  // a run needs this much to initialize
+constexpr double kSigmas = 6.0;      // errors of corners are correlated, so sigmas are too small
 
 class Findings {
  public:
@@ -37,7 +37,7 @@ class Findings {
 
 bool sure(const GyroAgreement& found) { return found.unexplained < 0.5; }
 
-/// Corners on pictures of events turn too slowly by a third, and no other unit is within a factor of two.
+/// Corners on images of events underestimate rotation by a third, and no other unit is within a factor of two.
 bool in_degrees(const CameraCheck& check) {
   const double ratio =
       check.agreement && sure(*check.agreement) ? check.agreement->gyro_scale / kDegreesPerRadian : 0.0;
@@ -48,7 +48,7 @@ std::string interval(const char* name, const StreamSurvey& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
 }
 
-/// What the sensors that are there cover together.
+/// The time that all present sensors cover.
 void judge_overlap(const Survey& s, Findings& out) {
   std::string all;
   Duration shortest = Duration::max();
@@ -67,7 +67,7 @@ void judge_overlap(const Survey& s, Findings& out) {
               "stamp all sensors on one clock when recording: no run can mend whole seconds");
   else if (common < 0.9 * least)
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
-             "what only some of them cover is left out; check that all were recorded");
+             "the time that only some of them cover is not used; check that all were recorded");
   else if (common < kShortest_s)
     out.warn(fmt::format("all sensors together cover {:.2f} s: {}", common, all),
              "too short for a run, which needs about a second to start: record more");
@@ -90,7 +90,7 @@ void judge_imu_rate(const Survey& s, Findings& out) {
   const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
   if (rate < 100.0)
     out.warn(fmt::format("IMU at {:.0f} Hz", rate),
-             "record it at 200 Hz or more: between samples the motion is guessed");
+             "record it at 200 Hz or more: between samples the motion is interpolated");
   else
     out.good(fmt::format("IMU at {:.0f} Hz", rate));
   if (s.imu.gaps == 0) return;
@@ -103,7 +103,7 @@ void judge_imu_rate(const Survey& s, Findings& out) {
   to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
 }
 
-/// Gravity is in the gyro's columns, always there and steady where the body is, and not in those of the accelerometer.
+/// Gravity, constant in magnitude, is in the columns of the gyro and not in those of the accelerometer.
 bool columns_swapped(const ImuSurvey& imu) {
   const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
   return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&
@@ -159,10 +159,10 @@ void judge_events(const Survey& s, Findings& out) {
              "mask them in the camera, or raise its thresholds");
   if (e.positive_share < 0.05 || e.positive_share > 0.95)
     out.warn(fmt::format("{:.1f} % of the events are positive", 100 * e.positive_share),
-             "check that both polarities are recorded and told apart");
+             "check that both polarities are recorded and distinguished");
   if (e.hot_share <= 0.02)
     out.good(fmt::format("events: {}, {:.0f} % positive",
-                         e.hot_known ? fmt::format("{} hot pixels", e.hot_pixels) : "too short to tell hot pixels",
+                         e.hot_known ? fmt::format("{} hot pixels", e.hot_pixels) : "too short to detect hot pixels",
                          100 * e.positive_share));
 }
 
@@ -181,7 +181,7 @@ void judge_frames(const Survey& s, Findings& out) {
 }
 
 void judge_shift(const CameraCheck& check, Findings& out) {
-  // In dim light the events of a camera come later by milliseconds than those of the same camera in good light.
+  // In dim light events are delayed by milliseconds relative to good light.
   const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
@@ -199,16 +199,16 @@ void judge_shift(const CameraCheck& check, Findings& out) {
     out.good(text);
 }
 
-/// A rotation to the IMU against the measured one, as far as that is known.
+/// The difference of a rotation to the IMU from the measured one, with its uncertainty.
 struct RotationError {
   Eigen::Vector3d turn;  ///< measured = this rotation * Exp(turn) [rad]
   double degrees = 0.0, sigma_deg = 0.0;
-  double sigmas = 0.0;  ///< the whole of it in standard deviations, those of systematic errors included
+  double sigmas = 0.0;  ///< in standard deviations, systematic errors included
   bool right() const { return degrees <= 2.0 || sigmas <= 4.0; }  // calibrations are rarely better than 1 deg
   bool unclear() const { return degrees > 4.0 && sigmas <= 4.0; }
 };
 
-/// The axis about which R_B_C is not known, of the camera; nothing where all three are.
+/// The camera axis about which R_B_C is not observable; nothing if all three are.
 std::optional<Eigen::Vector3d> unknown_axis(const GyroAgreement& found) {
   constexpr double kUnknown_deg = 10.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(found.rotation_covariance);
@@ -231,7 +231,7 @@ RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found)
   return error;
 }
 
-/// Whether the transform was written down in the other direction: its inverse is right, and far better than itself.
+/// Whether the transform is given in the other direction: its inverse fits, and far better than itself.
 bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, const GyroAgreement& found) {
   constexpr double kBetter = 5.0;  // standard deviations
   const RotationError inverse = error_of(given.transpose(), found);
@@ -239,7 +239,7 @@ bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, cons
 }
 
 void judge_rotation(const CameraCheck& check, Findings& out) {
-  constexpr double kWrong_deg = 8.0;  // less is made up for by online calibration, at a cost
+  constexpr double kWrong_deg = 8.0;  // online calibration corrects less than this, at a cost
   const GyroAgreement& found = *check.agreement;
   const std::string name = "camera " + check.camera.name;
   const auto axis = unknown_axis(found);
@@ -252,13 +252,14 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
   const RotationError error = error_of(given, found);
   const std::string number = fmt::format("{:.1f} deg +- {:.1f} deg", error.degrees, error.sigma_deg);
   if (error.unclear())
-    return out.note(fmt::format("{}: its rotation differs from the gyro's by {}: too unsure to judge it", name, number),
-                    "turn the sensor about all axes before a scene with texture");
+    return out.note(
+        fmt::format("{}: its rotation differs from the gyro's by {}: too uncertain for a verdict", name, number),
+        "turn the sensor about all axes before a scene with texture");
   if (error.right()) return out.good(fmt::format("{}: its rotation agrees with the gyro to {}", name, number));
   const Eigen::Vector3d about = error.turn.normalized();
-  const std::string remedy =
-      fmt::format("what fits is the calibration's times {:.1f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
-                  error.degrees, about.x(), about.y(), about.z());
+  const std::string remedy = fmt::format(
+      "the calibration fits after a rotation by {:.1f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
+      error.degrees, about.x(), about.y(), about.z());
   const std::string text = fmt::format("{}: its rotation to the IMU contradicts the gyro by {}", name, number);
   if (inverse_fits(given, error, found))
     out.error(text + ", the inverse fits", kTurnRound);
@@ -268,7 +269,7 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
     out.error(text, remedy);
 }
 
-/// A first guess for those who have no calibration yet.
+/// An initial guess without a calibration.
 void tell_rotation(const CameraCheck& check, Findings& out) {
   const Eigen::Matrix3d& R = check.agreement->R_B_C;
   out.note(fmt::format(
@@ -286,8 +287,8 @@ void judge_scale(const CameraCheck& check, Findings& out) {
            "check the focal length, and the unit of the gyro");
 }
 
-/// Where corners are too few or too blurred to explain the turning, they have too little of it in common. (Right ones:
-/// frames within 1.5 %, events within 1.6 %, but up to 33 % where 12 % and more stay unexplained.)
+/// With too few or too blurred corners the rotation is underestimated. (Correct calibrations: frames within 1.5 %,
+/// events within 1.6 %, but up to 33 % where 12 % or more stay unexplained.)
 void judge_gyro_scale(const CameraCheck& check, Findings& out) {
   constexpr double kLeast = 0.04, kUnexplained = 0.1;
   const GyroAgreement& found = *check.agreement;
@@ -302,8 +303,8 @@ void judge_gyro_scale(const CameraCheck& check, Findings& out) {
     out.good(fmt::format("camera {}: the gyro's scale agrees with it to {}", check.camera.name, number));
 }
 
-/// By the camera that tells most. Turns overlap and their ways are noisy: of n, chance makes a correlation of 1.2 over
-/// the root of n.
+/// From the camera with most information. Rotations overlap and displacements are noisy: the correlation of n unrelated
+/// ones is 1.2 over the root of n.
 void judge_accel(const std::vector<CameraCheck>& cameras, Findings& out) {
   constexpr double kLeast = 0.3, kByChance = 3.0;
   const CameraCheck* best = nullptr;
@@ -323,7 +324,7 @@ void judge_accel(const std::vector<CameraCheck>& cameras, Findings& out) {
               "the sign of all its axes is wrong: multiply it by -1; at rest it must read +9.8 m/s^2 along the axis "
               "that points up");
   else
-    out.good(fmt::format("camera {}: it moves as the accelerometer says (correlation {:.2f})", best->camera.name,
+    out.good(fmt::format("camera {}: it agrees with the accelerometer (correlation {:.2f})", best->camera.name,
                          accel.correlation));
 }
 
@@ -347,10 +348,10 @@ void judge_camera(const CameraCheck& check, const Survey& s, Findings& out) {
     return out.note(
         fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
   if (!sure(*check.agreement))
-    return out.note(
-        fmt::format("camera {}: turns too little, or too unlike the gyro, to judge its calibration ({:.0f} % of "
-                    "its turning unexplained)",
-                    name, 100 * std::min(1.0, check.agreement->unexplained)));
+    return out.note(fmt::format(
+        "camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % of "
+        "its turning unexplained)",
+        name, 100 * std::min(1.0, check.agreement->unexplained)));
   if (check.agreement->mirrored)
     return out.error(
         fmt::format("camera {}: the gyro turns the other way, as if it were seen in a mirror", name),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a recording or its calibration, and what to do about it.
+// Problems of a recording or its calibration, with remedies.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@
 
 namespace edged {
 
-/// What to do about a camera whose inverse transform fits, whoever found that.
+/// The remedy for a camera whose inverse transform fits.
 inline constexpr const char* kTurnRound =
     "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B "
     "(`edged calib` shows both directions)";
 
-/// What a camera and the gyro say of each other.
+/// The comparison of a camera with the gyro.
 struct CameraCheck {
   RigCamera camera;  ///< as calibrated
   bool has_extrinsics = true;
-  std::optional<GyroAgreement> agreement;  ///< nothing where there was too little to compare
+  std::optional<GyroAgreement> agreement;  ///< nothing with too little data
 };
 
 /// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs.

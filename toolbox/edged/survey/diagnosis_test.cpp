@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Each ill is named with its remedy, and a healthy recording has none.
+// Each problem is named with its remedy, and a good recording has none.
 #include "edged/survey/diagnosis.hpp"
 
 #include <gmock/gmock.h>
@@ -210,7 +210,7 @@ TEST(Diagnosis, NamesSwappedColumnsAndMirroredAxesAsSuch) {
   const std::vector<Finding> findings = diagnose(s, false, {});
   EXPECT_THAT(remedy_of(findings, Severity::Error, "gyro and accelerometer are swapped"),
               HasSubstr("t ax ay az gx gy gz"));
-  EXPECT_EQ(std::ranges::count(findings, Severity::Error, &Finding::severity), 1) << "no unit is blamed beside it";
+  EXPECT_EQ(std::ranges::count(findings, Severity::Error, &Finding::severity), 1) << "no unit is reported beside it";
   CameraCheck check = agreeing();
   check.agreement->mirrored = true;
   EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "turns the other way"), HasSubstr("sign"));

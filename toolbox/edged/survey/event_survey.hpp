@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How many events came, when and from where.
+// Statistics of events: rates, times and pixels.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct EventSurvey {
   std::array<double, kRateBands.size() + 1> rate_shares{};  ///< of the time, by band
   double active_share = 0.0;                                ///< pixels that fired at all, of the sensor
   cv::Size extent;                                          ///< the least sensor that holds every event [px]
-  bool hot_known = true;  ///< false for a recording that is too short to tell hot pixels
+  bool hot_known = true;  ///< false for a recording that is too short to detect hot pixels
   std::size_t hot_pixels = 0;
   double hot_share = 0.0;         ///< events of hot pixels, of all
   std::vector<HotPixel> hottest;  ///< at most ten, hottest first

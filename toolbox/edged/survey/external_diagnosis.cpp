@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with height and velocity sensors.
+// Problems of height and velocity sensors.
 #include "edged/survey/external_diagnosis.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -22,13 +22,14 @@ Finding judge_stream(const std::string& name, const ExternalSurvey& s) {
   const double rate = stream.typical_step > Duration(0) ? 1.0 / to_seconds(stream.typical_step) : 0.0;
   if (rate < kFewest_hz)
     return {Severity::Warning, fmt::format("{} at {:.1f} Hz", name, rate),
-            "record it at 10 Hz or more: a sample a second holds the estimate only for an instant"};
+            "record it at 10 Hz or more: one sample per second bounds the drift only for an instant"};
   if (stream.gaps > 0)
     return {Severity::Warning,
             fmt::format("{} at {:.0f} Hz, {} gaps of {:.1f} s together, the longest {:.1f} s at {:.3f} s", name, rate,
                         stream.gaps, to_seconds(stream.missing), to_seconds(stream.longest.front().length),
                         to_seconds(stream.longest.front().after)),
-            "within a gap it holds nothing; a range finder that is out of range is better left out than repeated"};
+            "within a gap it does not bound the drift; leave samples of a range finder out of range out instead of "
+            "repeating them"};
   return {Severity::Good, fmt::format("{} at {:.0f} Hz", name, rate), ""};
 }
 
@@ -59,9 +60,10 @@ void judge_external(const ExternalSurveys& surveys, const StreamSurvey& imu, std
                      fmt::format("its unit is {}, not mm or feet: name it in the first line, such as `{} [mm{}]`",
                                  sensor.unit, sensor.columns[0], speed ? "/s" : "")});
     else if (s.sigma > 0.0 && s.noise > kTooSure * s.sigma)
-      out.push_back({Severity::Warning,
-                     fmt::format("{}: noise of {:.2g} {}, its samples say {:.2g}", name, s.noise, sensor.unit, s.sigma),
-                     "give a larger sigma, or none and the option"});
+      out.push_back(
+          {Severity::Warning,
+           fmt::format("{}: noise of {:.2g} {}, its samples state {:.2g}", name, s.noise, sensor.unit, s.sigma),
+           "give a larger sigma, or none and the option"});
   }
 }
 

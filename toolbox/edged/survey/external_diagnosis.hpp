@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with height and velocity sensors, for the diagnosis of a recording.
+// Problems of height and velocity sensors, for the diagnosis of a recording.
 #pragma once
 
 #include <vector>

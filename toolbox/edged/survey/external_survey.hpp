@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the samples of one external sensor say of it: rate, range, noise, and for how long it repeated itself.
+// Statistics of one external sensor: rate, range, noise, and longest time without change.
 #pragma once
 
 #include <map>
@@ -15,8 +15,8 @@ namespace edged {
 struct ExternalSurvey {
   StreamSurvey stream;
   std::vector<double> least, most;  ///< of each column, where it is measured
-  double noise = 0.0;               ///< standard deviation of a sample, by how samples that follow each other differ
-  double sigma = 0.0;               ///< what the samples say of it, in the mean; 0: nothing
+  double noise = 0.0;               ///< standard deviation of a sample, from differences of consecutive samples
+  double sigma = 0.0;               ///< mean sigma stated in the samples; 0: none
   double fastest = 0.0;             ///< largest change in a second, of any column, between means of half a second
   Duration constant{0};             ///< the longest time in which no number changed
 };

@@ -57,7 +57,7 @@ TEST(ExternalSurvey, MillimetresAreFoundByTheSpeedOfTheClimb) {
 }
 
 TEST(ExternalSurvey, ASigmaThatIsTooSmallIsFound) {
-  EXPECT_TRUE(says(survey_of([](double t) { return noisy(t, 0.2); }, 0.02), Severity::Warning, "its samples say"));
+  EXPECT_TRUE(says(survey_of([](double t) { return noisy(t, 0.2); }, 0.02), Severity::Warning, "its samples state"));
 }
 
 TEST(ExternalSurvey, GapsAndSlowSensorsAreFound) {

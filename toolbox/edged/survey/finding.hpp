@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One thing that a diagnosis has found.
+// A finding of a diagnosis.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace edged {
 
 enum class Severity {
-  Good,     ///< looked at and found in order
+  Good,     ///< checked, without problem
   Note,     ///< worth knowing
   Warning,  ///< costs accuracy
   Error     ///< a run fails or is wrong
@@ -17,7 +17,7 @@ enum class Severity {
 struct Finding {
   Severity severity = Severity::Good;
   std::string text;    ///< one line with numbers
-  std::string remedy;  ///< what to do; empty where nothing is
+  std::string remedy;  ///< remedy; may be empty
 };
 
 }  // namespace edged

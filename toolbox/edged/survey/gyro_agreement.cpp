@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kFewestTurns = 30;
 constexpr Duration kShiftStep = std::chrono::milliseconds(4);  // then refined
-constexpr double kUnlike = 0.5;                                // of the turning unexplained: the gyro is another's
+constexpr double kUnlike = 0.5;  // of the rotation unexplained: above it the gyro does not belong to the camera
 
-/// The same turns, seen by the camera and by the gyro at one shift [rad/s].
+/// The same rotations, measured by the camera and by the gyro at one time shift [rad/s].
 struct Pairs {
   std::vector<Eigen::Vector3d> camera, gyro;
   std::vector<Eigen::Vector3d> gyro_slope;  ///< d gyro / d shift [rad/s^2]
@@ -80,8 +80,7 @@ Fit fit_turns(const Pairs& pairs) {
   return fit;
 }
 
-/// A step of Gauss-Newton in the shift [s], and what is known of it afterwards. Turns overlap: `overlap` of them count
-/// for one.
+/// A step of Gauss-Newton in the shift [s], with its uncertainty. Rotations overlap: `overlap` of them count as one.
 double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgreement& agreement) {
   double slopes = 0.0, product = 0.0, squares = 0.0, weight = 0.0;
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
@@ -122,8 +121,8 @@ std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegr
   return best;
 }
 
-/// Corners err alike for seconds, so turns are not independent: the truth is in how the rotation changes when a tenth
-/// of the recording is left out (Efron and Tibshirani 1993, the jackknife by blocks).
+/// Errors of corners are correlated over seconds, so rotations are not independent: the uncertainty is estimated by
+/// leaving out a tenth of the recording at a time (Efron and Tibshirani 1993, the jackknife by blocks).
 Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
   constexpr std::size_t kBlocks = 10;
   const std::size_t n = pairs.camera.size();
@@ -141,9 +140,9 @@ Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
   return sum * (static_cast<double>(kBlocks) - 1) / static_cast<double>(kBlocks);
 }
 
-/// The same better, where the turns come with their corners.
+/// A refinement, if the rotations come with their corners.
 void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreement& agreement) {
-  // Where the gyro's unit is another one there is no use for a better rotation.
+  // With a wrong unit of the gyro a better rotation is useless.
   const double scale = agreement.gyro_scale;
   if (agreement.unexplained < kUnlike && (scale < 0.67 || scale > 1.5)) return;
   const auto fit = fit_rays(turns, gyro, {agreement.R_B_C, to_seconds(agreement.time_offset)});
@@ -195,7 +194,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
 
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected) {
-  // Half a turn about an axis makes up for two negated axes of three: little may stay unexplained then.
+  // Half a turn about an axis is equivalent to two negated axes: then only little may stay unexplained.
   constexpr double kDoubtful = 0.03, kFarBetter = 0.5;
   auto given = compare_as_given(turns, gyro, expected);
   if (!given || given->unexplained < kDoubtful) return given;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether a camera turned as the gyro says: time shift, rotation and scale between the two.
+// Agreement of the rotations of a camera and the gyro: time shift, rotation and scale between the two.
 #pragma once
 
 #include <optional>
@@ -14,22 +14,22 @@ namespace edged {
 
 struct GyroAgreement {
   std::size_t turns = 0;     ///< compared
-  double unexplained = 1.0;  ///< share of the turning; above about 0.5 the rest means little
+  double unexplained = 1.0;  ///< share of the rotation; above about 0.5 all else is unreliable
   Duration time_offset{0};   ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;
-  bool at_bound = false;  ///< farther off than was searched: time_offset is no estimate
+  bool at_bound = false;  ///< outside the searched range: time_offset is no estimate
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
-  double rotation_sigma = 0.0;  ///< of the least known axis [rad]; large where it turned about one axis only
-  /// Of R_B_C * Exp(error), from how the answers of parts of the recording scatter [rad^2].
+  double rotation_sigma = 0.0;  ///< of the least certain axis [rad]; large if it rotated about one axis only
+  /// Of R_B_C * Exp(error), from the scatter of the estimates from parts of the recording [rad^2].
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
   bool mirrored = false;           ///< fits only after its turns are negated: axes of the gyro have the wrong sign
   double gyro_scale = 1.0;         ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
-  double scale_sigma = 0.0;        ///< 0: only units can be told
+  double scale_sigma = 0.0;        ///< 0: only units can be determined
   double scale_unexplained = 1.0;  ///< as unexplained, with that scale
   AccelAgreement accel;            ///< of the accelerometer on the same turns
 };
 
-/// Time offsets within kMostShift of `expected` are tried. Nothing where there are too few turns to compare.
+/// Time offsets within kMostShift of `expected` are tried. Nothing with too few rotations to compare.
 inline constexpr Duration kMostShift = std::chrono::milliseconds(100);
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected);

@@ -23,7 +23,7 @@ GyroIntegral gyro_of(double seconds, double factor = 1.0) {
   return gyro;
 }
 
-/// What a camera, turned by R_B_C and with its clock behind by `offset_s`, sees of it at 25 Hz.
+/// What a camera, turned by R_B_C and with its clock behind by `offset_s`, measures of it at 25 Hz.
 std::vector<Turn> turns_of(double seconds, const Eigen::Matrix3d& R_B_C, double offset_s) {
   std::vector<Turn> turns;
   for (double t = 0.5; t < seconds - 0.5; t += 0.04) {
@@ -73,8 +73,8 @@ TEST(GyroAgreement, TellsAGyroWithNegatedAxes) {
   EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 0.01), gyro_of(8), Duration(0))->mirrored);
 }
 
-/// The same turns with corners at 1 to 3 m, seen by a camera that also moves by up to 0.1 m; rotation vectors as bad as
-/// those of a single turn.
+/// The same turns with corners at 1 to 3 m, of a camera that also moves by up to 0.1 m; rotation vectors with the
+/// errors of a single rotation.
 std::vector<Turn> turns_with_rays(double seconds, double offset_s) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;

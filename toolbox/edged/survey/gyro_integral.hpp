@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The turning of the body between any two stamps, as its gyro says.
+// The rotation of the body between any two stamps, from its gyro.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ class GyroIntegral {
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
   /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
   std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
-  /// The body against how it lay at the first sample, and the integral of the specific force in those axes between two
-  /// stamps [m/s]: by how much its velocity changes, and what holds it against gravity.
+  /// The rotation relative to the first sample, and the integral of the specific force in those axes between two stamps
+  /// [m/s]: the change of velocity plus the reaction to gravity.
   std::optional<Eigen::Quaterniond> attitude_at(Timestamp t) const;
   std::optional<Eigen::Vector3d> pushed_between(Timestamp begin, Timestamp end) const;
   bool empty() const { return stamps_.empty(); }

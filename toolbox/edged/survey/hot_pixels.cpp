@@ -22,7 +22,7 @@ HotPixelFinder::HotPixelFinder(cv::Size grid) : grid_(grid) {
   total_.resize(pixels), window_.resize(pixels), excess_.resize(pixels);
 }
 
-/// Windows without any event count for nothing: more likely the recording has a hole there.
+/// Windows without any event are ignored: the recording probably has a gap there.
 void HotPixelFinder::end_window(Timestamp t) {
   if (window_end_ == Timestamp::min()) {
     window_end_ = t + kWindow;
@@ -52,8 +52,8 @@ void HotPixelFinder::judge_window(double seconds) {
   std::ranges::fill(window_, std::uint16_t{0});
 }
 
-/// Events of the second busiest of the eight pixels around: an edge or a thing that moves has two or more of them, and
-/// a hot pixel may have another one beside it.
+/// Events of the second most active of the eight neighbours: an edge or moving object has two or more of them, and a
+/// hot pixel may have another one beside it.
 int HotPixelFinder::neighbours(int x, int y) const {
   int most = 0, second = 0;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, extent_.height - 1); ++v)

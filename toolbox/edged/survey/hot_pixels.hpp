@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels of an event camera fire by themselves.
+// Detects the hot pixels of an event camera.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,20 @@
 
 namespace edged {
 
-/// A pixel that fires by itself, whatever is before it.
+/// A pixel that fires by itself, independent of the scene.
 struct HotPixel {
   int x = 0, y = 0;
-  std::size_t events = 0;  ///< of the whole recording, those of the scene with them
-  double rate_hz = 0.0;    ///< beyond what the pixels beside it do
+  std::size_t events = 0;  ///< of the whole recording, with those of the scene
+  double rate_hz = 0.0;    ///< beyond those of its neighbours
 };
 
-/// A hot pixel fires in every window of time, with its neighbours or without them. What it has beyond them is averaged
-/// over all windows, the quiet ones counting most: there the scene hides nothing, and nothing of the scene passes for
-/// it.
+/// A hot pixel fires in every window of time, with its neighbours or without them. Its excess is averaged over all
+/// windows, quiet ones with a larger weight, as there the scene has little influence.
 class HotPixelFinder {
  public:
-  static constexpr double kLeastHz = 5.0;  ///< slower ones do no harm
+  static constexpr double kLeastHz = 5.0;  ///< slower ones are harmless
 
-  /// 22 bytes a pixel of `grid`; what lies beyond is passed over.
+  /// 22 bytes a pixel of `grid`; pixels outside are ignored.
   explicit HotPixelFinder(cv::Size grid);
 
   /// Stamps may not go back.
@@ -44,7 +43,7 @@ class HotPixelFinder {
 
   /// Hottest first; nothing before two windows have passed, unless one pixel has more than a hundredth of all events.
   std::vector<HotPixel> result() const;
-  /// False for recordings that are too short to tell.
+  /// False for recordings that are too short.
   bool known() const { return first_ != Timestamp::min() && last_ - first_ >= kWindow * 3 / 2; }
   /// Pixels that fired at all.
   std::size_t active() const;

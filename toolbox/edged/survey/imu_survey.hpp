@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the IMU says of itself: noise, rest and units.
+// Statistics of the IMU: noise, rest and units.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct ImuCalm {
 };
 
 /// The longest time at rest, of whole half seconds. The noise is the Allan deviation of means over 50 ms, as a density:
-/// a band of about 10 Hz, above what a bias wanders and below where most IMUs filter their noise away.
+/// a band of about 10 Hz, above the bias random walk and below the cut-off of most IMU filters.
 struct ImuRest {
   Timestamp begin;
   Duration length{0};
@@ -31,7 +31,7 @@ struct ImuRest {
 
 struct ImuSurvey {
   std::optional<ImuCalm> calm;             ///< nothing where no half second has samples in all of its parts
-  std::optional<ImuRest> rest;             ///< nothing where it never rested: then motion hides the noise
+  std::optional<ImuRest> rest;             ///< nothing if it was never at rest: then motion hides the noise
   double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
   double mean_gyro = 0.0, max_gyro = 0.0;  ///< angular speed [rad/s]
 };

@@ -19,7 +19,7 @@ constexpr std::size_t kFewestToFit = 30;  // turns
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Information = Eigen::Matrix<double, kParameters, kParameters>;
 
-/// What one turn says of its own rotation, its translation left open: cost ~ step^T H step / 2 - g^T step for
+/// The cost of one rotation, with free translation: cost ~ step^T H step / 2 - g^T step for
 /// R_begin_end * Exp(step).
 struct TurnTerms {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -27,7 +27,7 @@ struct TurnTerms {
   std::vector<double> errors;  ///< [rad]
 };
 
-/// The direction of translation that the rays agree on best.
+/// The direction of translation that fits the rays best.
 Eigen::Vector3d direction_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
   for (int round = 0; round < 3; ++round) {
@@ -66,7 +66,7 @@ TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
   return terms;
 }
 
-/// The gyro's turn in the camera's frame, and how it changes with the parameters.
+/// The gyro's rotation in the camera's frame, and its derivatives by the parameters.
 struct Predicted {
   Eigen::Vector3d phi_C;
   Eigen::Matrix3d R;
@@ -130,7 +130,7 @@ Sums sums_at(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMo
 
 constexpr double kHeld = 1e-6, kFreeScale = 0.3;  // sigmas of ln of the gyro's scale
 
-/// What is known beforehand, so that what data say nothing of stays where it is: biases are below 0.1 rad/s.
+/// Priors, which keep unobservable parameters at their initial values: biases are below 0.1 rad/s.
 Normal with_prior(const Normal& data, const GyroMount& mount, double variance, double scale_sigma) {
   Parameters sigmas, step = Parameters::Zero();
   sigmas << Eigen::Vector3d::Ones(), 0.05, Eigen::Vector3d::Constant(0.1), scale_sigma;
@@ -149,9 +149,9 @@ void move(GyroMount& mount, const Parameters& step) {
   mount.gyro_scale *= std::exp(std::clamp(step[7], -0.2, 0.2));
 }
 
-/// Corners err alike for seconds, so turns are not independent: how the answer changes when a tenth of the recording is
-/// left out tells more than the normal equations (Efron and Tibshirani 1993, the jackknife by blocks), but where these
-/// know nothing.
+/// Errors of corners are correlated over seconds, so rotations are not independent: leaving out a tenth of the
+/// recording at a time (Efron and Tibshirani 1993, the jackknife by blocks) gives a better covariance than the normal
+/// equations, except in unobservable directions.
 Information covariance_of(const Sums& sums, const GyroMount& mount, double variance, double scale_sigma) {
   const Normal all = sums.total();
   Information covariance = variance * with_prior(all, mount, variance, scale_sigma).H.inverse();
@@ -163,8 +163,8 @@ Information covariance_of(const Sums& sums, const GyroMount& mount, double varia
   return covariance;
 }
 
-/// The scale is asked for last, from where all else fits: most gyros have the right one, and what else is found should
-/// not suffer from it.
+/// The scale is estimated last, after all else: most gyros have the right one, and it should not affect the other
+/// estimates.
 void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spread, RayFit& fit) {
   constexpr int kRounds = 5;
   GyroMount mount = fit.mount;

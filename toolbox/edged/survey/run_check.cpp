@@ -17,18 +17,18 @@ namespace edged {
 namespace {
 
 constexpr int kCorners = 40;
-constexpr double kLeastRate = 0.15;                          // what counts as turning [rad/s]
+constexpr double kLeastRate = 0.15;                          // threshold of rotation [rad/s]
 constexpr double kNewest = 0.05;                             // weight of a sample in the gyro's present rate
-constexpr double kUnexplained = 0.5;                         // beyond it an agreement means little
-constexpr Duration kEnough = std::chrono::seconds(3);        // turning for so long, more tells little more
-constexpr Duration kBurst = std::chrono::milliseconds(500);  // followed for so long, then not for as long
+constexpr double kUnexplained = 0.5;                         // above it the comparison is unreliable
+constexpr Duration kEnough = std::chrono::seconds(3);        // duration of rotation after which more data adds little
+constexpr Duration kBurst = std::chrono::milliseconds(500);  // tracked for this time, then not for the same time
 constexpr int kOneOf = 4;                                    // such bursts, events and frames are surveyed
-constexpr Duration kPatience = std::chrono::seconds(6);      // with frames, before the events of their lens are asked
+constexpr Duration kPatience = std::chrono::seconds(6);      // with frames, before the events of their lens are used
 constexpr Duration kFirstUnits = std::chrono::seconds(5);    // until then a gyro can be checked against a camera
 
 bool agrees(const std::optional<GyroAgreement>& found) { return found && found->unexplained < kUnexplained; }
 
-/// Median over the turns of what the gyro does not explain when the camera is mounted with R_B_C [rad/s].
+/// Median over the rotations of the part that the gyro does not explain with R_B_C [rad/s].
 double median_error(const std::vector<Turn>& turns, const GyroIntegral& gyro, const GyroAgreement& found,
                     const Eigen::Matrix3d& R_B_C) {
   std::vector<double> errors;
@@ -40,9 +40,9 @@ double median_error(const std::vector<Turn>& turns, const GyroIntegral& gyro, co
   return median(std::move(errors));
 }
 
-/// Turns that are too noisy to tell the rotation still tell one that is grossly wrong: then the best one explains
-/// clearly more. (Mirror recordings, two people in view included: right calibrations reach 22 deg and 1.22 times the
-/// error, but not both; those wrong by 90 deg 80 deg and 1.20 times at least.)
+/// Rotations too noisy to determine R_B_C still detect a grossly wrong one: then the best one explains clearly more.
+/// (Mirror recordings, two people in view included: correct calibrations reach 22 deg and 1.22 times the error, but not
+/// both; those wrong by 90 deg have at least 80 deg and 1.20 times.)
 double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro, const RigCamera& given,
                        const GyroAgreement& found) {
   constexpr double kGross_deg = 45.0, kClearlyWorse = 1.15;
@@ -53,15 +53,16 @@ double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro,
   return median_error(turns, gyro, found, R) > kClearlyWorse * best ? off_deg : 0.0;
 }
 
-/// Turning for so long, a camera can be judged: over less, corners on pictures of events give rotations that are wrong
-/// by any angle, and pass for those of a mirrored gyro.
+/// Duration of rotation for a verdict on a camera: with less, corners on images of events give arbitrarily wrong
+/// rotations, which resemble those of a mirrored gyro.
 Duration least_turning(const RigCamera& camera) {
   return std::chrono::seconds(camera.modality == Modality::Events ? 2 : 1);
 }
 
-/// As the doctor should take it, which follows more corners for longer: what few have in common is not in how parts of
-/// the recording scatter. (Mirror recordings, pieces of 8 s, calibrated right: events up to 14 deg off at a sigma of
-/// 1 deg and up to 100 ms, so that their time is left to the estimate; frames up to 12 deg at 0.8 deg in the dark.)
+/// The result for the doctor's limits, which are for more corners over a longer time: the scatter between parts of the
+/// recording does not contain errors common to few corners. (Mirror recordings, pieces of 8 s, calibrated right: events
+/// up to 14 deg off at a sigma of 1 deg and up to 100 ms, so that their time offset is left to the estimator; frames up
+/// to 12 deg at 0.8 deg in the dark.)
 GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
   constexpr double kLess = 2.0;
   const bool events = given.modality == Modality::Events;
@@ -77,7 +78,7 @@ GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
   return agreement;
 }
 
-/// Nothing more to be found out.
+/// Nothing more to check.
 bool confirms(const GyroAgreement& found, const RigCamera& given) {
   constexpr double kMostOff = 5.0 * kDegree, kSureOf = 2.0 * kDegree;  // [rad]
   return !found.mirrored && found.unexplained < kUnexplained && found.rotation_sigma < kSureOf &&
@@ -85,7 +86,7 @@ bool confirms(const GyroAgreement& found, const RigCamera& given) {
          Eigen::AngleAxisd(given.T_B_C.R().transpose() * found.R_B_C).angle() < kMostOff;
 }
 
-/// Up to its numbers.
+/// The text up to its numbers.
 std::string subject_of(const Finding& finding) { return finding.text.substr(0, finding.text.find(':')); }
 
 void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
@@ -155,7 +156,7 @@ void RunCheck::follow(Camera& camera, const Measurement& measurement) {
   look_ |= camera.done;
 }
 
-/// What is not sure yet is looked at again.
+/// Checks undetermined cameras again.
 void RunCheck::compare(Camera& camera) {
   const std::vector<Turn>& turns = camera.visual.turns();
   camera.agreement = compare_with_gyro(turns, gyro_, camera.given.time_offset);
@@ -179,7 +180,7 @@ std::vector<Finding> RunCheck::judge(Survey survey) const {
     const std::string kind = events ? "events" : "frames";
     if ((events ? survey.events : survey.frames).count == 0)
       out.push_back(
-          {Severity::Error, fmt::format("no {}: the mode needs them, and not one came", kind),
+          {Severity::Error, fmt::format("no {}: the mode needs them, and the recording has none", kind),
            fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind)});
     if (camera.done && camera.contradiction_deg > 0.0)
       out.push_back({Severity::Error,
@@ -191,7 +192,7 @@ std::vector<Finding> RunCheck::judge(Survey survey) const {
   const bool gyro_agrees = std::ranges::any_of(
       cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
   if (const auto better = accel_axes_.better(); better && gyro_agrees)
-    out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as the gyro says",
+    out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as measured by the gyro",
                    fmt::format("give it the axes of the gyro: {} would fit", *better)});
   std::erase_if(out, [](const Finding& f) { return f.severity == Severity::Good || f.severity == Severity::Note; });
   return out;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether recording and calibration contradict each other, found while a run goes: what `edged doctor` checks, as far
-// as it costs little.
+// Checks during a run whether recording and calibration contradict each other: the cheap part of `edged doctor`.
 #pragma once
 
 #include <optional>
@@ -14,20 +13,20 @@
 
 namespace edged {
 
-/// The cameras of the mode are held against the gyro until they have turned enough: with few corners, only while it
-/// turns, and of two behind one lens only one. That, and that most events are only counted, makes it cheap.
+/// The cameras of the mode are compared with the gyro until they have rotated enough. To be cheap, it uses few corners,
+/// only during rotation, only one of two cameras behind one lens, and only counts most events.
 class RunCheck {
  public:
   /// used: the cameras of the run; the first of each kind is checked. has_extrinsics: their poses are calibrated.
   RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics);
 
-  /// Every measurement that comes, before it is used; those of other cameras are passed over.
+  /// Takes every measurement, before it is used; those of other cameras are ignored.
   void add(const Measurement& measurement);
 
-  /// Errors that have become certain and were not given out before.
+  /// New errors that have become certain.
   std::vector<Finding> news();
 
-  /// Warnings and errors by all that has come; after the last measurement. truth: that of the dataset.
+  /// Warnings and errors from all measurements; after the last one. truth: that of the dataset.
   std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth);
 
  private:
@@ -35,12 +34,12 @@ class RunCheck {
     RigCamera given;
     VisualTurns visual;
     std::size_t counted = 0;  ///< of the turns
-    Duration turning{0};      ///< time in which it turned, so far
-    Duration next_look{0};    ///< compared again when it has turned for so long
-    bool done = false;        ///< compared to satisfaction
+    Duration turning{0};      ///< duration of rotation so far
+    Duration next_look{0};    ///< duration of rotation at the next comparison
+    bool done = false;        ///< comparison finished
     bool twin = false;        ///< has the lens of the one before it
-    bool waits = false;       ///< for that one, unless it does not tell enough
-    /// Of the rotation that explains its turning clearly better than the calibration's, where the doctor cannot judge.
+    bool waits = false;       ///< covered by that one, unless that has too little data
+    /// Angle to the rotation that fits clearly better than the calibration, if the doctor's check is undetermined.
     double contradiction_deg = 0.0;
     std::optional<GyroAgreement> agreement = std::nullopt;
   };
@@ -55,9 +54,9 @@ class RunCheck {
   double rate_ = 0.0;  ///< of the gyro, at present [rad/s]
   AccelAxes accel_axes_;
   std::vector<Camera> cameras_;
-  std::optional<Timestamp> first_imu_, first_visual_;  ///< stamps that came first
-  Duration imu_{0}, visual_{0};                        ///< how long these have come
-  bool look_ = false, looked_ = false;                 ///< there may be news; were looked for
+  std::optional<Timestamp> first_imu_, first_visual_;  ///< first stamps
+  Duration imu_{0}, visual_{0};                        ///< duration of each stream
+  bool look_ = false, looked_ = false;                 ///< times of the next and of the last check
   std::vector<std::string> told_;
 };
 

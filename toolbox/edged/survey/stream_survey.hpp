@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How regularly one sensor delivered.
+// Regularity of the stamps of one sensor.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct StreamSurvey {
 /// Takes the stamps of one sensor in order. Memory is bounded.
 class StreamSurveyor {
  public:
-  /// longest_step: what is above counts as a gap; where it is not given, 2.5 typical steps.
+  /// longest_step: longer ones are gaps; by default 2.5 typical steps.
   explicit StreamSurveyor(std::optional<Duration> longest_step = std::nullopt) : longest_step_(longest_step) {}
 
   /// `count` measurements from `first` to `last`.

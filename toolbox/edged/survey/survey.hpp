@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a recording holds, from one pass through it.
+// The content of a recording, from one pass through it.
 #pragma once
 
 #include <functional>
@@ -33,7 +33,7 @@ struct Survey {
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
 
-  /// Time that all sensors there cover; below zero: how far their clocks are apart.
+  /// Time that all present sensors cover; below zero: minus the gap between them.
   Duration overlap() const;
 };
 
@@ -44,12 +44,12 @@ class Surveyor {
 
   enum class Detail {
     All,
-    Stamps,  ///< of events and frames only their stamps: costs little; a part of them with All is enough for the rest
+    Stamps,  ///< only stamps of events and frames: cheap; surveying a part of them with All suffices for the rest
   };
   void add(const Measurement& measurement, Detail detail = Detail::All);
-  /// By the measurements that have come: without ground truth and repairs.
+  /// From the measurements so far: without ground truth and repairs.
   Survey so_far() const;
-  /// After the last measurement; truth: that of the dataset, which takes long to read.
+  /// After the last measurement; truth: that of the dataset, which is slow to read.
   Survey result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
 
  private:

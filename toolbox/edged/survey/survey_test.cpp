@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is counted, found and estimated in a recording.
+// Counts, findings and estimates of a recording.
 #include "edged/survey/survey.hpp"
 
 #include <gtest/gtest.h>
@@ -128,7 +128,7 @@ TEST(EventSurveyor, SurvivesAnySensorAndOneEvent) {
   }
 }
 
-/// Ten seconds before a moving texture, which all pixels see at up to 40 Hz, without a moment of rest.
+/// Ten seconds of a moving texture, at up to 40 Hz in all pixels, without rest.
 TEST(EventSurveyor, FindsHotPixelsSlowerThanTheSceneAndNoOthers) {
   std::mt19937_64 random(3);
   std::vector<Event> events;

@@ -13,8 +13,8 @@ constexpr std::size_t kFewestPairs = 12;
 constexpr std::size_t kMostTurns = 3000;                       // bounds time and memory
 constexpr double kEventsPerPixel = 0.3;                        // of a picture
 constexpr Duration kShortest = std::chrono::milliseconds(10);  // between pictures of events
-constexpr Duration kBaseline = std::chrono::milliseconds(80);  // of a turn, at least: over less, noise rules
-constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is no turn, but a gap
+constexpr Duration kBaseline = std::chrono::milliseconds(80);  // least duration of a rotation: below it noise dominates
+constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is a gap
 
 TrackerConfig with_corners(int corners) {
   TrackerConfig config;
@@ -87,7 +87,7 @@ void VisualTurns::add_image(const cv::Mat& image, Timestamp t) {
   views_.push_back(std::move(view));
 }
 
-/// From the oldest view to this one.
+/// The rotation from the oldest view to this one.
 void VisualTurns::add_turn(const View& view) {
   std::vector<Eigen::Vector2d> begin, end;
   for (const auto& [id, point] : view.points) {

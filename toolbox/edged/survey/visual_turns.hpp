@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How a camera turned, from its images alone.
+// The rotations of a camera, from its images alone.
 #pragma once
 
 #include <deque>
@@ -32,13 +32,13 @@ struct Turn {
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
                                                 std::span<const Eigen::Vector2d> end);
 
-/// Follows corners through standard frames, or through pictures of the newest events.
+/// Tracks corners through standard frames, or through images of the newest events.
 class VisualTurns {
  public:
-  /// corners: at most so many are followed; fewer cost less and tell less.
+  /// corners: largest number of tracked ones; fewer are cheaper and less accurate.
   explicit VisualTurns(const RigCamera& camera, int corners = DetectorConfig().max_features);
 
-  /// Measurements of this camera; others are passed over.
+  /// Takes measurements of this camera; ignores others.
   void add(const Measurement& measurement);
   const std::vector<Turn>& turns() const { return turns_; }
 

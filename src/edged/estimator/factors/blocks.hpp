@@ -21,11 +21,11 @@ using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
 using MotionBlock = std::array<double, 9>;
 
-/// What a camera's calibration is off by: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi), and time [s] with
+/// Correction of a camera's calibration: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi), and time [s] with
 /// t_imu = t_given + time.
 using CalibrationBlock = std::array<double, 4>;
 
-/// What scale and axes of the IMU are off by: E_g row by row, then E_a. measured = (I + E) true + bias.
+/// Errors of scale and axes of the IMU: E_g row by row, then E_a. measured = (I + E) true + bias.
 using ImuIntrinsicsBlock = std::array<double, 18>;
 
 enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, HeightBias, Calibration, ImuIntrinsics };
@@ -34,7 +34,7 @@ enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, Heig
 inline constexpr double kMinDepthShare = 1e-3;
 
 /// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5),
-/// what a height sensor reads above the height of the body, a camera's calibration, or the IMU's.
+/// the bias of a height sensor, the calibration of a camera, or that of the IMU.
 struct BlockKey {
   BlockKind kind;
   std::uint64_t id;  ///< state number, FeatureId, number of the piece (WalkingScalar), index of the camera, or 0
@@ -69,7 +69,7 @@ inline SE3 pose_of(const double* block) {
   return {Eigen::Quaterniond(block[6], block[3], block[4], block[5]), Eigen::Vector3d(block[0], block[1], block[2])};
 }
 
-/// x minus x0 in the tangent space of the block: what takes x0 to x. `difference` holds tangent_size(kind) numbers.
+/// x minus x0 in the tangent space of the block: the step from x0 to x. `difference` holds tangent_size(kind) numbers.
 inline void tangent_difference(BlockKind kind, const double* x, const double* x0, double* difference) {
   if (kind != BlockKind::Pose) {
     for (int i = 0; i < block_size(kind); ++i) difference[i] = x[i] - x0[i];

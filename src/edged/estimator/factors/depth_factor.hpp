@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The depth factor (paper Eq. 5): the middle of what landmarks say of a region's inverse depth against what another
-// source says of it, up to that source's scale.
+// The depth factor (paper Eq. 5): the mean inverse depth of landmarks in a region against that of another source, up to
+// the scale of the source.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// A landmark as the factor sees it.
+/// A landmark in the factor.
 struct DepthLandmark {
   std::uint64_t id = 0;          ///< FeatureId
   SE3 T_B_C;                     ///< of the anchor camera
@@ -21,7 +21,7 @@ struct DepthLandmark {
   StateId anchor = 0;
 };
 
-/// What a source says of the depth that a camera sees at a state.
+/// The depth of a region in a camera at a state, as measured by a source.
 struct DepthMeasurement {
   DepthResidual residual;
   StateId state;
@@ -35,8 +35,8 @@ struct DepthMeasurement {
 /// in its anchor camera. With z_i the landmark's depth in the observing camera E, rho_bar is the mean of 1/z_i and ln
 /// rho_bar that of ln 1/z_i. Residual (1): weight times the chosen difference. Fails when a landmark is not in front.
 ///
-/// The window makes it anew for each cost, of the landmarks that there are. It goes into the prior with its own state,
-/// if all its landmarks are anchored there and leave as well.
+/// The window rebuilds it for each cost, from the present landmarks. It goes into the prior with its own state, if all
+/// its landmarks are anchored there and are marginalized, too.
 class DepthFactor final : public Factor {
  public:
   DepthFactor(const DepthMeasurement& measured, BlockKey scale, std::vector<DepthLandmark> landmarks);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Height and velocity: Jacobians, and what is left of samples whose state is dropped.
+// Height and velocity: Jacobians, and samples whose state is dropped.
 #include <gtest/gtest.h>
 
 #include "edged/estimator/factors/height_factor.hpp"
@@ -56,7 +56,7 @@ class Motion {
     all.push_back({bias});
     return all;
   }
-  /// What a sensor at T_B_S measures.
+  /// The measurement of a sensor at T_B_S.
   VelocitySample velocity(double t, const SE3& T_B_S, double sigma) const {
     const OdomState& state = at(t);
     const Vector3d omega = samples_[static_cast<std::size_t>(std::lround(t / kEvery_s))].gyro_B - state.bias_gyro;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A term of the cost, landmarks apart: its blocks, its loss, and what becomes of it when a state leaves the window.
+// A term of the cost other than landmarks: its blocks, its loss, and its behaviour when a state leaves the window.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -16,10 +16,10 @@ namespace edged {
 
 class Preintegration;
 
-/// A state that leaves from between two others, without being marginalised.
+/// A state between two others that is dropped, without marginalization.
 struct DroppedState {
   StateId before, id, after;
-  const Preintegration& imu;       ///< from the state before to that after; stays in the window
+  const Preintegration& imu;       ///< from the state before to the one after; stays in the window
   const Preintegration& imu_into;  ///< from the state before to the one that leaves; does not stay
 };
 
@@ -30,15 +30,15 @@ class Factor : public ceres::CostFunction {
   /// Null: least squares.
   virtual const ceres::LossFunction* loss() const { return nullptr; }
 
-  /// Whether it goes into the prior with the blocks that are marginalised. A factor that ties a keyframe to a state
-  /// that is none must not: that state will be dropped.
+  /// Whether it goes into the prior with the blocks that are marginalised. A factor between a keyframe and a state that
+  /// is no keyframe must not: that state will be dropped.
   virtual bool marginalized_with(const std::set<BlockKey>& leaving) const;
-  /// What it becomes when a state that it is of is dropped; null: it ends with that state.
+  /// The factor that replaces it when one of its states is dropped; null: it ends with that state.
   virtual std::shared_ptr<Factor> without(const DroppedState& dropped) const;
-  /// Takes in the measurement of another factor, which then is not needed; false where the two cannot be one.
+  /// Merges the measurement of another factor into this one; false if the two cannot be merged.
   virtual bool absorb(const Factor& other);
 
-  /// One block takes the place of another of the same kind.
+  /// Replaces a block by another of the same kind.
   void replace(BlockKey before, BlockKey after);
 
  protected:

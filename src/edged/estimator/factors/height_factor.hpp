@@ -9,9 +9,9 @@
 namespace edged {
 
 /// Blocks: pose and motion of the state before the samples, bias of the sensor. Residual (1): height there + bias -
-/// what was measured, over its sigma. The IMU takes the state to the time of a sample (docs/math.md, X1). The residual
-/// is linear in what depends on the sample, so that many of them are one by their weighted mean (X2). Of a state that
-/// is dropped they move to the state before.
+/// measurement, over its sigma. The IMU propagates the state to the time of a sample (docs/math.md, X1). The residual
+/// is linear in the terms that depend on the sample, so many samples merge into their weighted mean (X2). When their
+/// state is dropped, they move to the state before.
 class HeightFactor final : public Factor {
  public:
   /// imu: from the state to the sample's time. sigma [m].
@@ -22,7 +22,7 @@ class HeightFactor final : public Factor {
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
   bool absorb(const Factor& other) override;
 
-  /// What was measured less the height of the body: the bias by these samples alone.
+  /// The measurement minus the height of the body: the bias by these samples alone.
   double bias_at(const double* pose, const double* motion) const;
 
  private:
@@ -32,7 +32,7 @@ class HeightFactor final : public Factor {
     Eigen::Vector3d moved = Eigen::Vector3d::Zero();
     Eigen::Matrix3d by_gyro = Eigen::Matrix3d::Zero(), by_accel = Eigen::Matrix3d::Zero();
 
-    /// The same from the state that the IMU leads here from.
+    /// The same, from the previous state at the other end of the IMU interval.
     Way after(const Preintegration& imu) const;
     void add(double share, const Way& other);
     Eigen::Vector3d in_body(const double* motion) const;

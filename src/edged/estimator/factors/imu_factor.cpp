@@ -38,7 +38,7 @@ struct BiasDerivatives {
     accel.middleRows<3>(kP) = -imu.d_dp_d_ba();
   }
 
-  /// Row i of E times the mean reading is what bias i gains.
+  /// Row i of E times the mean reading adds to bias i.
   IntrinsicsJacobian by_intrinsics(const Preintegration& imu) const {
     IntrinsicsJacobian J;
     for (int row = 0; row < 3; ++row) {
@@ -60,7 +60,7 @@ ImuFactor::ImuFactor(StateId a, StateId b, const Preintegration& imu)
                   {BlockKind::Motion, b},
                   kImuIntrinsicsKey}),
       imu_(imu) {
-  // A floor far below any real noise keeps the factorisation sound for very short intervals.
+  // A floor far below any real noise keeps the factorisation stable for very short intervals.
   constexpr double kFloor = 1e-14;
   const Matrix9d covariance = imu.covariance() + kFloor * Matrix9d::Identity();
   const Eigen::LLT<Matrix9d> llt(covariance);
@@ -71,7 +71,7 @@ ImuFactor::ImuFactor(StateId a, StateId b, const Preintegration& imu)
 }
 
 std::shared_ptr<Factor> ImuFactor::without(const DroppedState& dropped) const {
-  const bool into = blocks()[2].id == dropped.id;  // that out of the state takes both
+  const bool into = blocks()[2].id == dropped.id;  // factor of the dropped state; it covers both
   return into ? nullptr : std::make_shared<ImuFactor>(dropped.before, dropped.after, dropped.imu);
 }
 

@@ -8,12 +8,12 @@
 
 namespace edged {
 
-/// Blocks: pose 0, motion 0, pose 1, motion 1, intrinsics of the IMU. What scale and axes are off by counts as a bias
-/// that goes with the mean rate and acceleration of the interval: right to first order in both. Residual (15),
+/// Blocks: pose 0, motion 0, pose 1, motion 1, intrinsics of the IMU. Errors of scale and axes act as a bias
+/// proportional to the mean rate and acceleration of the interval: exact to first order in both. Residual (15),
 /// whitened: rotation, velocity, position (Forster et al. 2017, Eq. 45), then the change of gyro and accelerometer bias
 /// against their random walks.
 ///
-/// Of a state that is dropped the interval is joined to the next one's, which is exact.
+/// When a state is dropped, its interval is joined to the next one, which is exact.
 class ImuFactor final : public Factor {
  public:
   /// The preintegration must outlive the factor.
@@ -22,7 +22,7 @@ class ImuFactor final : public Factor {
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
 
  private:
-  /// L^-1 M for the covariance L L^T, whose random walks stand by themselves.
+  /// L^-1 M for the covariance L L^T, whose random walks are independent.
   template <int Columns, int Options>
   Eigen::Matrix<double, 15, Columns, Options> whitened(const Eigen::Matrix<double, 15, Columns, Options>& M) const {
     Eigen::Matrix<double, 15, Columns, Options> white;

@@ -11,7 +11,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A body moved on along its rate.
+/// A body pose extrapolated at its rate.
 SE3 moved_body(const SE3& T_O_B, const BodyRate& rate, double time) {
   return {T_O_B.rotation() * so3::exp(rate.omega_B * time), T_O_B.translation() + rate.v_O * time};
 }
@@ -67,7 +67,7 @@ bool LandmarkDerivatives::error(const CameraView& view, const Vector2d& point, O
   if (x_C.z() < kMinDepthShare) return false;
   const double z_inv = 1.0 / x_C.z();
   const Vector2d predicted = x_C.head<2>() * z_inv;
-  observation.e = x_C.head<2>() / x_C.z() - point;  // to the bit as AnchoredLandmark::error
+  observation.e = x_C.head<2>() / x_C.z() - point;  // bit-identical to AnchoredLandmark::error
 
   Eigen::Matrix<double, 2, 3> by_xC;
   by_xC << z_inv, 0, -predicted.x() * z_inv, 0, z_inv, -predicted.y() * z_inv;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The visual factor: a landmark, held as inverse depth in its anchor view, seen from other views: of the same camera at
-// other states, or of other cameras.
+// The visual factor: a landmark, with an inverse depth in its anchor view, observed in other views: of the same camera
+// at other states, or of other cameras.
 //
-// A landmark has many views, and a view many landmarks: what depends on one of the two alone is worked out once
-// (CameraAt, AnchoredLandmark, LandmarkDerivatives), and only what is left for each observation.
+// A landmark has many views, and a view many landmarks: terms of one of the two alone are computed once (CameraAt,
+// AnchoredLandmark, LandmarkDerivatives), only the rest for each observation.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,15 @@
 
 namespace edged {
 
-/// How the body moves at the instant of a state: what turns a shift of the camera's clock into one of its pose.
+/// The motion of the body at the instant of a state. It converts a shift of the camera clock into one of the camera
+/// pose.
 struct BodyRate {
   Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< [rad/s]
   Eigen::Vector3d v_O = Eigen::Vector3d::Zero();      ///< [m/s]
 };
 
-/// T_O_C of a camera whose image was taken `time` after the state: T_O_B moved on by the rate, then T_B_C turned by
-/// phi. calibration: a CalibrationBlock's numbers.
+/// T_O_C of a camera whose image was taken `time` after the state: T_O_B extrapolated by the rate, then T_B_C rotated
+/// by phi. calibration: a CalibrationBlock's numbers.
 SE3 camera_pose(const SE3& T_O_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
 
 /// A camera on the body, its calibration applied.
@@ -29,43 +30,43 @@ struct CameraOnBody {
   CameraOnBody(const SE3& T_B_C, const double* calibration);
   Eigen::Matrix3d R_B_C;
   Eigen::Vector3d t_B_C;
-  Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a turn of the camera
+  Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a rotation of the camera
   double time;             ///< of its image after the state [s]
 };
 
-/// A camera at one state's image. The rate is a constant: what it is off by counts only times the time shift.
+/// A camera at one state's image. The rate is a constant: its error enters only times the time shift.
 struct CameraAt {
   CameraAt(const CameraOnBody& camera, const SE3& T_O_B, const BodyRate& rate);
   Eigen::Matrix3d R_O_B;  ///< of the body at the image's time
   Eigen::Matrix3d R_C_O;
   Eigen::Vector3d p_O_C;
-  Eigen::Matrix3d by_turn;  ///< a turn of the state's body as one of the body at the image's time
+  Eigen::Matrix3d by_turn;  ///< a rotation of the body at the state as one at the time of the image
   BodyRate rate;
 };
 
-/// A camera and where it stands. Both must outlive this.
+/// A camera and its pose. Both must outlive this.
 struct CameraView {
   const CameraOnBody& camera;
   const CameraAt& at;
 };
 
-/// e = predicted - seen on the unit plane, and its derivatives by the tangents of the blocks.
+/// e = predicted - observed on the unit plane, and its derivatives by the tangents of the blocks.
 struct ObservationError {
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
-  /// Calibrations of the anchor's camera and of the observing one; where these are one, all stands in the first.
+  /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first.
   Eigen::Matrix<double, 2, 4> by_anchor_calibration, by_seen_calibration;
   Eigen::Vector2d by_rho;
 };
 
-/// A landmark as its anchor has it. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
+/// A landmark in its anchor view. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
   /// point: in the anchor view, on the unit plane.
   AnchoredLandmark(const CameraView& anchor, const Eigen::Vector2d& point, double rho);
 
-  /// e = predicted - seen of an observation at `point` of the camera `seen`. False when the landmark is not in front
-  /// of it.
+  /// e = predicted - observed, of an observation at `point` of the camera `seen`. False when the landmark is not in
+  /// front of it.
   bool error(const CameraAt& seen, const Eigen::Vector2d& point, Eigen::Vector2d& e) const;
 
   Eigen::Vector3d in_camera(const CameraAt& seen) const {
@@ -78,8 +79,8 @@ struct AnchoredLandmark {
   Eigen::Vector3d bearing_C, bearing_O;
 };
 
-/// What the derivatives of all observations of a landmark share: that of its place in the world, times rho, by the
-/// anchor's turn, phi and the time.
+/// The common part of the derivatives of all observations of a landmark: that of its position in O, times rho, by the
+/// anchor's rotation, phi and the time.
 class LandmarkDerivatives {
  public:
   /// The landmark must outlive this.

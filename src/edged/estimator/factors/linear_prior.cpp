@@ -15,7 +15,7 @@ LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigm
   prior.x0 = {{at.begin(), at.end()}};
   prior.J = Eigen::MatrixXd::Zero(4, 6);
   prior.J.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / position_sigma);
-  // A turn about O's z by psi is the right perturbation R^T e_z psi.
+  // A rotation about O's z by psi is the right perturbation R^T e_z psi.
   prior.J.block<1, 3>(3, 3) = pose_of(at.data()).R().row(2) / yaw_sigma;
   prior.r = Eigen::VectorXd::Zero(4);
   return prior;
@@ -38,7 +38,7 @@ LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, cons
   prior.blocks = {pose, motion};
   prior.x0 = {{at.begin(), at.end()}, {mean.begin(), mean.end()}};
   prior.J = Eigen::MatrixXd::Zero(3, 15);
-  // R Exp(phi) turns what the body reads by -phi.
+  // R Exp(phi) rotates the reading of the body by -phi.
   prior.J.middleCols<3>(3) = skew(reaction_B) / sigma;
   prior.J.rightCols<3>().diagonal().setConstant(1.0 / sigma);
   prior.r = (reaction_B + Eigen::Map<const Eigen::Vector3d>(mean.data() + 6) - accel_B) / sigma;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A Gaussian prior over any blocks, held in square-root form at a fixed linearisation point: what marginalisation
-// leaves behind, and every hand-set prior (gauge, biases, zero velocity).
+// A Gaussian prior over any blocks, in square-root form at a fixed linearisation point: the result of marginalization,
+// and every initial prior (gauge, biases, zero velocity).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,31 +15,31 @@ namespace edged {
 /// residual(x) = J * (x - x0) + r, with the difference in the tangent space, blocks stacked in order.
 struct LinearPrior {
   std::vector<BlockKey> blocks;
-  std::vector<std::vector<double>> x0;  ///< one linearisation point a block
+  std::vector<std::vector<double>> x0;  ///< one linearisation point per block
   Eigen::MatrixXd J;                    ///< rows x sum of tangent sizes
   Eigen::VectorXd r;
-  Eigen::MatrixXd information = {};  ///< J^T J, of what marginalisation leaves; else empty
+  Eigen::MatrixXd information = {};  ///< J^T J, of the prior of marginalization; else empty
 
   bool empty() const { return blocks.empty(); }
 };
 
-/// Position and yaw (rotation about the world's z) of one pose held at its present value.
+/// Fixes position and yaw (rotation about z) of one pose at their present value.
 LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma);
 
-/// The sigma of what a prior leaves open.
+/// The sigma of what a prior leaves free.
 inline constexpr double kFree = std::numeric_limits<double>::infinity();
 
 /// A motion block near `mean`; sigmas for velocity [m/s], gyro bias [rad/s], accelerometer bias [m/s^2]. An infinite
 /// sigma leaves that part free.
 LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas);
 
-/// What an accelerometer at rest has read: bias plus gravity's reaction in B, linearised at the given state, which
-/// stands upright by that reading and has no bias. It ties tilt and bias together far closer than either is known.
+/// The accelerometer reading at rest: bias plus the reaction to gravity in B, linearised at the given state, whose tilt
+/// follows from that reading and whose bias is zero. It couples tilt and bias much more tightly than either is known.
 /// sigma [m/s^2].
 LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, const MotionBlock& mean,
                        const Eigen::Vector3d& accel_B, double sigma);
 
-/// It ends with a state of it that is dropped.
+/// It ends when one of its states is dropped.
 class LinearPriorFactor final : public Factor {
  public:
   explicit LinearPriorFactor(LinearPrior prior);

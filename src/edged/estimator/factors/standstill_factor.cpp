@@ -10,7 +10,7 @@ constexpr double kPositionWeight = 1.0 / 2e-3, kRotationWeight = 1.0 / 1e-3;  //
 }  // namespace
 
 std::shared_ptr<Factor> StandstillFactor::without(const DroppedState& dropped) const {
-  const bool into = blocks()[1].id == dropped.id;  // that out of the state goes on
+  const bool into = blocks()[1].id == dropped.id;  // the factor of the dropped state continues
   return into ? nullptr : std::make_shared<StandstillFactor>(dropped.before, dropped.after);
 }
 

@@ -16,8 +16,8 @@ namespace edged {
 struct LandmarkView {
   Eigen::Vector2d point;  ///< on the unit plane
   BodyRate rate;
-  std::size_t pose = 0;    ///< place of its state among the poses
-  std::size_t camera = 0;  ///< place among the cameras
+  std::size_t pose = 0;    ///< index of its state among the poses
+  std::size_t camera = 0;  ///< index among the cameras
 };
 
 /// Blocks: poses; calibrations of the cameras; inverse depth. Views: the anchor's, the observation, and with one the

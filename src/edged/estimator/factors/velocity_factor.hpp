@@ -8,10 +8,10 @@
 
 namespace edged {
 
-/// Blocks: pose and motion of the state before the samples. Residual (3): R_S_B (R_B_O v + omega x t_B_S) there - what
-/// was measured, over its sigmas; 0 for an axis that has none. The IMU takes the state to the time of a sample
-/// (docs/math.md, X3); its rotation is taken with the gyro bias as it was then. Many samples are one by their weighted
-/// mean, and those of a state that is dropped move to the state before, as those of height do.
+/// Blocks: pose and motion of the state before the samples. Residual (3): R_S_B (R_B_O v + omega x t_B_S) there -
+/// measurement, over its sigmas; 0 for an axis without a measurement. The IMU propagates the state to the time of a
+/// sample (docs/math.md, X3), with the gyro bias of that time for the rotation. Many samples merge into their weighted
+/// mean, and those of a dropped state move to the state before, as those of height do.
 class VelocityFactor final : public Factor {
  public:
   /// imu: from the state to the sample's time. All sigmas of the sample [m/s] must be positive; infinite: not measured.
@@ -27,9 +27,9 @@ class VelocityFactor final : public Factor {
     Eigen::Matrix3d by_velocity, by_gravity, by_gyro, by_accel;
     Eigen::Vector3d off;
 
-    /// The same from the state that the IMU leads here from.
+    /// The same, from the previous state at the other end of the IMU interval.
     Way after(const Preintegration& imu) const;
-    /// share: by axis of the sensor.
+    /// share: per axis of the sensor.
     void add(const Eigen::Vector3d& share, const Way& other);
   };
 

@@ -71,7 +71,8 @@ TEST_F(Plausibility, AFisheyeMaySeeBehindItself) {
   };
   EXPECT_THAT(warnings(fisheye("191")), IsEmpty());
   EXPECT_THAT(complaint(fisheye("19.1")), HasSubstr("impossible"));
-  EXPECT_THAT(complaint(fisheye("191", "\n    max_angle: 95")), HasSubstr("max_angle: a lens can be used up to"));
+  EXPECT_THAT(complaint(fisheye("191", "\n    max_angle: 95")),
+              HasSubstr("max_angle: the view limit of a lens must be"));
   const auto file = folder_.write("narrow.yaml", fisheye("191", "\n    max_angle: 50").text());
   const Calibration narrow = load_calibration(file);
   EXPECT_NEAR(*narrow.rig.cameras[0].model.view_limit(), 0.8727, 1e-4);
