@@ -93,7 +93,7 @@ class Layouts(WithFolder):
         "evslam": {"rosbag/drone_8_hdr.bag": ("drone_8_hdr", "rosbag/drone_8_hdr.bag", None)},
     }
     BESIDE = {"uzh_fpv": ["indoor_forward_calib_davis/camchain-imucam-x.yaml", "outdoor_45_calib_davis/camchain-imucam-y.yaml"],
-              "tum_vie": ["camera-calibrationA.json"], "mvsec": ["indoor_flying/indoor_flying1_gt.hdf5"], "evslam": ["calibration/calib.bag"],
+              "tum_vie": ["camera-calibrationA.json"], "mvsec": ["indoor_flying/indoor_flying1_gt.hdf5"], "evslam": ["calibration/calib.bag", "calibration_drone/calib.bag"],
               "m3ed": ["car_urban_day_horse/car_urban_day_horse_pose_gt.h5"], "uzh_fpv_none": ["indoor_forward_3_snapdragon/imu.txt"]}
 
     def test_each_sequence_is_found_with_its_name_and_calibration(self):
