@@ -137,13 +137,14 @@ def calibration_option(rig):
     return [] if rig is None else ["--calib" if isinstance(rig, pathlib.Path) else "--rig", rig]
 
 
-def extent(edged, cache, path, rig, modes):
+def extent(edged, cache, path, rig, modes, extra=()):
     """Begin of the recording [s], and from when to when all streams are there that a mode needs, by mode, of those that it has
-    sensors for; kept in the cache."""
-    known = cache / "info" / f"{file_name(str(path.resolve()))}_{path.stat().st_mtime_ns}.json"
+    sensors for; kept in the cache. extra: further arguments that say what is read."""
+    read = "".join(map(str, extra))
+    known = cache / "info" / f"{file_name(str(path.resolve()) + read)}_{path.stat().st_mtime_ns}.json"
     if not known.exists():
         known.parent.mkdir(parents=True, exist_ok=True)
-        known.write_text(call([edged, "info", path, "--json", "--quiet", *calibration_option(rig)]))
+        known.write_text(call([edged, "info", path, "--json", "--quiet", *calibration_option(rig), *extra]))
     info = json.loads(known.read_text())
     there = {kind: info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0}
     return 1e-9 * min(stream["begin_ns"] for stream in there.values()), {

@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""bench/datasets: its sheets, the layouts of the data sets as generated files, other sensors' trajectories, and one data set from
+bag to table. Usage: EDGED=path/to/edged datasets_test.py"""
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import math
+import pathlib
+import sys
+import types
+import unittest
+import unittest.mock
+
+from program import EDGED, WithFolder, edged
+
+BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
+sys.path.insert(0, str(BENCH))
+import sensor_frames  # noqa: E402
+import yaml  # noqa: E402
+
+
+def script(name):
+    loader = importlib.machinery.SourceFileLoader(name, str(BENCH / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+datasets = script("datasets")
+
+
+def sheet(name):
+    return yaml.safe_load((datasets.SHEETS / f"{name}.yaml").read_text())
+
+
+class Sheets(unittest.TestCase):
+    def test_there_is_one_for_each_data_set_and_it_tells_what_a_user_must_know(self):
+        self.assertEqual(datasets.NAMES, ["dsec", "ecd", "eds", "euroc", "evslam", "hku", "m3ed", "mvsec", "tum_vi", "tum_vie",
+                                          "uzh_fpv", "vector"])
+        for name in datasets.NAMES:
+            with self.subTest(sheet=name):
+                known = sheet(name)
+                for key in ("name", "page", "size", "licence", "clocks"):
+                    self.assertTrue(known[key].strip(), key)
+                self.assertTrue(known["pitfalls"] and known["truth"]["what"] and known["truth"]["source"])
+                self.assertTrue(known.get("tables") or known["no_tables"])
+
+    def test_each_published_figure_has_a_sequence_and_a_source(self):
+        for name in datasets.NAMES:
+            for table in sheet(name).get("tables", []):
+                self.assertIn(table["metric"], datasets.FIGURES)
+                self.assertIn(table["protocol"], ("P1", "P2", "P3", "P4"))
+                self.assertEqual(len(table.get("lengths_s", table["sequences"])), len(table["sequences"]))
+                for method in table["methods"]:
+                    with self.subTest(sheet=name, table=table["title"], method=method["name"]):
+                        self.assertEqual(len(method["values"]), len(table["sequences"]))
+                        self.assertTrue(method["source"])
+                        for value in method["values"]:
+                            self.assertTrue(value is None or value == "fail" or 0 < value < 100, value)
+
+    def test_the_page_tells_of_each(self):
+        page = (BENCH.parent / "docs/datasets.md").read_text()
+        for name in datasets.NAMES:
+            self.assertIn(f"bench/datasets {name} ", page)
+            self.assertIn(sheet(name)["page"], page)
+
+
+class Layouts(WithFolder):
+    """As downloaded and unpacked; what a file holds does not matter here."""
+    LAYOUTS = {  # data set: {file: (name of the sequence, recording, calibration)}
+        "ecd": {"boxes_6dof/events.txt": ("boxes_6dof", "boxes_6dof", "davis240c_ecd"),
+                "shapes_6dof.bag": ("shapes_6dof", "shapes_6dof.bag", "davis240c_ecd"),
+                "hdr_boxes.zip": ("hdr_boxes", "hdr_boxes.zip", "davis240c_ecd")},
+        "uzh_fpv": {"indoor_forward_3_davis_with_gt/events.txt":
+                    ("indoor_forward_3", "indoor_forward_3_davis_with_gt", "indoor_forward_calib_davis/camchain-imucam-x.yaml")},
+        "tum_vie": {"mocap-desk2-events_left.h5": ("mocap-desk2", "mocap-desk2-events_left.h5", "camera-calibrationA.json"),
+                    "run/mocap-6dof-events_left.h5": ("mocap-6dof", "run/mocap-6dof-events_left.h5", "tumvie_b")},
+        "vector": {"a/corner-slow1.synced.left_event.hdf5": ("corner-slow", "a/corner-slow1.synced.left_event.hdf5", "vector_small"),
+                   "units-dolly1.synced.left_event.hdf5": ("units-dolly", "units-dolly1.synced.left_event.hdf5", "vector_large")},
+        "hku": {"hku_agg_flip.bag": ("hku_agg_flip", "hku_agg_flip.bag", "hku_stereo"),
+                "vicon_hdr1.bag": ("vicon_hdr1", "vicon_hdr1.bag", "hku_mono")},
+        "mvsec": {"indoor_flying/indoor_flying1_data.hdf5": ("indoor_flying1", "indoor_flying/indoor_flying1_data.hdf5", "mvsec")},
+        "dsec": {"train/zurich_city_04_a/events/left/events.h5":
+                 ("zurich_city_04_a", "train/zurich_city_04_a/events/left/events.h5", None)},
+        "m3ed": {"car_urban_day_horse/car_urban_day_horse_data.h5":
+                 ("car_urban_day_horse", "car_urban_day_horse/car_urban_day_horse_data.h5", None)},
+        "eds": {"00_peanuts_dark/events.h5": ("00_peanuts_dark", "00_peanuts_dark", None)},
+        "euroc": {"MH_01_easy/mav0/cam0/data.csv": ("MH_01", "MH_01_easy", None), "V1_02_medium.zip": ("V1_02", "V1_02_medium.zip", None)},
+        "tum_vi": {"dataset-room1_512_16/mav0/cam0/data.csv": ("room1", "dataset-room1_512_16", None)},
+        "evslam": {"rosbag/drone_8_hdr.bag": ("drone_8_hdr", "rosbag/drone_8_hdr.bag", None)},
+    }
+    BESIDE = {"uzh_fpv": ["indoor_forward_calib_davis/camchain-imucam-x.yaml", "outdoor_45_calib_davis/camchain-imucam-y.yaml"],
+              "tum_vie": ["camera-calibrationA.json"], "mvsec": ["indoor_flying/indoor_flying1_gt.hdf5"], "evslam": ["calibration/calib.bag", "calibration_drone/calib.bag"],
+              "m3ed": ["car_urban_day_horse/car_urban_day_horse_pose_gt.h5"], "uzh_fpv_none": ["indoor_forward_3_snapdragon/imu.txt"]}
+
+    def test_each_sequence_is_found_with_its_name_and_calibration(self):
+        self.assertEqual(sorted(self.LAYOUTS), datasets.NAMES)
+        for name, layout in self.LAYOUTS.items():
+            with self.subTest(dataset=name):
+                root = self.folder / name
+                for file in [*layout, *self.BESIDE.get(name, [])]:
+                    (root / file).parent.mkdir(parents=True, exist_ok=True)
+                    (root / file).touch()
+                options = types.SimpleNamespace(folder=root, calib=None, rig=None, cache=self.folder, edged=EDGED)
+                found = datasets.find_sequences(sheet(name), root)
+                for sequence in found:
+                    datasets.choose_calibration(options, sheet(name), sequence)
+                said = sorted((s.name, str(s.path.relative_to(root)),
+                               str(s.calibration.relative_to(root)) if isinstance(s.calibration, pathlib.Path) else s.calibration) for s in found)
+                self.assertEqual(said, sorted(layout.values(), key=lambda known: known[0]))
+
+    def test_the_folder_of_a_sequence_itself_and_one_that_is_there_twice(self):
+        folder = self.folder / "boxes_6dof"
+        folder.mkdir()
+        (folder / "events.txt").touch()
+        (folder / "boxes_6dof.bag").touch()
+        found = datasets.find_sequences(sheet("ecd"), folder)
+        self.assertEqual([(s.name, s.path) for s in found], [("boxes_6dof", folder)])
+
+
+class SensorFrames(WithFolder):
+    QUARTER = math.sqrt(0.5)
+
+    def test_a_transform_is_read_from_each_form_of_calibration_files(self):
+        turn = [[0, -1, 0, 1.0], [1, 0, 0, 2.0], [0, 0, 1, 3.0], [0, 0, 0, 1]]
+        basalt = {"px": 1, "py": 2, "pz": 3, "qx": 0, "qy": 0, "qz": self.QUARTER, "qw": self.QUARTER}
+        for entry in (turn, [x for row in turn for x in row], {"rows": 4, "data": [x for row in turn for x in row]}, basalt):
+            p, q = sensor_frames.of_entry(entry)
+            for value, true in zip([*p, *q], [1, 2, 3, 0, 0, self.QUARTER, self.QUARTER]):
+                self.assertAlmostEqual(value, true)
+        file = self.folder / "mocap-imu-calibrationA.json"
+        file.write_text(json.dumps({"value0": {"T_imu_marker": basalt}}))
+        self.assertEqual(sensor_frames.read_entry(file, "value0.T_imu_marker")[0], [1, 2, 3])
+
+    def test_half_turns_about_each_axis_survive_the_way_from_a_matrix(self):
+        for axis in range(3):
+            rows = [[(1 if i == axis else -1) if i == j else 0 for j in range(3)] + [0] for i in range(3)]
+            self.assertEqual([abs(round(x, 9)) for x in sensor_frames.of_matrix(rows)[1]], [float(i == axis) for i in range(3)] + [0.0])
+
+    def test_a_trajectory_of_the_body_becomes_that_of_the_markers(self):
+        source, target = self.folder / "body.tum", self.folder / "markers.tum"
+        source.write_text(f"# body\n10.0 1 0 0 0 0 {self.QUARTER} {self.QUARTER}\n")
+        sensor_frames.write_of_sensor(source, target, ([0.5, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]), 0.01)
+        self.assertEqual([round(float(x), 6) for x in target.read_text().split()][:4], [10.01, 1.0, 0.5, 0.0])
+
+
+class Comparison(unittest.TestCase):
+    GOOD = {"evaluation": {"ate_m": {"mean": 0.01}, "path_length_m": 5.0}, "first_good_s": 1.0, "status": "good", "coverage": 0.9,
+            "has_truth": True, "duration_s": 59.0, "by_protocol": {("P2", "causal"): {"mpe_percent": 0.2}}}
+    TABLE = {"title": "T", "protocol": "P2", "metric": "mpe_percent", "sequences": ["boxes_6dof", "hdr_boxes", "poster_6dof"],
+             "lengths_s": [60, 60, 60],
+             "methods": [{"name": "A", "source": "S", "values": [0.4, 0.2, 9.0]}, {"name": "B", "source": "S", "values": ["fail", 0.1, None]}]}
+
+    def compared(self, second):
+        options = types.SimpleNamespace(modes=["fused", "frames"])
+        lines = datasets.compared(options, self.TABLE, {"hdr-boxes": {"fused": self.GOOD}, "boxes_6dof": {"fused": second}})
+        return [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("|")], "\n".join(lines)
+
+    def test_rows_are_the_sequences_found_in_the_order_of_the_table(self):
+        rows, text = self.compared(self.GOOD)
+        self.assertEqual(rows, [["sequence", "fused, causal", "A", "B"], ["---", "---:", "---:", "---:"], ["boxes_6dof", "0.20", "0.40", "*failed*"],
+                                ["hdr-boxes", "0.20", "0.20", "0.10"], ["mean", "0.20", "0.30", "--"], ["failed", "0 of 2", "0 of 2", "1 of 2"]])
+        self.assertIn("1 sequences of the published table were not found", text)
+
+    def test_a_failure_is_counted_and_leaves_no_mean(self):
+        for bad, cell in (({**self.GOOD, "status": "lost"}, "*failed* (0.20)"), ({"refused": "no IMU"}, "*failed*"),
+                          ({**self.GOOD, "evaluation": None, "by_protocol": {}}, "*failed*")):
+            rows, _ = self.compared(bad)
+            self.assertEqual((rows[2][1], rows[4][1], rows[5][1]), (cell, "--", "1 of 2"))
+
+    def test_what_is_a_part_of_its_sequence_is_not_compared(self):
+        rows, _ = self.compared({**self.GOOD, "duration_s": 11.0})
+        self.assertEqual((rows[2][1], rows[4][1], rows[5][1]), ("0.20 (part)", "--", "0 of 2"))
+
+
+class FromBagToTable(WithFolder):
+    """EvSLAM's layout: bag, Kalibr's camchain, ground truth and reference times in files of their own."""
+
+    def make(self):
+        made, root = self.folder / "made", self.folder / "evslam"
+        for part in ("rosbag", "calibration", "groundtruth"):
+            (root / part).mkdir(parents=True)
+        edged("simulate", "--duration", 4, "--seed", 3, "--out", made, "--quiet")
+        events = (made / "events.txt").read_text().splitlines(keepends=True)
+        (made / "events.txt").write_text("".join(events[::200]))
+        self.assertEqual(edged("convert", made, root / "rosbag/drone_8_hdr.bag", "--quiet").returncode, 0)
+        (root / "groundtruth/drone_8_hdr_gt.txt").write_text(
+            "".join(line + " 0 0 0\n" for line in (made / "groundtruth.txt").read_text().splitlines()[::20]))
+        (root / "drone_8_hdr_ref_time.txt").write_text("".join(f"{0.1 * k:.6f}\n" for k in range(40)))
+        rig = yaml.safe_load((made / "calibration.yaml").read_text())["cameras"][0]
+        R, t = [row[:3] for row in rig["T_B_C"][:3]], [row[3] for row in rig["T_B_C"][:3]]
+        back = [[R[j][i] for j in range(3)] + [-sum(R[j][i] * t[j] for j in range(3))] for i in range(3)] + [[0, 0, 0, 1]]
+        camera = {"camera_model": "pinhole", "intrinsics": rig["intrinsics"], "distortion_model": "radtan", "resolution": rig["resolution"],
+                  "distortion_coeffs": rig["coefficients"][:4], "T_cam_imu": back, "timeshift_cam_imu": rig["time_offset"]}
+        topics = ["/dvxplorer_left/events", "/dvxplorer_right/events", "/camera/color/image_rect_raw", "/camera/infra1/image_rect_raw"]
+        (root / "calibration/calib_results_cam.yaml").write_text(
+            yaml.safe_dump({f"cam{i}": {**camera, "rostopic": topic} for i, topic in enumerate(topics)}))
+        # Topics are those that `edged convert` writes; all else of the sheet holds.
+        (self.folder / "sheets").mkdir()
+        known = sheet("evslam")
+        known["recordings"][0].pop("topics")
+        (self.folder / "sheets/evslam.yaml").write_text(yaml.safe_dump(known))
+        return root
+
+    def bench(self, root):
+        said = io.StringIO()
+        argv = ["datasets", "evslam", str(root), "--modes", "frames", "--cache", str(self.folder / "cache"), "--format", "evslam",
+                "--edged", EDGED, "--jobs", "1"]
+        with unittest.mock.patch.object(sys, "argv", argv), unittest.mock.patch.object(datasets, "SHEETS", self.folder / "sheets"), \
+                contextlib.redirect_stdout(said), contextlib.redirect_stderr(io.StringIO()):
+            datasets.main()
+        return said.getvalue()
+
+    def test_a_run_is_evaluated_in_the_frame_of_its_truth_and_written_for_the_challenge(self):
+        root = self.make()
+        text = self.bench(root)
+        row = next(line for line in text.splitlines() if line.startswith("| drone_8_hdr"))
+        cells = [cell.strip() for cell in row.split("|")[1:-1]]
+        self.assertEqual((cells[1], cells[3], cells[-1]), ("frames", "good", "no"), text)
+        self.assertLess(float(cells[4]), 10.0)  # mm; a lever arm or a clock that is off costs more
+        self.assertIn("calibration calibration/calib_results_cam.yaml", text)
+        self.assertIn("No published figures: ", text)
+        lines = [[float(x) for x in line.split()] for line in (self.folder / "cache/evslam/frames/drone_8_hdr.txt").read_text().splitlines()]
+        self.assertEqual([round(line[0], 6) for line in lines], [round(0.1 * k, 6) for k in range(40)])
+        self.assertEqual({len(line) for line in lines}, {11})
+        moving = lines[20:36]
+        for before, line, after in zip(moving, moving[1:], moving[2:]):
+            there = sensor_frames.turned(sensor_frames.inverse(line[4:8]), [(y - x) / 0.2 for x, y in zip(before[1:4], after[1:4])])
+            for velocity, difference in zip(line[8:], there):
+                self.assertAlmostEqual(velocity, difference, delta=0.08)
+        self.assertEqual(lines[0][8:], [0.0, 0.0, 0.0])  # before the first pose
+        self.assertEqual(self.bench(root), text)  # kept
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
