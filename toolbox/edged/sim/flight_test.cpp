@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "edged/sim/simulator.hpp"
+#include "edged/sim/trajectory.hpp"
 
 namespace edged {
 namespace {

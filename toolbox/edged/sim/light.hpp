@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/sim/random.hpp"
+#include "edged/sim/simulator_config.hpp"
 
 namespace edged {
 
@@ -53,8 +54,6 @@ struct Lighting {
   std::vector<Lamp> lamps;
   std::optional<SunWindow> sun;
 };
-
-enum class LightingKind { Even, Lamps, Switched, Sun };
 
 /// What lights a room of this size [m] whose floor's centre is the origin; brightness multiplies all of it.
 /// Lamps: two panels at the ceiling. Switched: weak panels and a lamp on each wall that goes on and off at random times
