@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/sim/disturbance.hpp"
@@ -86,8 +87,10 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("fy", fy, {"px", 1, 1e5, "focal length"});
   fields.add("cx", cx, {"px", 0, 4096, "principal point"});
   fields.add("cy", cy, {"px", 0, 4096, "principal point"});
-  fields.choice("distortion", distortion,
-                {{"radtan", DistortionModel::RadTan}, {"equidistant", DistortionModel::Equidistant}},
+  std::vector<std::pair<std::string_view, DistortionModel>> lenses;
+  for (const LensModel& lens : lens_models())
+    if (lens.most > 0) lenses.emplace_back(lens.name, lens.model);
+  fields.choice("distortion", distortion, lenses,
                 {.effect = "k1 k2 p1 p2 of an ordinary lens, or k1 k2 of one that may see behind itself"});
   fields.add("k1", k1, {"", -10, 10, "radial distortion"});
   fields.add("k2", k2, {"", -10, 10, "radial distortion"});
@@ -96,8 +99,8 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
 }
 
 CameraModel SimulatedCameraConfig::model() const {
-  if (distortion == DistortionModel::Equidistant) return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
-  return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
+  if (distortion == DistortionModel::RadTan) return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
+  return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
 }
 
 void SimulatorConfig::visit(ConfigFields& fields) {
