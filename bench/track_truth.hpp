@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/rig.hpp"
 #include "edged/sim/simulator.hpp"
 #include "edged/state.hpp"

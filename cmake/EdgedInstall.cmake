@@ -7,7 +7,11 @@ include(CMakePackageConfigHelpers)
 if(EDGED_APPS)
   install(TARGETS edged RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/
+set(public_headers ${PROJECT_SOURCE_DIR}/include/ ${PROJECT_BINARY_DIR}/include/)
+if(EDGED_TOOLBOX)
+  list(APPEND public_headers ${PROJECT_SOURCE_DIR}/toolbox/include/)
+endif()
+install(DIRECTORY ${public_headers}
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/rigs ${PROJECT_SOURCE_DIR}/config/foxglove DESTINATION ${CMAKE_INSTALL_DATADIR}/edged COMPONENT program)
 if(EDGED_DEPTH_NETWORK)

@@ -62,11 +62,6 @@ function(edged_module NAME)
   target_link_libraries(edged_${NAME} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:edged_options>)
   target_precompile_headers(edged_${NAME} REUSE_FROM edged_precompiled)
   edged_export(edged_${NAME} ${NAME})
-  if(EDGED_INSTALL)
-    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edged/${NAME}
-            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*" EXCLUDE
-            PATTERN "*_test_support.hpp" EXCLUDE PATTERN testdata EXCLUDE)
-  endif()
   if(EDGED_TESTS AND ARG_TESTS)
     edged_test(edged_${NAME}_test SOURCES ${ARG_TESTS} DEPENDS edged::${NAME} ${ARG_TEST_DEPENDS} SHARDS ${ARG_TEST_SHARDS})
   endif()

@@ -58,6 +58,12 @@ class Installed(unittest.TestCase):
             for place in (SOURCE, pathlib.Path(os.environ["EDGED_BUILD"]).resolve()):
                 self.assertNotIn(str(place).encode() + b"/", file.read_bytes(), file)
 
+    def test_the_headers_are_the_public_ones(self):
+        folders = (SOURCE / "include", SOURCE / "toolbox" / "include")
+        public = {str(p.relative_to(f)).removesuffix(".in") for f in folders for p in f.rglob("*.hpp*")}
+        include = self.prefix / "include"
+        self.assertEqual({str(p.relative_to(include)) for p in include.rglob("*.hpp")}, public)
+
     def test_a_project_finds_links_and_runs_it(self):
         build = self.folder / "build"
         call(os.environ["CMAKE"], "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-G", "Ninja",

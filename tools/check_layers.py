@@ -7,8 +7,9 @@ a type of the same name.
 
 The table is the rule: `| module | may use | public | holds |`, one row a module, bottom to top. A row may name only rows
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
-toolbox/edged, which may be missing as a whole. `public` names the headers in include/edged that are the module's. A
-component is a path without its extension, module/x: x.hpp, in include/edged too, and x.cpp are one, x_test.cpp is of none. A
+toolbox/edged, which may be missing as a whole. `public` names the headers that are the module's in include/edged, or in
+toolbox/include/edged where it is of the toolbox. A component is a path without its extension, module/x: x.hpp, a public one
+too, and x.cpp are one, x_test.cpp is of none. A
 family is a folder within io: families do not include one another. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
 import graphlib
@@ -20,6 +21,7 @@ import sys
 ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
+PUBLIC = ("include", "toolbox/include")  # where public headers are, in the same order
 ANY_INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
 PUBLIC_INCLUDE = re.compile(r"\w+|Eigen/\w+|opencv2/core(/[\w/]+)?\.hpp")
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
@@ -50,16 +52,21 @@ def modules(root):
 
 
 def public_header(root, name):
-    """The file of include/edged, maybe filled in by CMake; None where there is none."""
-    files = (root / "include" / "edged" / (name + end) for end in (".hpp", ".hpp.in"))
+    """The file of that name, maybe filled in by CMake; None where there is none."""
+    files = (root / base / "edged" / (name + end) for base in PUBLIC for end in (".hpp", ".hpp.in"))
     return next(filter(pathlib.Path.is_file, files), None)
+
+
+def public_component(module, name):
+    """Those of the toolbox have their module's folder in their names."""
+    return f"edged/{name}" if name.startswith(f"{module}/") else f"edged/{module}/{name}"
 
 
 def code_files(root, folders, public):
     """(module, file, component) of all code."""
     for name, module in public.items():
         if file := public_header(root, name):
-            yield module, file, f"edged/{module}/{name}"
+            yield module, file, public_component(module, name)
     for module, folder in folders.items():
         for file in sorted(folder.rglob("*")):
             if file.suffix in (".hpp", ".cpp"):
@@ -85,6 +92,17 @@ def check_includes(root, folders, public, allowed):
                     yield f"{where}: {module} may not include {target}"
 
 
+def check_public_names(root, public, method):
+    """The headers there are, and those of the table; the toolbox may be missing."""
+    for base in PUBLIC:
+        folder = root / base / "edged"
+        headers = {str(p.relative_to(folder)).removesuffix(".in").removesuffix(".hpp") for p in folder.rglob("*.hpp*")}
+        named = {name for name, module in public.items() if (module in method) == (base == PUBLIC[0])}
+        yield from (f"ARCHITECTURE.md: no row has {base}/edged/{name}.hpp" for name in sorted(headers - named))
+        if folder.is_dir():
+            yield from (f"ARCHITECTURE.md: there is no {base}/edged/{name}.hpp" for name in sorted(named - headers))
+
+
 def check_public(root, public):
     """A public header includes others, the standard library's, Eigen's and those of OpenCV's core."""
     for name in public:
@@ -105,7 +123,7 @@ def check_cycles(root, folders, public):
         for include in filter(None, map(INCLUDE.match, file.read_text().splitlines())):
             used = pathlib.PurePath(include.group(1)).with_suffix("")
             if (name := str(used.relative_to("edged"))) in public:
-                used = pathlib.PurePath("edged", public[name], name)
+                used = public_component(public[name], name)
             uses.setdefault(component, {})[str(used)] = None
         uses.get(component, {}).pop(component, None)
     while True:
@@ -166,10 +184,7 @@ def main():
     method = {name for name, folder in folders.items() if folder.is_relative_to(root / "src")}
     errors += [f"ARCHITECTURE.md: `{name}` is of the method, `{use}` is not" for name in sorted(method & allowed.keys())
                for use in sorted(allowed[name] - method)]
-    include = root / "include" / "edged"
-    headers = {str(file.relative_to(include)).removesuffix(".in").removesuffix(".hpp") for file in include.rglob("*.hpp*")}
-    errors += [f"ARCHITECTURE.md: no row has include/edged/{name}.hpp" for name in sorted(headers - public.keys())]
-    errors += [f"ARCHITECTURE.md: there is no include/edged/{name}.hpp" for name in sorted(public.keys() - headers)]
+    errors += check_public_names(root, public, method)
     errors += check_includes(root, folders, public, allowed)
     errors += check_public(root, public)
     errors += check_cycles(root, folders, public)

@@ -16,6 +16,7 @@
 #include "calib/calib_check.hpp"
 #include "commands.hpp"
 #include "edged/camera/field_of_view.hpp"
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
@@ -64,6 +65,14 @@ std::string imu_part(const CameraFacts& c) {
       c.imu, c.gyro_noise, c.accel_noise);
 }
 
+/// "none; radtan: k1 k2 ...; ..."
+std::string distortion_list() {
+  std::string list;
+  for (const LensModel& lens : lens_models())
+    list += fmt::format("{}{}{}{}", list.empty() ? "" : "; ", lens.name, lens.most > 0 ? ": " : "", lens.coefficients);
+  return list;
+}
+
 std::string camera_part(const CameraFacts& c) {
   return fmt::format(
       "  - name: events\n"
@@ -73,7 +82,7 @@ std::string camera_part(const CameraFacts& c) {
       "{3:.0f} px for\n"
       "    # 4 mm and {4:.0f} px for 8 mm; the centre near {5:.0f}, {6:.0f}.\n"
       "    intrinsics: [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "    # radtan: k1 k2 p1 p2 [k3]; equidistant (wide lenses): k1 k2 k3 k4; none\n"
+      "    # {7}\n"
       "    distortion: radtan\n"
       "    coefficients: [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
       "    # Where parts of the vehicle are in view: a picture of {0} x {1} px, black where pixels are to be ignored.\n"
@@ -88,7 +97,8 @@ std::string camera_part(const CameraFacts& c) {
       "      - [0.0, 0.0, 0.0, 1.0]\n"
       "    # t_imu = t_cam + time_offset; Kalibr's timeshift_cam_imu. A run refines it by some milliseconds.\n"
       "    time_offset: 0.0  # s\n",
-      c.width, c.height, c.pitch_um, 4e3 / c.pitch_um, 8e3 / c.pitch_um, 0.5 * (c.width - 1), 0.5 * (c.height - 1));
+      c.width, c.height, c.pitch_um, 4e3 / c.pitch_um, 8e3 / c.pitch_um, 0.5 * (c.width - 1), 0.5 * (c.height - 1),
+      distortion_list());
 }
 
 std::vector<std::string> template_names() {

@@ -3,7 +3,7 @@
 // Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that the main loop polls.
 #pragma once
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/cli_fwd.hpp"
-#include "edged/core/dataset.hpp"
 #include "edged/core/recording_piece.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"

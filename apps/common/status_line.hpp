@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 

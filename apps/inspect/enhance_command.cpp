@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -214,10 +216,11 @@ EnhanceConfig with_sharpening(EnhanceConfig config, Sharpening sharpening) {
   return config;
 }
 
-const std::pair<EdgeMethod, const char*> kEdgeMethods[] = {{EdgeMethod::Canny, "Canny"},
-                                                           {EdgeMethod::Laplacian, "Laplacian"},
-                                                           {EdgeMethod::Sobel, "Sobel"},
-                                                           {EdgeMethod::Scharr, "Scharr"}};
+std::string capitalised(std::string_view word) {
+  std::string out(word);
+  out.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(out.front())));
+  return out;
+}
 
 /// One row per step of Algorithm 1, one column per method.
 std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& config) {
@@ -236,9 +239,10 @@ std::vector<SheetRow> all_stages(const Moment& moment, const EnhanceConfig& conf
        {std::pair("edge", "edges, {}"), std::pair("eroded", "eroded, {}"), std::pair("result", "blend with {}")}) {
     if (name == std::string("eroded") && config.erosion_px == 0) continue;
     SheetRow& row = rows.emplace_back();
-    for (const auto& [method, method_name] : kEdgeMethods) {
-      row.push_back(
-          {fmt::format(fmt::runtime(caption), method_name), stage(events, with_method(config, method), name)});
+    for (const EdgeFilter& filter : edge_filters()) {
+      if (filter.method == EdgeMethod::None || filter.method == EdgeMethod::Clahe) continue;
+      row.push_back({fmt::format(fmt::runtime(caption), capitalised(filter.name)),
+                     stage(events, with_method(config, filter.method), name)});
     }
   }
   return rows;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/calibration.hpp"

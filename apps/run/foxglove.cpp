@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/step_facts.hpp"
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "report/report_rows.hpp"
 #include "run/run_album.hpp"
@@ -90,10 +91,9 @@ Json compressed_image(Timestamp t, const std::string& camera, const std::vector<
 
 Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
   const CameraModel& m = camera.model;
-  const bool equidistant = m.distortion() == DistortionModel::Equidistant,
-             distorted = m.distortion() != DistortionModel::None;
-  const auto begin = m.coefficients().begin();
-  const std::vector<double> D(begin, begin + (distorted ? equidistant ? 4 : 5 : 0));
+  const LensModel& lens = lens_model(m.distortion());
+  const auto k = std::span(m.coefficients()).first(lens.most);
+  const std::vector<double> D(k.begin(), k.end());
   const double fx = scale * m.fx(), fy = scale * m.fy();
   // The centre of the first pixel is at zero, whatever its size.
   const double cx = scale * (m.cx() + 0.5) - 0.5, cy = scale * (m.cy() + 0.5) - 0.5;
@@ -101,9 +101,7 @@ Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
           {"frame_id", camera.name},
           {"width", std::lround(scale * m.width())},
           {"height", std::lround(scale * m.height())},
-          {"distortion_model", D.empty()     ? ""
-                               : equidistant ? "kannala_brandt"
-                                             : "plumb_bob"},
+          {"distortion_model", lens.foxglove},
           {"D", D},
           {"K", {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0}},
           {"R", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},

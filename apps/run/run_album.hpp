@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/step_facts.hpp"
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/odometry.hpp"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "edged/camera/output_frame.hpp"
-#include "edged/core/dataset.hpp"
 #include "edged/counters.hpp"
+#include "edged/dataset.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -65,7 +64,7 @@ class ConfigFields {
 
   /// An option that takes one of a few names.
   template <typename Enum>
-  void choice(std::string_view name, Enum& value, std::initializer_list<std::pair<std::string_view, Enum>> choices,
+  void choice(std::string_view name, Enum& value, const std::vector<std::pair<std::string_view, Enum>>& choices,
               const FieldDoc& doc) {
     std::vector<std::string> names;
     std::vector<Enum> values;

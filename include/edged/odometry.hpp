@@ -12,6 +12,7 @@
 #include "edged/counters.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
+#include "edged/input_error.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
 #include "edged/rig.hpp"

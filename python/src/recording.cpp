@@ -12,6 +12,7 @@
 #include "edged/core/recording_piece.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/text_parsing.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"
 

@@ -13,6 +13,12 @@
 
 #include "edged/core/check.hpp"
 #include "edged/events/voxel_grid.hpp"
+#include "edged/sim/disturbance.hpp"
+#include "edged/sim/event_camera.hpp"
+#include "edged/sim/motion.hpp"
+#include "edged/sim/random.hpp"
+#include "edged/sim/renderer.hpp"
+#include "edged/sim/scene.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {

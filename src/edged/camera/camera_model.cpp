@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 
@@ -25,53 +26,11 @@ constexpr double kUnitPlaneEnds = 89.0 * kDegree;
 // degrees is 4.4 times as long on the unit plane as on the axis, at 80 degrees 12 times.
 constexpr double kWidest = 86.0 * kDegree, kUsedOfWider = 70.0 * kDegree;
 
-/// What a distortion does to a point of the unit plane, and its derivative.
-struct Distorted {
-  Vector2d point;
-  Matrix2d d_point;
-};
-
-/// math.md (C2).
-Distorted distort_radtan(const std::array<double, 5>& k, const Vector2d& p) {
-  const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
-  const double radial = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
-  const double d_radial = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]);  // with respect to r^2
-  const Vector2d tangential(2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x),
-                            k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y);
-  Distorted out{radial * p + tangential, 2.0 * d_radial * p * p.transpose()};
-  out.d_point.diagonal().array() += radial;
-  out.d_point(0, 0) += 2.0 * k[2] * y + 6.0 * k[3] * x;
-  out.d_point(0, 1) += 2.0 * k[2] * x + 2.0 * k[3] * y;
-  out.d_point(1, 0) += 2.0 * k[2] * x + 2.0 * k[3] * y;
-  out.d_point(1, 1) += 6.0 * k[2] * y + 2.0 * k[3] * x;
-  return out;
-}
-
-/// A value and its derivative.
-struct Sloped {
-  double value;
-  double slope;
-};
-
-/// Distorted radius of a radius on the unit plane, (C2) without its tangential part.
-Sloped radtan_radius(const std::array<double, 5>& k, double r) {
-  const double r2 = r * r;
-  return {r * (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))),
-          1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]))};
-}
-
-/// theta_d(theta) (C3).
-Sloped equidistant_angle(const std::array<double, 5>& k, double theta) {
-  const double t2 = theta * theta;
-  return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
-          1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
-}
-
-/// How far theta_d grows with theta, at most to 180 degrees.
-double growing_range(const std::array<double, 5>& k) {
+/// How far the radius grows with the angle, at most to 180 degrees.
+double growing_range(const LensModel& lens, const LensCoefficients& k) {
   constexpr double kStep = 0.05 * kDegree;
   double theta = 0.0;
-  while (theta + kStep < std::numbers::pi && equidistant_angle(k, theta + kStep).slope > 0.0) theta += kStep;
+  while (theta + kStep < std::numbers::pi && lens.radius_of_angle(k, theta + kStep).slope > 0.0) theta += kStep;
   return theta;
 }
 
@@ -94,14 +53,20 @@ double invert_growing(const Function& function, double target, double upper) {
   return x;
 }
 
+/// The angle off the axis of a radius on the distorted unit plane, at most the one given.
+double angle_of_radius(const LensModel& lens, const LensCoefficients& k, double radius, double max_theta) {
+  return invert_growing([&](double theta) { return lens.radius_of_angle(k, theta); }, radius, max_theta);
+}
+
 /// The radial part first, then Newton steps on both coordinates (C4).
-Vector2d undistort_radtan(const std::array<double, 5>& k, const Vector2d& distorted, double max_radius) {
+Vector2d undistort_asymmetric(const LensModel& lens, const LensCoefficients& k, const Vector2d& distorted,
+                              double max_radius) {
   const double target = distorted.norm();
-  if (target == 0.0 && k[2] == 0.0 && k[3] == 0.0) return distorted;
-  const double radius = invert_growing([&k](double r) { return radtan_radius(k, r); }, target, max_radius);
-  Vector2d p = target > 0.0 ? Vector2d(radius / target * distorted) : Vector2d::Zero();
+  if (target == 0.0) return distorted;
+  const double radius = invert_growing([&](double r) { return lens.radius_of_radius(k, r); }, target, max_radius);
+  Vector2d p = radius / target * distorted;
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const Distorted at = distort_radtan(k, p);
+    const Distorted at = lens.distort(k, p);
     const Vector2d step = at.d_point.inverse() * (distorted - at.point);
     if (!(step.norm() < 0.5 * (1.0 + p.norm()))) break;  // no bearing near: leave the radial one
     p += step;
@@ -110,12 +75,11 @@ Vector2d undistort_radtan(const std::array<double, 5>& k, const Vector2d& distor
   return p;
 }
 
-Vector2d undistort_equidistant(const std::array<double, 5>& k, const Vector2d& distorted, double max_radius) {
+Vector2d undistort_symmetric(const LensModel& lens, const LensCoefficients& k, const Vector2d& distorted,
+                             double max_radius) {
   const double target = distorted.norm();
   if (target == 0.0) return distorted;
-  const double theta =
-      invert_growing([&k](double angle) { return equidistant_angle(k, angle); }, target, std::atan(max_radius));
-  return std::tan(theta) / target * distorted;
+  return std::tan(angle_of_radius(lens, k, target, std::atan(max_radius))) / target * distorted;
 }
 
 }  // namespace
@@ -136,13 +100,10 @@ CameraModel::CameraModel(int width, int height, double fx, double fy, double cx,
     if (!std::isfinite(k_[i]))
       throw InputError::format("distortion coefficient {} is {}: must be finite", i + 1, k_[i]);
   }
-  const bool unused_set = distortion == DistortionModel::None
-                              ? std::any_of(k_.begin(), k_.end(), [](double k) { return k != 0.0; })
-                              : distortion == DistortionModel::Equidistant && k_[4] != 0.0;
-  if (unused_set) {
-    throw InputError::format("distortion '{}' with coefficients {} {} {} {} {}: it has {}", to_string(distortion),
-                             k_[0], k_[1], k_[2], k_[3], k_[4],
-                             distortion == DistortionModel::None ? "none" : "only four");
+  const LensModel& lens = lens_model(distortion);
+  if (std::any_of(k_.begin() + static_cast<std::ptrdiff_t>(lens.most), k_.end(), [](double k) { return k != 0.0; })) {
+    throw InputError::format("distortion '{}' with coefficients {} {} {} {} {}: it has {}", lens.name, k_[0], k_[1],
+                             k_[2], k_[3], k_[4], lens.most == 0 ? "none" : fmt::format("only {}", lens.coefficients));
   }
   find_monotone_range();
   check_border();
@@ -158,9 +119,9 @@ void CameraModel::find_monotone_range() {
       corner_radius = std::max(corner_radius, std::hypot((x - cx_) / fx_, (y - cy_) / fy_));
     }
   }
-  const bool equidistant = distortion_ == DistortionModel::Equidistant;
-  if (equidistant) max_theta_ = growing_range(k_);
-  if (max_theta_ > kWidest && corner_radius > equidistant_angle(k_, kWidest).value) {
+  const LensModel& lens = lens_model(distortion_);
+  if (lens.radius_of_angle) max_theta_ = growing_range(lens, k_);
+  if (max_theta_ > kWidest && corner_radius > lens.radius_of_angle(k_, kWidest).value) {
     limit_ = kUsedOfWider;
     max_radius_ = std::tan(limit_);
     return;
@@ -170,7 +131,7 @@ void CameraModel::find_monotone_range() {
   double theta = 0.0;
   for (; theta <= kUnitPlaneEnds; theta += kStep) {
     const double radius = std::tan(theta);
-    const Sloped at = equidistant ? equidistant_angle(k_, theta) : radtan_radius(k_, radius);
+    const Sloped at = lens.radius_of_angle ? lens.radius_of_angle(k_, theta) : lens.radius_of_radius(k_, radius);
     if (at.slope <= 0.0) break;
     reached = at.value;
     max_radius_ = radius;
@@ -205,12 +166,13 @@ void CameraModel::check_border() const {
 }
 
 Vector2d CameraModel::distort_to_pixel(const Vector2d& point) const {
+  const LensModel& lens = lens_model(distortion_);
   Vector2d d = point;
-  if (distortion_ == DistortionModel::RadTan) {
-    d = distort_radtan(k_, point).point;
-  } else if (distortion_ == DistortionModel::Equidistant) {
+  if (lens.distort) {
+    d = lens.distort(k_, point).point;
+  } else if (lens.radius_of_angle) {
     const double r = point.norm();
-    if (r > 0.0) d = equidistant_angle(k_, std::atan(r)).value / r * point;
+    if (r > 0.0) d = lens.radius_of_angle(k_, std::atan(r)).value / r * point;
   }
   return {fx_ * d.x() + cx_, fy_ * d.y() + cy_};
 }
@@ -224,14 +186,9 @@ std::optional<Vector2d> CameraModel::project(const Eigen::Vector3d& p_C) const {
 
 Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
   const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
-  switch (distortion_) {
-    case DistortionModel::RadTan:
-      return undistort_radtan(k_, distorted, max_radius_);
-    case DistortionModel::Equidistant:
-      return undistort_equidistant(k_, distorted, max_radius_);
-    case DistortionModel::None:
-      break;
-  }
+  const LensModel& lens = lens_model(distortion_);
+  if (lens.distort) return undistort_asymmetric(lens, k_, distorted, max_radius_);
+  if (lens.radius_of_angle) return undistort_symmetric(lens, k_, distorted, max_radius_);
   return distorted;
 }
 
@@ -242,8 +199,7 @@ CameraModel CameraModel::within(double limit_rad) const {
     throw InputError::format("the view limit of a lens must be above 0 and below {:.0f} degrees off its axis, not {:g}",
                              kWidest / kDegree, limit_rad / kDegree);
   CameraModel narrower = *this;
-  narrower.limit_ =
-      std::min(limit_rad, distortion_ == DistortionModel::Equidistant ? max_theta_ : std::atan(max_radius_));
+  narrower.limit_ = std::min(limit_rad, lens_model(distortion_).radius_of_angle ? max_theta_ : std::atan(max_radius_));
   narrower.max_radius_ = std::tan(narrower.limit_);
   return narrower;
 }
@@ -276,12 +232,12 @@ bool CameraModel::in_mask(const Vector2d& pixel, double border_px) const {
 
 Eigen::Vector3d CameraModel::pixel_to_ray(const Vector2d& pixel) const {
   if (limit_ == 0.0) return pixel_to_point(pixel).homogeneous();
-  if (distortion_ != DistortionModel::Equidistant) return pixel_to_point(pixel).homogeneous().normalized();
+  const LensModel& lens = lens_model(distortion_);
+  if (!lens.radius_of_angle) return pixel_to_point(pixel).homogeneous().normalized();
   const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
   const double target = distorted.norm();
   if (target == 0.0) return Eigen::Vector3d::UnitZ();
-  const double theta =
-      invert_growing([this](double angle) { return equidistant_angle(k_, angle); }, target, max_theta_);
+  const double theta = angle_of_radius(lens, k_, target, max_theta_);
   return (Eigen::Vector3d() << std::sin(theta) / target * distorted, std::cos(theta)).finished();
 }
 
@@ -293,18 +249,6 @@ double CameraModel::stretch(const Vector2d& point) const {
   for (int axis = 0; axis < 2; ++axis)
     pixel_per_point.col(axis) = (distort_to_pixel(point + kStep * Vector2d::Unit(axis)) - here) / kStep;
   return mean_focal() / std::sqrt(std::abs(pixel_per_point.determinant()));
-}
-
-std::string to_string(DistortionModel model) {
-  switch (model) {
-    case DistortionModel::None:
-      return "none";
-    case DistortionModel::RadTan:
-      return "radtan";
-    case DistortionModel::Equidistant:
-      return "equidistant";
-  }
-  return "unknown";
 }
 
 }  // namespace edged

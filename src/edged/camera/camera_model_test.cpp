@@ -5,12 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <string>
 #include <vector>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 
@@ -106,6 +108,37 @@ TEST_P(EveryCamera, AgreesWithOpenCvOnProjection) {
     EXPECT_NEAR(ours->x(), pixels[i].x, 1e-9);
     EXPECT_NEAR(ours->y(), pixels[i].y, 1e-9);
   }
+}
+
+TEST_P(EveryCamera, HasALensWithDerivativesOfItsFunctions) {
+  const CameraModel& camera = GetParam().model;
+  const LensModel& lens = lens_model(camera.distortion());
+  const LensCoefficients& k = camera.coefficients();
+  constexpr double kStep = 1e-6;
+  for (const auto function : {lens.radius_of_angle, lens.radius_of_radius})
+    for (double x = 0.05; function && x < 0.6; x += 0.05)
+      EXPECT_NEAR(function(k, x).slope, (function(k, x + kStep).value - function(k, x - kStep).value) / (2 * kStep),
+                  1e-8);
+  if (!lens.distort) return;
+  const Vector2d p(0.3, -0.2);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vector2d step = kStep * Vector2d::Unit(axis);
+    const Vector2d numeric = (lens.distort(k, p + step).point - lens.distort(k, p - step).point) / (2 * kStep);
+    EXPECT_LT((lens.distort(k, p).d_point.col(axis) - numeric).norm(), 1e-8);
+  }
+}
+
+TEST(LensTable, HasOneRowAModelThatEachOfItsNamesFinds) {
+  for (const LensModel& lens : lens_models()) {
+    EXPECT_EQ(&lens_model(lens.model), &lens);
+    EXPECT_EQ(find_lens_model(lens.name), &lens);
+    for (const std::string_view name : lens.also) EXPECT_TRUE(name.empty() || find_lens_model(name) == &lens) << name;
+    EXPECT_TRUE(
+        std::ranges::any_of(all_cameras(), [&](const NamedCamera& c) { return c.model.distortion() == lens.model; }))
+        << lens.name << " has no camera in these tests";
+  }
+  EXPECT_EQ(find_lens_model(""), nullptr);
+  EXPECT_EQ(lens_model_names(), "none, radtan, equidistant");
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryCamera, testing::ValuesIn(all_cameras()),
@@ -239,7 +272,7 @@ TEST(CameraModel, RefusesCoefficientsThatTheModelDoesNotHave) {
   EXPECT_THAT(refusal([] {
                 CameraModel(240, 180, 200, 200, 120, 90, DistortionModel::Equidistant, {0, 0, 0, 0, 0.7});
               }),
-              HasSubstr("only four"));
+              HasSubstr("only k1 k2 k3 k4"));
   EXPECT_THAT(refusal([] {
                 CameraModel(240, 180, 200, 200, 120, 90, DistortionModel::RadTan, {0, std::nan(""), 0, 0, 0});
               }),

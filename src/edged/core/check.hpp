@@ -8,20 +8,21 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "edged/input_error.hpp"
 
 namespace edged {
 
-/// Bad input, calibration, configuration or arguments. The message is one line that names the file, line or key
-/// and the remedy. Caught once, in main.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-
-  template <typename... Args>
-  static InputError format(fmt::format_string<Args...> text, Args&&... args) {
-    return InputError(fmt::format(text, std::forward<Args>(args)...));
-  }
+template <typename... Args>
+struct FormatText {
+  using type = fmt::format_string<Args...>;
 };
+
+template <typename... Args>
+InputError InputError::format(typename FormatText<Args...>::type text, Args&&... args) {
+  return InputError(fmt::format(text, std::forward<Args>(args)...));
+}
 
 /// A broken precondition: a bug, with the values that show it.
 class CheckError : public std::logic_error {

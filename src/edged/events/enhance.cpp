@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/events/enhance.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -45,31 +47,45 @@ cv::Mat magnitude(const cv::Mat& gx, const cv::Mat& gy, MagnitudeNorm norm, doub
   return scaled;
 }
 
+cv::Mat equalised_alone(const cv::Mat& image, const EnhanceConfig&) { return image; }
+
+cv::Mat canny(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat edges;
+  cv::Canny(image, edges, kSobelPerSlope * config.canny_low, kSobelPerSlope * config.canny_high, 3,
+            config.norm == MagnitudeNorm::L2);
+  return edges;
+}
+
+cv::Mat laplacian(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat second, edges;
+  cv::Laplacian(image, second, CV_32F, 1);
+  cv::Mat(cv::abs(second)).convertTo(edges, CV_8U, config.edge_gain);
+  return edges;
+}
+
+cv::Mat sobel(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat gx, gy;
+  cv::Sobel(image, gx, CV_32F, 1, 0, 3);
+  cv::Sobel(image, gy, CV_32F, 0, 1, 3);
+  return magnitude(gx, gy, config.norm, config.edge_gain / kSobelPerSlope);
+}
+
+cv::Mat scharr(const cv::Mat& image, const EnhanceConfig& config) {
+  cv::Mat gx, gy;
+  cv::Scharr(image, gx, CV_32F, 1, 0);
+  cv::Scharr(image, gy, CV_32F, 0, 1);
+  return magnitude(gx, gy, config.norm, config.edge_gain / kScharrPerSlope);
+}
+
+constexpr EdgeFilter kEdgeFilters[] = {
+    {EdgeMethod::None, "none", nullptr}, {EdgeMethod::Clahe, "clahe", equalised_alone},
+    {EdgeMethod::Canny, "canny", canny}, {EdgeMethod::Laplacian, "laplacian", laplacian},
+    {EdgeMethod::Sobel, "sobel", sobel}, {EdgeMethod::Scharr, "scharr", scharr}};
+
 cv::Mat find_edges(const cv::Mat& image, const EnhanceConfig& config) {
-  cv::Mat gx, gy, edges;
-  switch (config.method) {
-    case EdgeMethod::Clahe:
-      return image;
-    case EdgeMethod::Canny:
-      cv::Canny(image, edges, kSobelPerSlope * config.canny_low, kSobelPerSlope * config.canny_high, 3,
-                config.norm == MagnitudeNorm::L2);
-      return edges;
-    case EdgeMethod::Laplacian:
-      cv::Laplacian(image, gx, CV_32F, 1);
-      cv::Mat(cv::abs(gx)).convertTo(edges, CV_8U, config.edge_gain);
-      return edges;
-    case EdgeMethod::Sobel:
-      cv::Sobel(image, gx, CV_32F, 1, 0, 3);
-      cv::Sobel(image, gy, CV_32F, 0, 1, 3);
-      return magnitude(gx, gy, config.norm, config.edge_gain / kSobelPerSlope);
-    case EdgeMethod::Scharr:
-      cv::Scharr(image, gx, CV_32F, 1, 0);
-      cv::Scharr(image, gy, CV_32F, 0, 1);
-      return magnitude(gx, gy, config.norm, config.edge_gain / kScharrPerSlope);
-    case EdgeMethod::None:
-      break;
-  }
-  EDGED_CHECK(false, "edge method {}", static_cast<int>(config.method));
+  const auto filter = std::ranges::find(kEdgeFilters, config.method, &EdgeFilter::method);
+  EDGED_CHECK(filter != std::end(kEdgeFilters) && filter->find, "edge method {}", static_cast<int>(config.method));
+  return filter->find(image, config);
 }
 
 cv::Mat erode(const cv::Mat& edges, int kernel_px) {
@@ -103,14 +119,12 @@ cv::Mat run_algorithm(const cv::Mat& event_frame, const EnhanceConfig& config, N
 
 }  // namespace
 
+std::span<const EdgeFilter> edge_filters() { return kEdgeFilters; }
+
 void EnhanceConfig::visit(ConfigFields& fields) {
-  fields.choice("method", method,
-                {{"none", EdgeMethod::None},
-                 {"clahe", EdgeMethod::Clahe},
-                 {"canny", EdgeMethod::Canny},
-                 {"laplacian", EdgeMethod::Laplacian},
-                 {"sobel", EdgeMethod::Sobel},
-                 {"scharr", EdgeMethod::Scharr}},
+  std::vector<std::pair<std::string_view, EdgeMethod>> methods;
+  for (const EdgeFilter& filter : kEdgeFilters) methods.emplace_back(filter.name, filter.method);
+  fields.choice("method", method, methods,
                 {.effect = "Edge map for the enhancement of the event frame (Algorithm 1). none: no enhancement."});
   fields.add("blur_sigma_px", blur_sigma_px, {"px", 0, 10, "Gaussian blur before the equalization. 0: off."});
   fields.add("clahe_clip", clahe_clip,

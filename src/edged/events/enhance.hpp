@@ -5,12 +5,22 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/options/events.hpp"
 
 namespace edged {
+
+/// A row of the table of edge filters.
+struct EdgeFilter {
+  EdgeMethod method;
+  std::string_view name;                                               ///< of the option's choice
+  cv::Mat (*find)(const cv::Mat& image, const EnhanceConfig& config);  ///< I_edge; null: no enhancement
+};
+std::span<const EdgeFilter> edge_filters();
 
 /// Algorithm 1 on a CV_8UC1 event frame: saturate(event_weight * I_event + edge_weight * I_edge), CV_8UC1. With
 /// EdgeMethod::None the frame itself, not a copy. The config must be valid.

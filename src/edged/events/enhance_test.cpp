@@ -173,9 +173,9 @@ TEST(Enhance, ScalesByNothingThatTheFrameHolds) {
   cv::Mat beside = alone.clone();
   cv::circle(beside, {48, 48}, 6, cv::Scalar(255), cv::FILLED, cv::LINE_AA);
   const cv::Rect patch(0, 0, 32, 32);
-  for (const EdgeMethod method : {EdgeMethod::Canny, EdgeMethod::Laplacian, EdgeMethod::Sobel, EdgeMethod::Scharr}) {
-    const EnhanceConfig config = edges_only(method);
-    EXPECT_EQ(largest_difference(enhance(alone, config)(patch), enhance(beside, config)(patch)), 0.0);
+  for (const EdgeFilter& filter : edge_filters()) {
+    const EnhanceConfig config = edges_only(filter.method);
+    EXPECT_EQ(largest_difference(enhance(alone, config)(patch), enhance(beside, config)(patch)), 0.0) << filter.name;
   }
 }
 
@@ -198,10 +198,9 @@ TEST(Enhance, NamesTheStepsThatAreOn) {
 
 TEST(Enhance, NeverChangesItsInput) {
   const cv::Mat image = texture(5), copy = image.clone();
-  for (const EdgeMethod method : {EdgeMethod::None, EdgeMethod::Clahe, EdgeMethod::Canny, EdgeMethod::Laplacian,
-                                  EdgeMethod::Sobel, EdgeMethod::Scharr}) {
+  for (const EdgeFilter& filter : edge_filters()) {
     EnhanceConfig config;
-    config.method = method;
+    config.method = filter.method;
     enhance(image, config);
     EXPECT_EQ(largest_difference(image, copy), 0.0);
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 namespace {

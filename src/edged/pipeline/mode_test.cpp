@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "edged/core/check.hpp"
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 namespace {

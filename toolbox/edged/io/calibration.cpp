@@ -12,6 +12,7 @@
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calib/mask.hpp"
 #include "edged/io/calib/plausibility.hpp"
+#include "edged/io/calibration_source.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
@@ -36,7 +37,7 @@ std::string format_transform(const std::string& name, const SE3& T) {
 
 }  // namespace
 
-Calibration load_calibration(const SourcePath& path, const CalibrationOptions& options) {
+Calibration read_calibration(const SourcePath& path, const CalibrationOptions& options) {
   if (!path.is_file() && !path.is_folder()) throw InputError::format("{}: no such calibration", path.string());
   const SourcePath file = path.is_folder() ? find_calibration(path) : path;
   std::optional<SourcePath> imu_file;
@@ -53,6 +54,10 @@ Calibration load_calibration(const SourcePath& path, const CalibrationOptions& o
   for (std::string& warning : implausibilities(calibration, file)) calibration.warnings.push_back(std::move(warning));
   for (const std::string& warning : calibration.warnings) spdlog::warn(warning);
   return calibration;
+}
+
+Calibration load_calibration(const fs::path& path, const CalibrationOptions& options) {
+  return read_calibration(path, options);
 }
 
 std::vector<std::string> known_rigs() {

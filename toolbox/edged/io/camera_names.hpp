@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {

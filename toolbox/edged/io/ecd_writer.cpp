@@ -64,7 +64,7 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
   const Calibration named = with_format_names(calibration);
   const RigCamera* events = named.rig.find(Modality::Events);
   const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
-  if (m.distortion() != DistortionModel::Equidistant) {
+  if (m.distortion() == DistortionModel::None || m.distortion() == DistortionModel::RadTan) {
     const auto& k = m.coefficients();
     LazyFile file(folder / "calib.txt");
     file.add(FMT_COMPILE("{} {} {} {} {} {} {} {} {}\n"), m.fx(), m.fy(), m.cx(), m.cy(), k[0], k[1], k[2], k[3], k[4]);

@@ -17,7 +17,7 @@
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/bytes.hpp"
-#include "edged/io/calibration.hpp"
+#include "edged/io/calibration_source.hpp"
 #include "edged/io/dataset_folders.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
@@ -72,7 +72,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   std::set<std::string> read = {file, "calibration.yaml"};
   std::optional<Calibration> calibration;
   try {
-    if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = load_calibration(own);
+    if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = read_calibration(own);
   } catch (const InputError& e) {
     spdlog::warn(fmt::format("{}; opened without this calibration", e.what()));
   }

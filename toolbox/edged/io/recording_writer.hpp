@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/sensor_head.hpp"
 
 namespace edged {

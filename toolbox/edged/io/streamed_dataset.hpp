@@ -8,7 +8,7 @@
 #include <set>
 #include <span>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/merger.hpp"
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "edged/io/source_path.hpp"
+#include "edged/io/time_unit.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
@@ -104,9 +105,6 @@ bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
   }
   return true;
 }
-
-/// The unit of stamps in a file, as the power of ten that turns it into nanoseconds.
-enum class TimeUnit { Nanoseconds = 0, Microseconds = 3, Milliseconds = 6, Seconds = 9 };
 
 /// "s", "ms", "us" or "ns"; nothing for any other text.
 std::optional<TimeUnit> parse_time_unit(std::string_view text);

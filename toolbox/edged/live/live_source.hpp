@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/live/live_clock.hpp"
 #include "edged/live/read_ahead.hpp"
 #include "edged/live/shed_report.hpp"

@@ -9,7 +9,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/timing.hpp"
 

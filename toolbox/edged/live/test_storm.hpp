@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 

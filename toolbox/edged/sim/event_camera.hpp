@@ -7,29 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "edged/config.hpp"
 #include "edged/measurement.hpp"
 #include "edged/sim/random.hpp"
+#include "edged/sim/simulator_config.hpp"
 
 namespace edged {
-
-/// The model of Hu, Liu, Delbruck, "v2e" (CVPRW 2021): threshold mismatch, refractory time, one-pole bandwidth
-/// that grows with the light, leak and shot noise, hot pixels.
-struct EventCameraConfig {
-  double threshold_on = 0.3;
-  double threshold_off = 0.3;
-  double threshold_sigma = 0.03;
-  double refractory_us = 300.0;
-  double bandwidth_hz = 0.0;
-  double bandwidth_per_radiance_hz = 0.0;
-  double leak_hz = 0.1;
-  double shot_hz = 0.03;
-  int hot_pixels = 0;
-  double hot_hz = 200.0;
-  double dark_radiance = 0.003;
-
-  void visit(ConfigFields& fields);
-};
 
 class EventCamera {
  public:

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/sim/motion.hpp"
 #include "edged/sim/simulator.hpp"
+#include "edged/sim/trajectory.hpp"
 
 namespace edged {
 namespace {

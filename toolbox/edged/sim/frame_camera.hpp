@@ -8,25 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "edged/config.hpp"
 #include "edged/sim/random.hpp"
+#include "edged/sim/simulator_config.hpp"
 
 namespace edged {
 
-struct FrameCameraConfig {
-  double rate_hz = 24.0;
-  double exposure_ms = 8.0;
-  bool auto_exposure = false;
-  double min_exposure_ms = 0.1, max_exposure_ms = 25.0;
-  double target_level = 90.0;
-  double electrons_per_ms = 2500.0;
-  double electrons_per_level = 80.0;
-  double read_noise_electrons = 45.0;
-
-  void visit(ConfigFields& fields);
-};
-
-/// The value of a pixel with so many electrons: with photon noise and read noise [electrons], in 8 bits.
+/// What a pixel that caught so many electrons reads: with photon noise and read noise [electrons], in 8 bits.
 std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random);
 
 class FrameCamera {

@@ -6,29 +6,10 @@
 #include <cstdint>
 #include <string>
 
-#include "edged/config.hpp"
-#include "edged/sim/flight.hpp"
+#include "edged/sim/simulator_config.hpp"
 #include "edged/sim/trajectory.hpp"
 
 namespace edged {
-
-enum class PoseOf { Camera, Body };
-
-struct MotionConfig {
-  std::string file;  ///< TUM trajectory to follow; empty: random motion
-  Manoeuvre flight = Manoeuvre::None;
-  double start_s = 0.0;
-  PoseOf pose_of = PoseOf::Camera;
-  double rest_s = 1.0;
-  double blend_s = 1.0;
-  double knot_s = 0.05;
-  double extent_m = 0.6;
-  double max_angle_deg = 35.0;
-  double max_speed = 0.8;
-  double max_rate_deg_s = 45.0;
-
-  void visit(ConfigFields& fields);
-};
 
 /// The motion of the body for duration_s seconds. Random motion sways the camera around a point 1.3 m above the ground,
 /// its axis level and along +x on average. A flight has its own length, whatever duration_s is. Throws

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "edged/config.hpp"
 #include "edged/se3.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/light.hpp"
+#include "edged/sim/simulator_config.hpp"
 #include "edged/sim/texture.hpp"
 
 namespace edged {
@@ -55,21 +55,6 @@ struct Scene {
   std::vector<DynamicObject> dynamic_objects;
   std::optional<Lighting> lighting;    ///< none: light 1 everywhere
   std::optional<Spotlight> spotlight;  ///< on top of it
-};
-
-enum class SceneKind { Boxes, Poster, Shapes, Hall };
-
-struct SceneConfig {
-  SceneKind kind = SceneKind::Boxes;
-  int objects = 16;
-  double twin_m = 0.0;
-  double clearance_m = 0.45;
-  double wall_m = 1.6;
-  double poster_distance_m = 1.3;
-  double light = 1.0;
-  LightingKind lighting = LightingKind::Even;
-
-  void visit(ConfigFields& fields);
 };
 
 /// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, a wall in

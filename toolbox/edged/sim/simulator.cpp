@@ -4,9 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/sim/disturbance.hpp"
+#include "edged/sim/event_camera.hpp"
+#include "edged/sim/external_model.hpp"
+#include "edged/sim/frame_camera.hpp"
+#include "edged/sim/imu_model.hpp"
+#include "edged/sim/motion.hpp"
+#include "edged/sim/renderer.hpp"
+#include "edged/sim/scene.hpp"
 
 namespace edged {
 namespace {
@@ -14,7 +27,7 @@ namespace {
 constexpr Timestamp kForever = Timestamp::max();
 constexpr Duration kMicrosecond(1000);
 constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
-// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are not missed.
+// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are seen in time.
 constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(SimulatorConfig config) {
@@ -74,8 +87,10 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("fy", fy, {"px", 1, 1e5, "focal length"});
   fields.add("cx", cx, {"px", 0, 4096, "principal point"});
   fields.add("cy", cy, {"px", 0, 4096, "principal point"});
-  fields.choice("distortion", distortion,
-                {{"radtan", DistortionModel::RadTan}, {"equidistant", DistortionModel::Equidistant}},
+  std::vector<std::pair<std::string_view, DistortionModel>> lenses;
+  for (const LensModel& lens : lens_models())
+    if (lens.most > 0) lenses.emplace_back(lens.name, lens.model);
+  fields.choice("distortion", distortion, lenses,
                 {.effect = "k1 k2 p1 p2 of an ordinary lens, or k1 k2 of one that may see behind itself"});
   fields.add("k1", k1, {"", -10, 10, "radial distortion"});
   fields.add("k2", k2, {"", -10, 10, "radial distortion"});
@@ -84,8 +99,8 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
 }
 
 CameraModel SimulatedCameraConfig::model() const {
-  if (distortion == DistortionModel::Equidistant) return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
-  return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
+  if (distortion == DistortionModel::RadTan) return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
+  return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
 }
 
 void SimulatorConfig::visit(ConfigFields& fields) {
@@ -111,7 +126,59 @@ SE3 SimulatorConfig::davis240c_extrinsics() {
   return {R, Eigen::Vector3d(0.006746964, 0.000727922, 0.034257361)};
 }
 
-Simulator::Simulator(const SimulatorConfig& config)
+class Simulator::Impl {
+ public:
+  explicit Impl(const SimulatorConfig& config);
+
+  const DatasetInfo& info() const { return info_; }
+  std::optional<Measurement> next();
+  void leave_out(Modality unwanted) { wants_events_ &= unwanted != Modality::Events; }
+  std::optional<GroundTruth> ground_truth() const;
+  Calibration calibration() const;
+  const DisturbedTrajectory& trajectory() const { return trajectory_; }
+  std::size_t renderings() const { return renderings_; }
+  Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
+  const Renderer& renderer() const { return renderer_; }
+
+ private:
+  void advance();
+  Timestamp next_render_time() const;
+  void prepare_imu();
+  /// The external sensor whose sample is next; null without any.
+  ExternalModel* next_external();
+  void collect_light(Timestamp from, Timestamp to);
+  /// Per pixel, from now until the next picture.
+  double storm_hz() const;
+  /// Of the frame that is exposed next.
+  Timestamp exposure_begin() const;
+  Timestamp exposure_middle() const { return exposure_begin() + exposure_ / 2; }
+  EventBatch take_events(Timestamp before);
+  double image_speed(Timestamp t) const;
+  bool disturbed(DisturbanceKind by, Timestamp t) const { return config_.disturbance.is(by, to_seconds(t)); }
+  Kinematics truth(Timestamp t) const { return trajectory_.at(to_seconds(t)); }
+
+  SimulatorConfig config_;
+  DatasetInfo info_;
+  DisturbedTrajectory trajectory_;
+  Renderer renderer_;
+  EventCamera event_camera_;
+  FrameCamera frame_camera_;
+  ImuModel imu_model_;
+  std::vector<ExternalModel> external_models_;
+  Duration time_offset_, exposure_;  // the latter of the next frame
+  Timestamp end_;                    // of the cameras
+  std::optional<Timestamp> t_;       // rendered up to here
+  int frame_count_ = 0;              // read out so far
+  std::int64_t imu_count_ = 0;
+  std::vector<float> radiance_, previous_;  // what the sensors see of the last picture and of the one before
+  std::deque<Event> events_;                // rendered but not handed out, as frames_
+  std::deque<Frame> frames_;
+  std::optional<ImuSample> imu_;  // the next one
+  std::size_t renderings_ = 0;
+  bool wants_events_ = true;
+};
+
+Simulator::Impl::Impl(const SimulatorConfig& config)
     : config_(checked(config)),
       trajectory_(trajectory_of(config_)),
       renderer_(config.camera.model(), scene_of(trajectory_, config_)),
@@ -135,14 +202,14 @@ Simulator::Simulator(const SimulatorConfig& config)
   }
 }
 
-std::optional<GroundTruth> Simulator::ground_truth() const {
+std::optional<GroundTruth> Simulator::Impl::ground_truth() const {
   GroundTruth truth_body;
   for (Timestamp t; t <= end_; t += std::chrono::milliseconds(5))
     truth_body.trajectory.push_back({t + time_offset_, truth(t).T_W_B});
   return truth_body;
 }
 
-Calibration Simulator::calibration() const {
+Calibration Simulator::Impl::calibration() const {
   const RigCamera events{"events" + config_.mount.suffix, Modality::Events, config_.camera.model(), config_.T_B_M(),
                          time_offset_};
   RigCamera frames = events;
@@ -153,7 +220,7 @@ Calibration Simulator::calibration() const {
   return calibration;
 }
 
-std::optional<Measurement> Simulator::next() {
+std::optional<Measurement> Simulator::Impl::next() {
   for (;;) {
     prepare_imu();
     // All that is stamped before `complete` has been rendered: a frame appears after the events of its second half.
@@ -183,7 +250,7 @@ std::optional<Measurement> Simulator::next() {
   }
 }
 
-EventBatch Simulator::take_events(Timestamp before) {
+EventBatch Simulator::Impl::take_events(Timestamp before) {
   EventBatch batch{"events" + config_.mount.suffix, {}};
   while (!events_.empty() && events_.front().t < before) {
     batch.events.push_back(events_.front());
@@ -192,7 +259,7 @@ EventBatch Simulator::take_events(Timestamp before) {
   return batch;
 }
 
-void Simulator::prepare_imu() {
+void Simulator::Impl::prepare_imu() {
   while (!imu_) {
     // Sample k is taken at k / rate on the camera's clock; one beyond the end lets users interpolate there.
     const double t_cam_s = static_cast<double>(imu_count_) / config_.imu.rate_hz;
@@ -203,7 +270,7 @@ void Simulator::prepare_imu() {
   }
 }
 
-ExternalModel* Simulator::next_external() {
+ExternalModel* Simulator::Impl::next_external() {
   ExternalModel* first = nullptr;
   Timestamp t = kForever;
   for (ExternalModel& model : external_models_) {
@@ -215,19 +282,19 @@ ExternalModel* Simulator::next_external() {
   return first;
 }
 
-Timestamp Simulator::exposure_begin() const {
+Timestamp Simulator::Impl::exposure_begin() const {
   return whole_microseconds((frame_count_ + 0.1) / config_.frames.rate_hz);
 }
 
-double Simulator::image_speed(Timestamp t) const {
+double Simulator::Impl::image_speed(Timestamp t) const {
   const Kinematics k = truth(t);
   const Eigen::Vector3d v_B = k.T_W_B.rotation().conjugate() * k.v_W + k.omega_B.cross(config_.T_B_M().translation());
   const Eigen::Quaterniond R_C_B = config_.T_B_M().rotation().conjugate();
   return renderer_.max_image_speed(R_C_B * v_B, R_C_B * k.omega_B);
 }
 
-Timestamp Simulator::next_render_time() const {
-  // A reserve of a tenth for motion between the evaluated pixels.
+Timestamp Simulator::Impl::next_render_time() const {
+  // A tenth is kept in reserve for what moves between the pixels that are looked at.
   const double reach = 0.9 * config_.max_motion_px;
   const double speed = std::max(image_speed(*t_), 1e-3);
   double step = std::min(kLongestStep_s, reach / speed);
@@ -239,7 +306,7 @@ Timestamp Simulator::next_render_time() const {
   return std::min(t, end_);
 }
 
-void Simulator::advance() {
+void Simulator::Impl::advance() {
   const Timestamp t = t_ ? next_render_time() : Timestamp();
   previous_.swap(radiance_);
   radiance_ = renderer_.render(truth(t).T_W_B * config_.T_B_M(), to_seconds(t)).radiance;
@@ -254,12 +321,12 @@ void Simulator::advance() {
   t_ = t;
 }
 
-double Simulator::storm_hz() const {
+double Simulator::Impl::storm_hz() const {
   if (!t_ || !disturbed(DisturbanceKind::EventStorm, *t_)) return 0.0;
   return 1e6 * config_.disturbance.strength / static_cast<double>(renderer_.width() * renderer_.height());
 }
 
-void Simulator::collect_light(Timestamp from, Timestamp to) {
+void Simulator::Impl::collect_light(Timestamp from, Timestamp to) {
   if (from < exposure_begin()) return;
   // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
   frame_camera_.expose(previous_, radiance_, to_seconds(to - from));
@@ -269,5 +336,21 @@ void Simulator::collect_light(Timestamp from, Timestamp to) {
   ++frame_count_;
   exposure_ = exposure_of(frame_camera_.exposure_ms());
 }
+
+Simulator::Simulator(const SimulatorConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Simulator::Simulator(Simulator&& other) noexcept = default;
+Simulator& Simulator::operator=(Simulator&& other) noexcept = default;
+Simulator::~Simulator() = default;
+
+const DatasetInfo& Simulator::info() const { return impl_->info(); }
+std::optional<Measurement> Simulator::next() { return impl_->next(); }
+void Simulator::leave_out(Modality unwanted) { impl_->leave_out(unwanted); }
+std::optional<GroundTruth> Simulator::ground_truth() const { return impl_->ground_truth(); }
+Calibration Simulator::calibration() const { return impl_->calibration(); }
+const DisturbedTrajectory& Simulator::trajectory() const { return impl_->trajectory(); }
+std::size_t Simulator::renderings() const { return impl_->renderings(); }
+Timestamp Simulator::rendered_until() const { return impl_->rendered_until(); }
+const Rendering& Simulator::last_rendering() const { return impl_->renderer().last(); }
+const Scene& Simulator::scene() const { return impl_->renderer().scene(); }
 
 }  // namespace edged

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/sim/disturbance.hpp"
 #include "edged/sim/test_recording.hpp"
 
 namespace edged {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/survey/accel_axes.hpp"
 #include "edged/survey/diagnosis.hpp"
 

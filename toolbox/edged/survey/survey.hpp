@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/survey/event_survey.hpp"
 #include "edged/survey/external_survey.hpp"
 #include "edged/survey/imu_survey.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/text_parsing.hpp"
 
@@ -24,31 +25,21 @@ bool only_zeros(const std::vector<double>& k, std::size_t from) {
 }
 
 Distortion make_distortion(const YamlReader& place, const Intrinsics& in) {
-  const std::string name = lower_case(in.distortion);
-  const auto is_one_of = [&name](std::initializer_list<std::string_view> names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  Distortion out;
-  std::size_t most = 0;
-  if (is_one_of({"none", "no", ""})) {
-  } else if (is_one_of({"radtan", "radial-tangential", "radialtangential", "plumb_bob"})) {
-    out.model = DistortionModel::RadTan, most = 5;
-    if (in.coefficients.size() < 4) place.fail("radtan takes 4 or 5 numbers: k1 k2 p1 p2 [k3]");
-  } else if (is_one_of({"rational_polynomial", "rational"})) {
-    out.model = DistortionModel::RadTan, most = 5;
-    if (in.coefficients.size() < 5) place.fail("a rational polynomial takes 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
-    if (!only_zeros(in.coefficients, most))
-      place.fail("a rational polynomial with k4 to k6 is not supported: calibrate with plumb_bob or equidistant");
-  } else if (is_one_of({"equidistant", "fisheye", "kannala_brandt", "kb4"})) {
-    out.model = DistortionModel::Equidistant, most = 4;
-    if (in.coefficients.size() < 4) place.fail("equidistant takes 4 numbers: k1 k2 k3 k4");
-  } else {
-    place.fail("distortion " + name + " is not supported; radtan, equidistant and none are");
-  }
-  if (!only_zeros(in.coefficients, most))
-    place.fail(fmt::format("distortion {} has {} coefficients, here are {}", name.empty() ? "none" : name, most,
-                           in.coefficients.size()));
-  std::copy_n(in.coefficients.begin(), std::min(most, in.coefficients.size()), out.k.begin());
+  const std::string name = in.distortion.empty() ? "none" : lower_case(in.distortion);
+  const bool rational = name == "rational_polynomial" || name == "rational";  // radtan, but for k4 to k6
+  const LensModel* lens = rational ? &lens_model(DistortionModel::RadTan) : find_lens_model(name);
+  if (!lens) place.fail("distortion " + name + " is not supported; these are: " + lens_model_names());
+  const std::size_t count = in.coefficients.size();
+  if (rational && count < lens->most) place.fail("a rational polynomial takes 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
+  if (rational && !only_zeros(in.coefficients, lens->most))
+    place.fail("a rational polynomial with k4 to k6 is not supported: calibrate with plumb_bob or equidistant");
+  if (count < lens->fewest)
+    place.fail(fmt::format("{} takes {}{} numbers: {}", lens->name, lens->fewest,
+                           lens->most > lens->fewest ? fmt::format(" or {}", lens->most) : "", lens->coefficients));
+  if (!only_zeros(in.coefficients, lens->most))
+    place.fail(fmt::format("distortion {} has {} coefficients, here are {}", name, lens->most, count));
+  Distortion out{lens->model};
+  std::copy_n(in.coefficients.begin(), std::min(lens->most, count), out.k.begin());
   return out;
 }
 
@@ -113,7 +104,7 @@ CameraModel read_model(const YamlReader& camera, const std::string& distortion_k
                        const std::string& coefficients_key) {
   if (const std::string model = camera.text_or("camera_model", "pinhole"); model != "pinhole")
     camera.at("camera_model")
-        .fail("camera model " + model + " is not supported; pinhole is, with radtan or equidistant distortion");
+        .fail("camera model " + model + " is not supported; pinhole is, with distortion: " + lens_model_names());
   const YamlReader resolution = camera.at("resolution"), intrinsics = camera.at("intrinsics");
   const std::vector<double> size = resolution.numbers();
   if (size.size() != 2) resolution.fail("must be [width, height]");

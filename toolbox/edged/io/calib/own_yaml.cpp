@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
@@ -149,11 +150,9 @@ std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
                   quoted(camera.name), camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
                   m.fx(), m.fy(), m.cx(), m.cy());
   const auto& k = m.coefficients();
-  if (m.distortion() == DistortionModel::RadTan)
-    out +=
-        fmt::format("    distortion: radtan\n    coefficients: [{}, {}, {}, {}, {}]\n", k[0], k[1], k[2], k[3], k[4]);
-  if (m.distortion() == DistortionModel::Equidistant)
-    out += fmt::format("    distortion: equidistant\n    coefficients: [{}, {}, {}, {}]\n", k[0], k[1], k[2], k[3]);
+  if (const LensModel& lens = lens_model(m.distortion()); lens.most > 0)
+    out += fmt::format("    distortion: {}\n    coefficients: [{}]\n", lens.name,
+                       fmt::join(std::span(k).first(lens.most), ", "));
   const CameraModel whole(m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy(), m.distortion(), k);
   if (m.view_limit() != whole.view_limit())
     out += fmt::format("    max_angle: {}  # deg off the axis: further out nothing is used\n",

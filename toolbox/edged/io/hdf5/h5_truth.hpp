@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/repairs.hpp"
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -107,15 +108,15 @@ std::string transform_message(Wire wire, const StampedPose& pose, std::string_vi
 }
 
 std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view camera, const CameraModel& model) {
-  const bool equidistant = model.distortion() == DistortionModel::Equidistant;
+  const bool distorted = model.distortion() != DistortionModel::None;
+  const LensModel& lens = lens_model(distorted ? model.distortion() : DistortionModel::RadTan);
   WireWriter out(wire);
   out.header(stamp, camera);
   out.number(static_cast<std::uint32_t>(model.height()));
   out.number(static_cast<std::uint32_t>(model.width()));
-  out.text(equidistant ? "equidistant" : "plumb_bob");
-  const std::size_t coefficients = equidistant ? 4 : 5;
-  out.number(static_cast<std::uint32_t>(coefficients));
-  out.numbers({model.coefficients().data(), coefficients});
+  out.text(lens.ros);
+  out.number(static_cast<std::uint32_t>(lens.most));
+  out.numbers({model.coefficients().data(), lens.most});
   const double fx = model.fx(), fy = model.fy(), cx = model.cx(), cy = model.cy();
   out.numbers(std::array{fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0});                 // K
   out.numbers(std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});             // no rectification

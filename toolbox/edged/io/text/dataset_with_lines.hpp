@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/core/dataset.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/stamped_lines.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration.hpp"
+#include "edged/io/calibration_source.hpp"
 #include "edged/io/dataset_folders.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/text/text_dataset.hpp"
@@ -43,10 +43,10 @@ cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::option
 
 Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   Recording recording;
-  if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = load_calibration(own);
+  if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = read_calibration(own);
   // The lens of a sequence can differ from that of the rig: the data set used several.
   if (const SourcePath calib = folder / "calib.txt"; rig && calib.is_file())
-    warn_of_other_lens(calib.string(), load_calibration(calib).rig.cameras.front().model.mean_focal(), *rig,
+    warn_of_other_lens(calib.string(), read_calibration(calib).rig.cameras.front().model.mean_focal(), *rig,
                        Modality::Events);
 
   TextLayout layout;

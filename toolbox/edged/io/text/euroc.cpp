@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration.hpp"
+#include "edged/io/calibration_source.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 
@@ -78,7 +78,7 @@ std::optional<SourcePath> find_truth(const SourcePath& mav0) {
 /// Where it is refused the recording is read all the same.
 std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   const SourcePath dso = mav0.parent_path() / "dso";
-  return (dso / "camchain.yaml").is_file() ? std::optional(load_calibration(dso, {.otherwise = Sees::Frames}))
+  return (dso / "camchain.yaml").is_file() ? std::optional(read_calibration(dso, {.otherwise = Sees::Frames}))
                                            : std::nullopt;
 } catch (const InputError& error) {
   spdlog::warn(fmt::format("{}; opened without this calibration", error.what()));
@@ -87,12 +87,12 @@ std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
 
 /// With all that are read.
 Calibration calibration_of(const SourcePath& mav0, const std::set<std::string>& cameras) {
-  Calibration calibration = load_calibration(mav0);
+  Calibration calibration = read_calibration(mav0);
   std::vector<RigCamera>& known = calibration.rig.cameras;
   for (const std::string& name : cameras) {
     const SourcePath sensor = mav0 / name / "sensor.yaml";
     if (std::ranges::find(known, name, &RigCamera::name) == known.end() && sensor.is_file())
-      known.push_back(load_calibration(sensor).rig.cameras.front());
+      known.push_back(read_calibration(sensor).rig.cameras.front());
   }
   return calibration;
 }

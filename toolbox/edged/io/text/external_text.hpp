@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "edged/core/dataset.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/source_path.hpp"
 
 namespace edged {

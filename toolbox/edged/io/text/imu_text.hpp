@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {

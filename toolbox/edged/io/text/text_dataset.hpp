@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/image_file.hpp"
 #include "edged/io/stamped_lines.hpp"
 #include "edged/io/text/event_text.hpp"

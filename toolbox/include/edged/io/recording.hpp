@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/sensor_head.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/time_unit.hpp"
 
 namespace edged {
 

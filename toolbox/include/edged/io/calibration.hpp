@@ -3,11 +3,12 @@
 // The calibration of a sensor head, read from any of the formats its users have.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "edged/input_error.hpp"
 #include "edged/io/sensor_head.hpp"
-#include "edged/io/source_path.hpp"
 
 namespace edged {
 
@@ -17,7 +18,7 @@ namespace edged {
 /// both. A lens that gives both becomes two cameras, `events` and `frames`. Throws InputError for unknown content, a
 /// rotation that is not orthonormal to 1e-3 or mirrored, impossible intrinsics, and a camera of which nothing tells
 /// what it sees. Logs Calibration::warnings.
-Calibration load_calibration(const SourcePath& path, const CalibrationOptions& options = {});
+Calibration load_calibration(const std::filesystem::path& path, const CalibrationOptions& options = {});
 
 /// A rig by name (core/resources.hpp: rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.
 Calibration load_rig(const std::string& name_or_path);

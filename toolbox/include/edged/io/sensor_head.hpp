@@ -21,7 +21,7 @@ struct Calibration {
   ImuNoise imu;
   bool has_extrinsics = true;         ///< false: the file has intrinsics only, T_B_C and time_offset are placeholders
   bool has_imu_noise = true;          ///< false: `imu` holds the defaults
-  std::vector<std::string> warnings;  ///< what looks wrong, each one line
+  std::vector<std::string> warnings;  ///< what seems wrong, each one line
 };
 
 /// What the pixels behind a lens give: those of a DAVIS give both.

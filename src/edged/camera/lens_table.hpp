@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The table of lens models, which calibrations, recordings, the simulator and messages follow.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "edged/camera/lens_model.hpp"
+
+namespace edged {
+
+std::span<const LensModel> lens_models();
+
+const LensModel& lens_model(DistortionModel model);
+
+/// By any of its names, in lower case; null where none has it.
+const LensModel* find_lens_model(std::string_view name);
+
+/// "none, radtan, ...", for messages.
+std::string lens_model_names();
+
+}  // namespace edged

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Kannala and Brandt's lens: the radius is a polynomial of the angle off the axis, math.md (C3).
+#pragma once
+
+#include "edged/camera/lens_model.hpp"
+
+namespace edged {
+
+inline Sloped equidistant_radius(const LensCoefficients& k, double theta) {
+  const double t2 = theta * theta;
+  return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
+          1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
+}
+
+inline constexpr LensModel kEquidistant{.model = DistortionModel::Equidistant,
+                                        .name = "equidistant",
+                                        .coefficients = "k1 k2 k3 k4",
+                                        .fewest = 4,
+                                        .most = 4,
+                                        .also = {"fisheye", "kannala_brandt", "kb4"},
+                                        .ros = "equidistant",
+                                        .foxglove = "kannala_brandt",
+                                        .radius_of_angle = equidistant_radius};
+
+}  // namespace edged
