@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong in a recording: one thing at a known time, in the scene, in the motion or in the sensors.
+// A disturbance of a recording: one at a known time, in the scene, in the motion or in the sensors.
 #pragma once
 
 #include "edged/sim/simulator_config.hpp"
@@ -8,9 +8,9 @@
 
 namespace edged {
 
-/// A motion with what a disturbance (filled in) makes of it: the clock of the path is stopped, for the position alone
-/// in pure rotation; or the body turns about an axis of its own on top of it; or it is knocked. What takes up time, as
-/// slowing down or turning round to a wall, is done before the disturbance and undone after it.
+/// A motion with a disturbance (with its defaults set): the clock of the path is stopped, for the position alone
+/// in pure rotation; or the body turns about an axis of its own on top of it; or it is knocked. Transitions, such as
+/// slowing down or turning to a wall, take place before the disturbance and after it.
 class DisturbedTrajectory {
  public:
   /// gyro_range [rad/s]; axis_B: of the turns, unit.

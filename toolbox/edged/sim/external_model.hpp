@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// External sensors of the simulator: what a barometer and a wheel or flow sensor tell, with all that goes wrong there.
+// External sensors of the simulator: a barometer and a wheel or flow sensor, with their errors.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace edged {
 
-/// One of them: its samples in the order of their stamps. Each has random numbers of its own: no other sensor changes.
+/// One of them: its samples in the order of their stamps. Each has random numbers of its own, so other sensors do not
+/// change.
 class ExternalModel {
  public:
   /// index: of the sensor in ExternalSample. shift: from the camera's clock to the stamps.

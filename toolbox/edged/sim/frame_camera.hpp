@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// What a pixel that caught so many electrons reads: with photon noise and read noise [electrons], in 8 bits.
+/// The value of a pixel with so many electrons: with photon noise and read noise [electrons], in 8 bits.
 std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random);
 
 class FrameCamera {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// An inertial sensor: true rates and specific force, with noise, wandering biases, vibration and a limited range.
+// An inertial sensor: true rates and specific force, with noise, bias random walks, vibration and a limited range.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,22 +30,22 @@ class ImuModel {
  public:
   ImuModel(const ImuModelConfig& config, std::uint64_t seed);
 
-  /// One sample (Forster 2017, Eq. 27, 28); the biases walk one sample period after it. The samples are taken to come
-  /// at rate_hz.
+  /// One sample (Forster 2017, Eq. 27, 28); the biases change by one sample period after it. The samples are taken to
+  /// come at rate_hz.
   ImuSample measure(Timestamp t, const Kinematics& truth);
 
   const Eigen::Vector3d& bias_gyro() const { return bias_gyro_; }
   const Eigen::Vector3d& bias_accel() const { return bias_accel_; }
 
  private:
-  /// Adds what the motors do, by how far they are up to speed.
+  /// Adds the vibration of the motors, scaled by their speed.
   void shake(ImuSample& sample);
 
   ImuModelConfig config_;
   Random random_, vibration_;
   std::array<Hum, 12> hums_;  // gyroscope, accelerometer; one and twice the frequency
   Eigen::Vector3d bias_gyro_, bias_accel_;
-  Eigen::Matrix3d gyro_axes_, accel_axes_;  // what is measured of a true vector
+  Eigen::Matrix3d gyro_axes_, accel_axes_;  // measurement matrix: scale and axis errors
 };
 
 }  // namespace edged

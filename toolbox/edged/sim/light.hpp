@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the light comes from: lamps that are switched, the sun through a window, and what all surfaces send around.
+// Light sources: lamps that are switched, the sun through a window, and ambient light.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ struct SunWindow {
   double power = 1.0;                  ///< radiance of a white surface square to the rays
 };
 
-/// A lamp with a narrow beam, held at one place, that somebody lets wander.
+/// A lamp with a narrow, moving beam at a fixed place.
 struct Spotlight {
   Eigen::Vector3d centre_W, axis_W;  ///< axis: unit, about which the beam wanders
   double power = 1.0;                ///< radiance of a white surface square to the middle of the beam at 2 m
@@ -50,12 +50,12 @@ float beam_light(const Beam& beam, const Eigen::Vector3f& p, const Eigen::Vector
 
 /// Nothing casts a shadow but the wall around the window.
 struct Lighting {
-  double ambient = 1.0;  ///< radiance of a white surface by what all others reflect
+  double ambient = 1.0;  ///< radiance of a white surface by the reflections of all others
   std::vector<Lamp> lamps;
   std::optional<SunWindow> sun;
 };
 
-/// What lights a room of this size [m] whose floor's centre is the origin; brightness multiplies all of it.
+/// The lighting of a room of this size [m] whose floor's centre is the origin; brightness multiplies all of it.
 /// Lamps: two panels at the ceiling. Switched: weak panels and a lamp on each wall that goes on and off at random times
 /// during duration_s. Sun: weak panels and a window in the wall at +y. Even has no lighting.
 std::optional<Lighting> make_lighting(LightingKind kind, const Eigen::Vector3d& size, double brightness,

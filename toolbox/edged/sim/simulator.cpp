@@ -27,7 +27,7 @@ namespace {
 constexpr Timestamp kForever = Timestamp::max();
 constexpr Duration kMicrosecond(1000);
 constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
-// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are seen in time.
+// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are not missed.
 constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(SimulatorConfig config) {
@@ -170,8 +170,8 @@ class Simulator::Impl {
   std::optional<Timestamp> t_;       // rendered up to here
   int frame_count_ = 0;              // read out so far
   std::int64_t imu_count_ = 0;
-  std::vector<float> radiance_, previous_;  // what the sensors see of the last picture and of the one before
-  std::deque<Event> events_;                // rendered but not handed out, as frames_
+  std::vector<float> radiance_, previous_;  // input of the sensors: the last rendered image and the one before
+  std::deque<Event> events_;                // rendered but not returned yet, as frames_
   std::deque<Frame> frames_;
   std::optional<ImuSample> imu_;  // the next one
   std::size_t renderings_ = 0;
@@ -294,7 +294,7 @@ double Simulator::Impl::image_speed(Timestamp t) const {
 }
 
 Timestamp Simulator::Impl::next_render_time() const {
-  // A tenth is kept in reserve for what moves between the pixels that are looked at.
+  // A reserve of a tenth for motion between the evaluated pixels.
   const double reach = 0.9 * config_.max_motion_px;
   const double speed = std::max(image_speed(*t_), 1e-3);
   double step = std::min(kLongestStep_s, reach / speed);

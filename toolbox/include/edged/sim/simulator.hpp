@@ -44,7 +44,7 @@ class Simulator : public Dataset {
   std::size_t renderings() const;
   Timestamp rendered_until() const;
   const Rendering& last_rendering() const;
-  /// All there is to be seen.
+  /// The scene.
   const Scene& scene() const;
 
  private:

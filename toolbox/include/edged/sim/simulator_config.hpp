@@ -110,8 +110,8 @@ struct ImuModelConfig {
   double cross_axis_mrad = 0.0;
   double gyro_range = 34.9;    ///< readings end here [rad/s]
   double accel_range = 156.9;  ///< [m/s^2]
-  /// What motors shake into the sensor while they run: a narrow band at their speed and half as much at twice of it,
-  /// too small a motion to be seen by a camera, and a broad band.
+  /// The vibration of running motors in the sensor: a narrow band at their speed and half as much at twice of it,
+  /// too small for a camera to observe, and a broad band.
   double vibration_hz = 130.0;
   double gyro_vibration = 0.0;   ///< rms of the narrow band on each axis [rad/s]
   double accel_vibration = 0.0;  ///< [m/s^2]
@@ -122,12 +122,12 @@ struct ImuModelConfig {
 
   void visit(ConfigFields& fields);
 
-  /// What a calibration of this sensor would say, the broad band of the vibration included; no density is below a
+  /// A calibration of this sensor, with the broad band of the vibration; no density is below a
   /// millionth of the default one.
   ImuNoise noise() const;
 };
 
-/// What goes wrong with any of them, in the unit of the sensor.
+/// The errors of any of them, in the unit of the sensor.
 struct ExternalErrors {
   double rate_hz = 0.0;        ///< 0: there is no such sensor
   double noise = 0.0;          ///< standard deviation of a sample
@@ -200,11 +200,10 @@ struct Disturbance {
 
   double end_s() const { return at_s + length_s; }
   double middle_s() const { return at_s + 0.5 * length_s; }
-  /// Whether it is there, and at this time.
+  /// Whether there is one, and whether it is active at this time.
   bool is(DisturbanceKind of, double t_s) const { return kind == of && t_s >= at_s && t_s < end_s(); }
 
-  /// Share of the scene's light that reaches the sensors. It takes a hand 60 ms to cover a lens, a lamp 20 ms to go
-  /// out.
+  /// Share of the scene's light that reaches the sensors. Covering a lens takes 60 ms, switching a lamp 20 ms.
   double light(double t_s) const;
 };
 
@@ -229,9 +228,9 @@ struct SimulatorConfig {
   void visit(ConfigFields& fields);
   static SE3 davis240c_extrinsics();
 
-  /// Of another camera of the same flight through the same scene, which are made for the one at T_B_C.
+  /// A further camera on the same flight through the same scene, which are designed for the one at T_B_C.
   struct Mount {
-    SE3 T_C_M;           ///< where it sits against that
+    SE3 T_C_M;           ///< its pose relative to that
     std::string suffix;  ///< of its cameras' names; with one its noise is its own
   };
   Mount mount;
