@@ -54,10 +54,9 @@ class TestWorld {
     noise_.accel_noise = 4e-3;
     const double side = options_.far_m;
     for (int i = 0; i < 600; ++i) {
-      points_W_.emplace_back(uniform(-side, side), uniform(-side, side), uniform(options_.near_m, options_.far_m));
+      points_W_.push_back(in_box({-side, -side, options_.near_m}, {side, side, options_.far_m}));
     }
-    for (int i = 0; i < options_.walker; ++i)
-      walker_.emplace_back(uniform(-0.8, -0.3), uniform(-0.4, 0.4), uniform(1.6, 1.8));
+    for (int i = 0; i < options_.walker; ++i) walker_.push_back(in_box({-0.8, -0.4, 1.6}, {-0.3, 0.4, 1.8}));
   }
 
   const Rig& rig() const { return rig_; }
@@ -114,8 +113,7 @@ class TestWorld {
       if (!pixel || !camera.model.contains(*pixel)) continue;
       const std::size_t of_camera = options_.shared_ids ? 0 : 1000 * camera_index;
       const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + of_camera;
-      Eigen::Vector2d noise(normal(), normal());
-      noise *= options_.pixel_noise;
+      Eigen::Vector2d noise = options_.pixel_noise * normal2();
       if (options_.pixel_walk > 0.0) noise += drifted(id, t);
       out.features.push_back({id, p_C.hnormalized() + noise / 200.0, 1.0 / 200.0});
     }
@@ -157,7 +155,7 @@ class TestWorld {
     Drift& drift = drift_[id];
     const double step = options_.pixel_walk * std::sqrt(std::max(t - drift.t, 0.0));
     drift.t = t;
-    drift.px += step * Eigen::Vector2d(normal(), normal());
+    drift.px += step * normal2();
     return drift.px;
   }
 
@@ -172,6 +170,15 @@ class TestWorld {
   }
   double normal() {
     return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(2.0 * std::numbers::pi * uniform(0, 1));
+  }
+  // One random number a statement: compilers evaluate arguments in different orders.
+  Eigen::Vector3d in_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    const double z = uniform(low.z(), high.z()), y = uniform(low.y(), high.y()), x = uniform(low.x(), high.x());
+    return {x, y, z};
+  }
+  Eigen::Vector2d normal2() {
+    const double y = normal(), x = normal();
+    return {x, y};
   }
   Eigen::Vector3d normal3() {
     const double x = normal(), y = normal(), z = normal();

@@ -22,20 +22,21 @@ Scene scene(std::uint64_t seed, int right, int wrong) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto any = [&] {
-    Eigen::Vector3d vector;
-    for (double& entry : vector) entry = unit(random);
-    return vector;
+    const double z = unit(random), y = unit(random), x = unit(random);
+    return Eigen::Vector3d(x, y, z);
   };
   const Eigen::Quaterniond forward(Eigen::Matrix3d{{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}});
-  const Eigen::Quaterniond heading = so3::exp({0.0, 0.0, 3.0 * unit(random)});
+  const Eigen::Vector3d position = 2.0 * any();
   const Eigen::Quaterniond tilt = so3::exp(0.3 * any());
-  Scene made{SE3(heading * tilt * forward, 2.0 * any()), {}};
+  const Eigen::Quaterniond heading = so3::exp({0.0, 0.0, 3.0 * unit(random)});
+  Scene made{SE3(heading * tilt * forward, position), {}};
   for (int i = 0; i < right + wrong; ++i) {
-    const Eigen::Vector3d entries = any();
-    const Eigen::Vector2d point(0.5 * entries.x(), 0.4 * entries.y());
-    const Eigen::Vector3d p_M = made.T_M_C * ((2.5 + entries.z()) * point.homogeneous());
-    const Eigen::Vector2d noise = 0.001 * any().head<2>();
-    made.matches.push_back({point + noise, i < right ? p_M : Eigen::Vector3d(p_M + 2.0 * any())});
+    const double y = 0.4 * unit(random), x = 0.5 * unit(random);
+    const Eigen::Vector2d point(x, y);
+    const Eigen::Vector3d p_M = made.T_M_C * ((2.5 + unit(random)) * point.homogeneous());
+    const double noise_y = 0.001 * unit(random), noise_x = 0.001 * unit(random);
+    made.matches.push_back(
+        {point + Eigen::Vector2d(noise_x, noise_y), i < right ? p_M : Eigen::Vector3d(p_M + 2.0 * any())});
   }
   return made;
 }
