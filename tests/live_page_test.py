@@ -110,7 +110,7 @@ class LivePage(WithFlight):
         edged("run", self.flight, "--quiet", "--out", self.folder / "alone")
         with self.serving() as (_, url):
             Listener(url, ["report.html"]).join()
-        self.assertIn("live page: 1 at once at most", (self.folder / "run" / "run.log").read_text())
+        self.assertIn("live page: at most 1 viewers at once", (self.folder / "run" / "run.log").read_text())
         for name in ("states.csv", "trajectory.tum"):
             self.assertEqual((self.folder / "run" / name).read_bytes(), (self.folder / "alone" / name).read_bytes())
 
@@ -125,7 +125,7 @@ class LivePage(WithFlight):
                 listener.join()
                 process.wait(timeout=30)
         self.assertEqual(listener.updates[-1]["progress"]["packets"], self.metrics()["packets"])
-        self.assertIn("live page: 2 at once at most", (self.folder / "run" / "run.log").read_text())
+        self.assertIn("live page: at most 2 viewers at once", (self.folder / "run" / "run.log").read_text())
 
     def test_pictures_are_there_for_those_who_ask(self):
         with self.serving("--live", "--duration", 3) as (_, url):
