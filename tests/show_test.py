@@ -69,7 +69,7 @@ class Show(WithFlight):
         self.assertEqual(len(made.stderr.strip().splitlines()), 1)
         self.assertIn("raw pixels, not motion-compensated: the recording has no IMU samples", made.stderr)
         self.assertEqual(json.loads(made.stdout)["drawn_how"], "raw pixels, not motion-compensated")
-        self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_as_the_events_fell.png").exists())
+        self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_raw_pixels_not_motion_compensated.png").exists())
         self.assertFalse((out / "02_events_without_compensation.png").exists())
 
     def test_enhance_takes_the_events_up_to_the_moment_also_of_a_file_of_a_few(self):
