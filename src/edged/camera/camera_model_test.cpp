@@ -233,7 +233,7 @@ TEST(CameraModel, AnyLensCanBeUsedLessFar) {
   EXPECT_TRUE(part.contains({160 + 90, 120}));
   EXPECT_FALSE(part.contains({160 + 92, 120}));
   EXPECT_TRUE(whole.contains({160 + 92, 120}));
-  EXPECT_THAT(refusal([&] { whole.within(90 * kDegree); }), HasSubstr("less than 86 degrees"));
+  EXPECT_THAT(refusal([&] { whole.within(90 * kDegree); }), HasSubstr("below 86 degrees"));
 }
 
 TEST(CameraModel, RefusesFocalLengthsThatAreNotPositive) {
