@@ -79,22 +79,28 @@ std::vector<Turn> turns_with_rays(double seconds, double offset_s) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  // One random number a statement: compilers evaluate arguments in different orders.
+  const auto three = [&](auto& distribution) {
+    const double z = distribution(random), y = distribution(random), x = distribution(random);
+    return Eigen::Vector3d(x, y, z);
+  };
+  const auto ray = [&](const Eigen::Vector3d& p) {
+    const double y = normal(random), x = normal(random);
+    return Eigen::Vector3d(p + p.z() * 2e-3 * Eigen::Vector3d(x, y, 0)).normalized();
+  };
   std::vector<Turn> turns = turns_of(seconds, kTurned, offset_s);
   for (Turn& turn : turns) {
     Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
     const double begin = to_seconds(turn.begin.time_since_epoch()) + offset_s;
     for (int i = 0; i < 80; ++i) q = q * so3::exp(shaking(begin + (i + 0.5) * 1e-3) * 1e-3);
-    const SE3 T_begin_end(kTurned.transpose() * q.toRotationMatrix() * kTurned,
-                          0.1 * Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
+    const SE3 T_begin_end(kTurned.transpose() * q.toRotationMatrix() * kTurned, 0.1 * three(uniform));
     for (int i = 0; i < 40; ++i) {
-      const Eigen::Vector3d p =
-          Eigen::Vector3d(0.6 * uniform(random), 0.45 * uniform(random), 1.0) * (2 + uniform(random));
-      const auto ray = [&](const Eigen::Vector3d& x) {
-        return Eigen::Vector3d(x + x.z() * 2e-3 * Eigen::Vector3d(normal(random), normal(random), 0)).normalized();
-      };
-      turn.rays.emplace_back(ray(p), ray(T_begin_end.inverse() * p));
+      const Eigen::Vector3d corner = three(uniform);
+      const Eigen::Vector3d p = Eigen::Vector3d(0.6 * corner.x(), 0.45 * corner.y(), 1.0) * (2 + corner.z());
+      const Eigen::Vector3d end = ray(T_begin_end.inverse() * p);
+      turn.rays.emplace_back(ray(p), end);
     }
-    turn.phi_C += 0.02 * Eigen::Vector3d(normal(random), normal(random), 0.1 * normal(random));
+    turn.phi_C += three(normal).cwiseProduct(Eigen::Vector3d(0.02, 0.02, 0.002));
   }
   return turns;
 }
