@@ -304,8 +304,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
       "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
       "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be determined (too little motion, no start), 3 what "
-      "cannot be "
-      "read.");
+      "cannot be read.");
   calib->callback([options, file, fresh, check, &chosen] {
     if (file->count() + fresh->count() + check->count() == 0) throw CLI::RequiredError("FILE, --new or --check");
     chosen = [options] {

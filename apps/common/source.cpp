@@ -171,8 +171,7 @@ Source calibrated(const SourceOptions& options, Recording recording) {
   if (!recording.calibration->has_extrinsics)
     throw InputError::format(
         "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
-        "or "
-        "--calib FILE",
+        "or --calib FILE",
         options.calib.empty() ? options.recording : options.calib.string());
   if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
   std::optional<int> seed;

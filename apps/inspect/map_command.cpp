@@ -89,8 +89,7 @@ int run_merge(const MapCommandOptions& options) {
   if (!T_A_B)
     throw InputError::format(
         "{}: not recognized in {}; run a recording of one in the map of the other instead: edged run RECORDING --map "
-        "{} "
-        "--save-map BOTH",
+        "{} --save-map BOTH",
         options.other.string(), options.file.string(), options.file.string());
   const SavedMap both = merged(map, other, *T_A_B);
   write_file(options.out, to_bytes(both));

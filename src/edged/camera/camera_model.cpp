@@ -138,8 +138,7 @@ void CameraModel::find_monotone_range() {
   }
   if (reached < corner_radius) {
     throw InputError::format(
-        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it ends {:.1f} degrees off "
-        "the "
+        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it ends {:.1f} degrees off the "
         "axis at a distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the "
         "distortion model and the image size",
         to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta / kDegree, reached, corner_radius);
@@ -158,8 +157,7 @@ void CameraModel::check_border() const {
       if (error < kRoundTripTolerance) continue;
       throw InputError::format(
           "distortion '{}' {} {} {} {} {} has no inverse at pixel ({:.0f}, {:.0f}) (off by {:.2g} px); check the order "
-          "of "
-          "the coefficients and the distortion model",
+          "of the coefficients and the distortion model",
           to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], pixel.x(), pixel.y(), error);
     }
   }

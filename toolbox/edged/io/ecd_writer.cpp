@@ -92,8 +92,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
     if (truth.frame == "body" || (setup.info.has_events && truth.frame == "frames"))
       throw InputError::format(
           "groundtruth.txt holds the pose of the event camera, the ground truth is of {}: a calibration with "
-          "extrinsics is "
-          "needed to write it: give --rig or --calib",
+          "extrinsics is needed to write it: give --rig or --calib",
           truth.frame == "body" ? "the body" : "the frame camera");
     return truth.trajectory;
   }
