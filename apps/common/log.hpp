@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace spdlog::sinks {
+class sink;
+}
+
 namespace edged {
 
 /// Call first in main. Keeps the newest lines until attach_log_file.
