@@ -11,6 +11,8 @@
 // 3. Feature noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow,
 // over
 //    the accelerometer bias too. Their normal equations tell how well the scale is known.
+// Where a sensor measures the body's velocity, its samples are linear in the same unknowns (steps 2 and 3): they tell
+// the scale of a motion without acceleration.
 // 4. A walker is as good a world as the room: seen from him the room walks, and the IMU knows no velocity. Where one
 // motion
 //    does not fit nearly all features, patches of the view make hypotheses, and the one that explains most of the view
@@ -23,6 +25,7 @@
 
 #include "edged/core/odom_state.hpp"
 #include "edged/estimator/init_frame.hpp"
+#include "edged/estimator/start_solver.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
 
@@ -42,10 +45,9 @@ struct Alignment {
 std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, const Rig& rig,
                                                const ImuNoise& noise);
 
-/// States of all frames. accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2]. running: an
-/// estimate at the time of the last frame, to be judged, or null. Nothing when the linear system is not determined (too
-/// few tracks, no translation).
+/// States of all frames. running: an estimate at the time of the last frame, to be judged, or null. Nothing when the
+/// linear system is not determined (too few tracks, no translation).
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
-                               double accel_bias_sigma, const OdomState* running = nullptr);
+                               const StartPriors& priors, const OdomState* running = nullptr);
 
 }  // namespace edged

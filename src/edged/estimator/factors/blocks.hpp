@@ -28,13 +28,23 @@ using CalibrationBlock = std::array<double, 4>;
 /// What scale and axes of the IMU are off by: E_g row by row, then E_a. measured = (I + E) true + bias.
 using ImuIntrinsicsBlock = std::array<double, 18>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, HeightBias, Calibration, ImuIntrinsics };
+enum class BlockKind : std::uint8_t {
+  Pose,
+  Motion,
+  InverseDepth,
+  LogScale,
+  HeightBias,
+  VelocityScale,
+  Calibration,
+  ImuIntrinsics
+};
 
 /// Of the anchor depth: nearer than this counts as behind the camera.
 inline constexpr double kMinDepthShare = 1e-3;
 
 /// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5),
-/// what a height sensor reads above the height of the body, a camera's calibration, or the IMU's.
+/// what a height sensor reads above the height of the body, by what share a velocity sensor reads too much, a camera's
+/// calibration, or the IMU's.
 struct BlockKey {
   BlockKind kind;
   std::uint64_t id;  ///< state number, FeatureId, number of the piece (WalkingScalar), index of the camera, or 0
