@@ -27,8 +27,9 @@ constexpr Duration kWindow = std::chrono::seconds(4);
 constexpr Duration kForGravity = std::chrono::seconds(4);  // before and after a window
 constexpr std::size_t kFewestSamples = 12;                 // of a window
 constexpr Duration kForRate = std::chrono::milliseconds(10);
-constexpr double kCorrelated = 2.0;  // residuals of a window hang together: sigmas are so much larger
-constexpr double kKnown = 0.2;       // sigma of a scale, or of an entry of a rotation, that is known
+constexpr double kCorrelated = 2.0;    // residuals of a window hang together: sigmas are so much larger
+constexpr double kKnown = 0.2;         // sigma of a scale, or of an entry of a rotation, that is known
+constexpr double kKnownHeight = 0.25;  // of its scale
 constexpr double kSureSigmas = 4.0;
 constexpr double kArmSigma_m = 0.3;  // of what is thought of the lever arm
 
@@ -159,14 +160,18 @@ void look_for_mirror(const Matrix3d& M, const Vector3d& weight, Turned& best, Ve
   }
 }
 
-/// Another unit that the numbers may be in: its name, or nothing.
-std::string unit_of(double scale, const std::string& per) {
+/// Another unit that the numbers may be in, the nearest there is: its name, or nothing.
+std::string unit_of(double scale, bool velocity) {
   constexpr double kNear = 1.15;
-  for (const auto& [factor, unit] : {std::pair(1000.0, "mm"), {100.0, "cm"}, {3.2808, "ft"}, {1e-3, "km"}}) {
-    if (scale > factor / kNear && scale < factor * kNear) return unit + per;
-  }
-  if (!per.empty() && scale > 3.6 / kNear && scale < 3.6 * kNear) return "km/h";
-  return !per.empty() && scale > 1.9438 / kNear && scale < 1.9438 * kNear ? "kn" : "";
+  constexpr std::array<std::pair<double, const char*>, 4> lengths{
+      {{1e3, "mm"}, {100.0, "cm"}, {3.2808, "ft"}, {1e-3, "km"}}};
+  constexpr std::array<std::pair<double, const char*>, 5> velocities{
+      {{1e3, "mm/s"}, {100.0, "cm/s"}, {3.2808, "ft/s"}, {3.6, "km/h"}, {1.9438, "kn"}}};
+  const std::span<const std::pair<double, const char*>> units =
+      velocity ? std::span<const std::pair<double, const char*>>(velocities) : lengths;
+  const auto off = [scale](const auto& unit) { return std::abs(std::log(scale / unit.first)); };
+  const auto nearest = std::ranges::min_element(units, {}, off);
+  return scale > 0.0 && off(*nearest) < std::log(kNear) ? nearest->second : "";
 }
 
 std::string unit_remedy(const std::string& unit, const std::string& column, const std::string& otherwise) {
@@ -183,7 +188,7 @@ void judge_heights(const HeightAgreement& found, std::vector<Finding>& out) {
     out.push_back(
         {Severity::Warning,
          fmt::format("height: it changes by {:.2g} +- {:.2g} times what the accelerometer says", found.scale, sigma),
-         unit_remedy(unit_of(found.scale, ""), "height",
+         unit_remedy(unit_of(found.scale, false), "height",
                      "check its scale; a frozen or slow filter in the sensor does the same")});
   else
     out.push_back({Severity::Good,
@@ -232,7 +237,7 @@ void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out)
     out.push_back(
         {Severity::Warning,
          fmt::format("velocity: {:.2g} times what the IMU says (+- {:.0f} %)", ratio, 100.0 * found.sigma),
-         unit_remedy(unit_of(ratio, "/s"), "vx", "scale it in the file, or give it a larger velocity.scale_sigma")});
+         unit_remedy(unit_of(ratio, true), "vx", "scale it in the file, or give it a larger velocity.scale_sigma")});
   if (!turned && !scaled)
     out.push_back({Severity::Good,
                    fmt::format("velocity: axes and scale fit the IMU (turned {:.0f} deg, scale {:.2f}, +- {:.2f})",
@@ -251,7 +256,7 @@ std::optional<HeightAgreement> compare_heights(const std::vector<HeightSample>& 
   HeightAgreement found;
   found.scale = equations.b[0] / information;
   found.scale_sigma = kCorrelated * std::sqrt(equations.variance(VectorXd::Constant(1, found.scale)) / information);
-  return found.scale_sigma < kKnown * std::max(1.0, std::abs(found.scale)) ? std::optional(found) : std::nullopt;
+  return found.scale_sigma < kKnownHeight * std::max(1.0, std::abs(found.scale)) ? std::optional(found) : std::nullopt;
 }
 
 std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySample>& samples,

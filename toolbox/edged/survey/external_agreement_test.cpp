@@ -15,23 +15,26 @@ using Eigen::Vector3d;
 
 constexpr double kLength_s = 20.0;
 
-Vector3d position(double t) {
+Vector3d swing_position(double t) {
   return {0.8 * std::sin(1.1 * t), 0.6 * std::sin(1.7 * t + 1.0), 0.5 * std::sin(1.4 * t + 2.0)};
 }
-Vector3d velocity(double t) { return (position(t + 1e-4) - position(t - 1e-4)) / 2e-4; }
-Vector3d acceleration(double t) { return (position(t + 1e-3) - 2.0 * position(t) + position(t - 1e-3)) / 1e-6; }
-Eigen::Quaterniond attitude(double t) {
+Vector3d swing_velocity(double t) { return (swing_position(t + 1e-4) - swing_position(t - 1e-4)) / 2e-4; }
+Vector3d swing_acceleration(double t) {
+  return (swing_position(t + 1e-3) - 2.0 * swing_position(t) + swing_position(t - 1e-3)) / 1e-6;
+}
+Eigen::Quaterniond swing_attitude(double t) {
   return so3::exp({0.3 * std::sin(0.9 * t), 0.2 * std::sin(1.3 * t), 0.6 * std::sin(0.7 * t)});
 }
-Vector3d rate(double t) { return so3::log(attitude(t - 1e-4).inverse() * attitude(t + 1e-4)) / 2e-4; }
+Vector3d swing_rate(double t) { return so3::log(swing_attitude(t - 1e-4).inverse() * swing_attitude(t + 1e-4)) / 2e-4; }
 
 class SensorsOnABody : public ::testing::Test {
  protected:
   SensorsOnABody() {
     for (int i = 0; i < kLength_s * 200; ++i) {
       const double t = i / 200.0;
-      gyro_.add({timestamp_from_seconds(t), rate(t),
-                 attitude(t).inverse() * (acceleration(t) + Vector3d(0, 0, 9.81)) + Vector3d(0.05, -0.03, 0.04)});
+      gyro_.add(
+          {timestamp_from_seconds(t), swing_rate(t),
+           swing_attitude(t).inverse() * (swing_acceleration(t) + Vector3d(0, 0, 9.81)) + Vector3d(0.05, -0.03, 0.04)});
     }
   }
 
@@ -40,7 +43,7 @@ class SensorsOnABody : public ::testing::Test {
   std::vector<HeightSample> heights(double scale) {
     std::vector<HeightSample> samples;
     for (double t = 0.1; t < kLength_s - 0.1; t += 0.04)
-      samples.push_back({timestamp_from_seconds(t), 12.0 + scale * position(t).z() + noise(0.1), 0.1});
+      samples.push_back({timestamp_from_seconds(t), 12.0 + scale * swing_position(t).z() + noise(0.1), 0.1});
     return samples;
   }
 
@@ -48,7 +51,8 @@ class SensorsOnABody : public ::testing::Test {
   std::vector<VelocitySample> velocities(const Eigen::Matrix3d& measured, const Vector3d& sigma = {0.05, 0.05, 0.05}) {
     std::vector<VelocitySample> samples;
     for (double t = 0.1; t < kLength_s - 0.1; t += 0.04) {
-      const Vector3d v_B = attitude(t).inverse() * velocity(t) + rate(t).cross(Vector3d(0.1, -0.05, 0.0));
+      const Vector3d v_B =
+          swing_attitude(t).inverse() * swing_velocity(t) + swing_rate(t).cross(Vector3d(0.1, -0.05, 0.0));
       samples.push_back(
           {timestamp_from_seconds(t), measured * v_B + Vector3d(noise(0.05), noise(0.05), noise(0.05)), sigma});
     }
