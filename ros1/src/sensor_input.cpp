@@ -30,7 +30,7 @@ std::optional<Measurement> SensorInput::read(const WireMessage& message) {
 }
 
 Measurement SensorInput::decode(const WireMessage& message) {
-  if (!fits(message.type, role_))
+  if (!can_take(message.type, role_))
     throw Damage(fmt::format("cannot be {}; remap the topic", kRoleNames[static_cast<std::size_t>(role_)]));
   const std::string_view md5 = ros1_md5_of(message.type);
   if (!md5.empty() && md5 != message.md5)
