@@ -61,6 +61,18 @@ class Bench(unittest.TestCase):
         self.assertEqual(bench(*args).stdout, first.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
 
+    def test_external_compares_sensors_and_faults_and_keeps_what_it_has_run(self):
+        args = ["external", "--cache", self.folder, "--scenes", "hover", "--variants", "none", "both", "outliers", "--seeds", 1,
+                "--duration", 3]
+        first = bench(*args)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertRegex(first.stdout, r"\| both, outliers \| +\d+ \|")
+        self.assertRegex(first.stdout, r"\| hover \| fused \| none +\|")
+        runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
+        self.assertEqual(len(runs), 3)
+        self.assertEqual(bench(*args).stdout, first.stdout)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
     def test_starts_prints_a_row_a_recording_and_keeps_what_it_has_run(self):
         args = ["starts", "--cache", self.folder, "--no-data", "--simulated", "room", "--duration", 4.2, "--modes", "frames",
                 "--length", 3, "--least", 3]

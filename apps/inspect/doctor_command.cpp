@@ -13,6 +13,7 @@
 #include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "edged/survey/diagnosis.hpp"
+#include "edged/survey/external_agreement.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {
@@ -47,10 +48,12 @@ int run_doctor(const DoctorOptions& options) {
   const Recording recording = open_uncalibrated(options.source);
   std::vector<VisualTurns> visual;
   GyroIntegral gyro;
+  ExternalCheck external;
   const std::vector<RigCamera> cameras = cameras_to_check(recording);
   for (const RigCamera& camera : cameras) visual.emplace_back(camera);
   const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
     if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample);
+    if (const auto* sample = std::get_if<ExternalSample>(&measurement)) external.add(*sample);
     for (VisualTurns& turns : visual) turns.add(measurement);
   });
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
@@ -60,6 +63,7 @@ int run_doctor(const DoctorOptions& options) {
     checks.push_back({cameras[i], recording.calibration->has_extrinsics,
                       compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
   std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
+  external.judge(gyro, read.survey.external, findings);
   add_log(held.take(), findings);
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});

@@ -29,19 +29,26 @@ class ExternalLog : public RunObserver {
     const ExternalNumbers numbers = sensor.numbers(*sample);
     file_ << fmt::format("{},{},{},{}\n", sensor.name, to_ns(time_of(*sample)), fmt::join(numbers.values, ","),
                          fmt::join(numbers.sigmas, ","));
-    ++counts_[std::string(sensor.name)];
+    ++summary_[std::string(sensor.name)].samples;
   }
 
   void on_summary(RunEnd& end) override {
     file_.flush();
-    end.summary.external = counts_;
-    end.summary.external_in_packets = run_.odometry.counters().packets.external;
+    const OdometryCounters counters = run_.odometry.counters();
+    for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+      const auto came = summary_.find(std::string(external_sensors()[i].name));
+      if (came == summary_.end()) continue;
+      came->second.used = counters.external.used[i];
+      came->second.rejected = counters.external.rejected[i];
+      came->second.late = counters.packets.external_late[i];
+    }
+    end.summary.external = summary_;
   }
 
  private:
   const RunContext& run_;
   std::ofstream file_;
-  std::map<std::string, std::size_t> counts_;
+  std::map<std::string, ExternalSummary> summary_;
 };
 
 }  // namespace

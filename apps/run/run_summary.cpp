@@ -12,6 +12,7 @@
 #include "common/json_text.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "inspect/survey.hpp"
 #include "program.hpp"
@@ -137,7 +138,8 @@ void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig,
 }
 
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
-  const auto& [intake, packets] = counters;
+  const IntakeCounters& intake = counters.intake;
+  const PacketizerCounters& packets = counters.packets;
   const std::pair<const char*, std::size_t> dropped[] = {
       {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
       {"measurements dropped as the queue was full", intake.no_room},
@@ -155,10 +157,13 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"times of 5 s without a frame", packets.frames_missing},
       {"late IMU samples dropped", packets.imu_late},
       {"IMU samples dropped that are no numbers", packets.imu_not_finite},
-      {"late height or velocity samples dropped", packets.external_late},
   };
   for (const auto& [kind, count] : dropped) {
     if (count > 0) repairs[kind] += count;
+  }
+  for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+    const std::size_t late = packets.external_late[i];
+    if (late > 0) repairs[fmt::format("late {} samples dropped", external_sensors()[i].name)] += late;
   }
 }
 
@@ -206,7 +211,8 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
-  if (!s.external.empty()) json["external"] = {{"samples", s.external}, {"in_packets", s.external_in_packets}};
+  for (const auto& [sensor, e] : s.external)
+    json["external"][sensor] = {{"samples", e.samples}, {"used", e.used}, {"rejected", e.rejected}, {"late", e.late}};
   json["repairs"] = s.repairs;
   json["evaluation"] = s.evaluation ? to_json(*s.evaluation) : nlohmann::ordered_json(nullptr);
   return json;
@@ -253,6 +259,9 @@ std::string to_table(const RunSummary& s) {
     table += line("ATE RMSE", "-", "no ground truth to compare with");
   }
   for (const CalibrationFound& c : s.calibration) table += calibration_line(c);
+  for (const auto& [sensor, e] : s.external)
+    table += line(sensor.c_str(), fmt::format("{} used", e.used),
+                  fmt::format("of {} samples; {} rejected, {} late", e.samples, e.rejected, e.late));
   table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()));
   table += line(
       "coverage", fmt::format("{:.1f} %", 100.0 * s.statistics.coverage()),

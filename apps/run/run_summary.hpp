@@ -36,6 +36,12 @@ struct MapSummary {
   std::string saved;              ///< file; empty: not requested, or nothing to save
 };
 
+/// What became of the samples of a height or velocity sensor. The rest came before the first pose, while lost, or after
+/// the last packet.
+struct ExternalSummary {
+  std::size_t samples = 0, used = 0, rejected = 0, late = 0;
+};
+
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::string archive;  ///< archive of the folder; "": not requested
@@ -50,13 +56,12 @@ struct RunSummary {
   std::optional<LiveSummary> live;
   std::optional<MapSummary> map;
   std::vector<CalibrationFound> calibration;
-  std::map<std::string, std::size_t> external;  ///< samples received, by sensor
-  std::size_t external_in_packets = 0;          ///< of these, samples used by the estimator
-  std::map<std::string, std::size_t> repairs;   ///< by the reader and the packetizer, zero counts left out
-  std::optional<Evaluation> evaluation;         ///< SE(3) on all poses; nothing without ground truth
-  std::optional<Evaluation> final_evaluation;   ///< the same of the final trajectory, not causal
-  std::optional<Consistency> consistency;       ///< nothing without ground truth
-  std::map<std::string, double> mpe_percent;    ///< per protocol P1..P4 that could be applied
+  std::map<std::string, ExternalSummary> external;  ///< by sensor
+  std::map<std::string, std::size_t> repairs;       ///< by the reader and the packetizer, zero counts left out
+  std::optional<Evaluation> evaluation;             ///< SE(3) on all poses; nothing without ground truth
+  std::optional<Evaluation> final_evaluation;       ///< the same of the final trajectory, not causal
+  std::optional<Consistency> consistency;           ///< nothing without ground truth
+  std::map<std::string, double> mpe_percent;        ///< per protocol P1..P4 that could be applied
 };
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their

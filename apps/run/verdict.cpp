@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "edged/core/angles.hpp"
+#include "edged/core/external_sensor.hpp"
 #include "edged/survey/run_check.hpp"
 #include "run/run_observer.hpp"
 
@@ -103,6 +104,20 @@ void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
         {Severity::Warning, fmt::format("lost {} times, for {:.1f} s{}", run.times_lost(), lost_s, why), remedy});
 }
 
+/// Samples that contradict the estimate are rejected: a few are outliers, many mean a wrong description of the sensor.
+void judge_external(const OdometryCounters& counters, std::vector<Finding>& out) {
+  constexpr double kFewest = 50.0, kMost = 0.3;
+  for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+    const auto used = static_cast<double>(counters.external.used[i]);
+    const auto rejected = static_cast<double>(counters.external.rejected[i]);
+    if (used + rejected < kFewest || rejected < kMost * (used + rejected)) continue;
+    out.push_back({Severity::Warning,
+                   fmt::format("{}: {:.0f} % of its samples contradict the estimate and were rejected",
+                               external_sensors()[i].name, 100.0 * rejected / (used + rejected)),
+                   "`edged doctor` finds wrong signs, axes and units; a larger sigma gives the sensor less weight"});
+  }
+}
+
 /// Contradictions are reported as soon as they are known, so that the user can stop the run.
 class RunJudge : public RunObserver {
  public:
@@ -118,8 +133,9 @@ class RunJudge : public RunObserver {
     RunSummary& summary = end.summary;
     summary.calibration =
         compare_calibrations(run_.source.calibration.rig, run_.odometry, run_.config.odometry.estimator.calibration);
-    summary.verdict = judge_run(check_.findings(*run_.source.dataset, end.truth), run_.statistics, summary.calibration,
-                                run_.options.source);
+    std::vector<Finding> findings = check_.findings(*run_.source.dataset, end.truth);
+    judge_external(run_.odometry.counters(), findings);
+    summary.verdict = judge_run(std::move(findings), run_.statistics, summary.calibration, run_.options.source);
   }
 
  private:

@@ -3,9 +3,26 @@
 // How many measurements were used or dropped, and why.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <variant>
+
+#include "edged/measurement.hpp"
 
 namespace edged {
+
+/// One number for each kind of external sensor, in the order of ExternalSample.
+using ExternalCounts = std::array<std::size_t, std::variant_size_v<ExternalSample>>;
+
+/// Samples of height and velocity sensors that arrived while there was an estimate.
+struct ExternalUse {
+  ExternalCounts used{};      ///< by the estimator
+  ExternalCounts rejected{};  ///< because they contradicted the estimate
+
+  void add(const ExternalUse& more) {
+    for (std::size_t i = 0; i < used.size(); ++i) used[i] += more.used[i], rejected[i] += more.rejected[i];
+  }
+};
 
 /// Measurements that were dropped on arrival.
 struct IntakeCounters {
@@ -32,14 +49,15 @@ struct PacketizerCounters {
   std::size_t frames_missing = 0;      ///< Frames mode: packets without one, as none came for 5 s
   std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
   std::size_t imu_late = 0;            ///< dropped: not after the sample before
-  std::size_t external = 0;            ///< samples of height and velocity sensors in packets
-  std::size_t external_late = 0;       ///< dropped: of a time whose packet has been handed out
-  std::size_t external_lost = 0;       ///< dropped: before the first packet, after the last, or too many waited
+  ExternalCounts external{};           ///< samples of height and velocity sensors in packets
+  ExternalCounts external_late{};      ///< dropped: of a time whose packet has been handed out
+  ExternalCounts external_lost{};      ///< dropped: before the first packet, after the last, or too many waited
 };
 
 struct OdometryCounters {
   IntakeCounters intake;
   PacketizerCounters packets;
+  ExternalUse external;
 };
 
 }  // namespace edged

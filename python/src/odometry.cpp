@@ -107,29 +107,35 @@ Step next_step_or_stop(PyOdometry& self) {
 }
 
 std::map<std::string, std::size_t> counters(PyOdometry& self) {
-  const auto [in, out] = guarded(self.mutex, [&] { return self.odometry.counters(); });
-  return {{"unknown_camera", in.unknown_camera},
-          {"unused_camera", in.unused_camera},
-          {"absurd_stamps", in.absurd_stamps},
-          {"far_ahead", in.far_ahead},
-          {"clocks_set_back", in.clocks_set_back},
-          {"events_outside", in.events_outside},
-          {"frames_unfit", in.frames_unfit},
-          {"external_unfit", in.external_unfit},
-          {"no_room", in.no_room},
-          {"packets", out.packets},
-          {"packets_before_imu", out.packets_before_imu},
-          {"packets_after_imu", out.packets_after_imu},
-          {"packets_overflow", out.packets_overflow},
-          {"events_late", out.events_late},
-          {"events_lost", out.events_lost},
-          {"frames_late", out.frames_late},
-          {"frames_missing", out.frames_missing},
-          {"imu_not_finite", out.imu_not_finite},
-          {"imu_late", out.imu_late},
-          {"external", out.external},
-          {"external_late", out.external_late},
-          {"external_lost", out.external_lost}};
+  const auto [in, out, external] = guarded(self.mutex, [&] { return self.odometry.counters(); });
+  std::map<std::string, std::size_t> counters{{"unknown_camera", in.unknown_camera},
+                                              {"unused_camera", in.unused_camera},
+                                              {"absurd_stamps", in.absurd_stamps},
+                                              {"far_ahead", in.far_ahead},
+                                              {"clocks_set_back", in.clocks_set_back},
+                                              {"events_outside", in.events_outside},
+                                              {"frames_unfit", in.frames_unfit},
+                                              {"external_unfit", in.external_unfit},
+                                              {"no_room", in.no_room},
+                                              {"packets", out.packets},
+                                              {"packets_before_imu", out.packets_before_imu},
+                                              {"packets_after_imu", out.packets_after_imu},
+                                              {"packets_overflow", out.packets_overflow},
+                                              {"events_late", out.events_late},
+                                              {"events_lost", out.events_lost},
+                                              {"frames_late", out.frames_late},
+                                              {"frames_missing", out.frames_missing},
+                                              {"imu_not_finite", out.imu_not_finite},
+                                              {"imu_late", out.imu_late}};
+  for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+    const std::string name(external_sensors()[i].name);
+    counters[name + "_in_packets"] = out.external[i];
+    counters[name + "_used"] = external.used[i];
+    counters[name + "_rejected"] = external.rejected[i];
+    counters[name + "_late"] = out.external_late[i];
+    counters[name + "_lost"] = out.external_lost[i];
+  }
+  return counters;
 }
 
 py::dict rig(PyOdometry& self) {

@@ -38,8 +38,9 @@ def test_samples_are_taken_counted_and_refused_where_they_cannot_be():
             pass
     odometry.finish()
     list(odometry)
-    assert odometry.counters["external"] > 20
-    assert odometry.counters["external_unfit"] > 10
+    counters = odometry.counters
+    assert counters["height_in_packets"] + counters["velocity_in_packets"] > 20
+    assert counters["external_unfit"] > 10
     with pytest.raises(edged.InputError, match="add_velocity: values must be 3 numbers"):
         odometry.add_velocity(0, [1.0, 2.0])
 

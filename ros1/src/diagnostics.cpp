@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "edged/core/external_sensor.hpp"
+
 namespace edged::ros1 {
 namespace {
 
@@ -13,7 +15,7 @@ std::string summary(const NodeHealth& health) {
   std::string text = health.status ? to_string(*health.status) : "no packet yet";
   if (!health.reason.empty()) text += ": " + health.reason;
   for (const auto& [topic, input] : health.inputs) {
-    if (input.messages == 0) text += fmt::format("; nothing has come on {}", topic);
+    if (input.messages == 0 && !input.optional) text += fmt::format("; nothing has come on {}", topic);
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
   }
   if (health.newly_lost > 0) text += fmt::format("; {} measurements lost since the last report", health.newly_lost);
@@ -29,7 +31,8 @@ std::uint8_t level_of(const NodeHealth& health) {
 }  // namespace
 
 std::size_t lost_measurements(const NodeHealth& health) {
-  const auto& [intake, packets] = health.odometry;
+  const IntakeCounters& intake = health.odometry.intake;
+  const PacketizerCounters& packets = health.odometry.packets;
   std::size_t lost = intake.unknown_camera + intake.absurd_stamps + intake.far_ahead + intake.clocks_set_back +
                      intake.events_outside + intake.frames_unfit + intake.no_room + packets.packets_overflow +
                      packets.events_late + packets.frames_late + packets.imu_not_finite + packets.imu_late +
@@ -59,7 +62,7 @@ DiagnosticStatus diagnostics_message(const NodeHealth& health, const std::string
   if (health.age) add("newest step behind newest measurement [s]", fmt::format("{:.3f}", to_seconds(*health.age)));
   count("events left out, too slow", health.left_out.events);
   count("frames left out, too slow", health.left_out.frames);
-  const auto& [intake, packets] = health.odometry;
+  const auto& [intake, packets, use] = health.odometry;
   count("of an unknown camera", intake.unknown_camera);
   count("of a camera not used", intake.unused_camera);
   count("absurd stamps", intake.absurd_stamps);
@@ -77,6 +80,13 @@ DiagnosticStatus diagnostics_message(const NodeHealth& health, const std::string
   count("frames late", packets.frames_late);
   count("IMU samples not finite", packets.imu_not_finite);
   count("IMU samples late", packets.imu_late);
+  for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+    if (packets.external[i] == 0) continue;
+    const std::string name(external_sensors()[i].name);
+    count(name + " samples used", use.used[i]);
+    count(name + " samples rejected", use.rejected[i]);
+    count(name + " samples late", packets.external_late[i]);
+  }
   return message;
 }
 

@@ -15,7 +15,7 @@ namespace edged::ros1 {
 namespace {
 
 constexpr std::uint32_t kNoLimit = 0;  // excess measurements are dropped and counted by the backlog or the odometry
-constexpr unsigned kThreads = 3;       // one a sensor
+constexpr unsigned kThreads = 3;       // one for each sensor that every rig has
 constexpr Duration kRecentImu = std::chrono::seconds(2);
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
 constexpr double kDiagnosticsPeriod_s = 1.0;
@@ -43,7 +43,8 @@ Node::Node(const NodeConfig& config, const Calibration& calibration)
     const std::string topic = events ? "events" : "image";
     subscribe(first ? topic : camera.name + "/" + topic, events ? Role::Events : Role::Frames, camera.name);
   }
-  subscribe("imu", Role::Imu, "");
+  for (const Role role : {Role::Imu, Role::Height, Role::Velocity})
+    subscribe(kRoleNames[static_cast<std::size_t>(role)], role, "");
 }
 
 /// Any type is accepted: the message has its type. Messages of one topic arrive one by one, in order.

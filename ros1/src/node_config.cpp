@@ -54,6 +54,8 @@ void NodeConfig::visit(ConfigFields& fields) {
   fields.add("delays.events_s", delays.events_s, {"s", 0, 10, "events may lag this far behind the other sensors"});
   fields.add("delays.frames_s", delays.frames_s, {"s", 0, 10, "as delays.events_s"});
   fields.add("delays.imu_s", delays.imu_s, {"s", 0, 10, "as delays.events_s"});
+  fields.add("delays.external_s", delays.external_s,
+             {"s", 0, 10, "height and velocity samples may lag this far behind the other sensors"});
   fields.add("max_age_s", max_age_s,
              {"s", 0.05, 3600, "when the odometry lags so far behind, events are left out; frames at twice that"});
   fields.add("path_step_s", path_step_s, {"s", 0.001, 3600, "between poses of the path"});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "edged/io/ros/definitions.hpp"
+#include "edged/io/ros/messages.hpp"
 
 namespace edged::ros1 {
 
@@ -29,7 +30,7 @@ std::optional<Measurement> SensorInput::read(const WireMessage& message) {
 }
 
 Measurement SensorInput::decode(const WireMessage& message) {
-  if (role_of(message.type) != role_)
+  if (!can_take(message.type, role_))
     throw Damage(fmt::format("cannot be {}; remap the topic", kRoleNames[static_cast<std::size_t>(role_)]));
   const std::string_view md5 = ros1_md5_of(message.type);
   if (!md5.empty() && md5 != message.md5)
@@ -42,8 +43,10 @@ Measurement SensorInput::decode(const WireMessage& message) {
       GrayImage gray = read_frame(message.type, reader);
       return Frame{gray.t, camera_, std::move(gray.image)};
     }
-    default:
+    case Role::Imu:
       return read_imu(reader);
+    default:
+      return read_external(message.type, reader);
   }
 }
 

@@ -17,6 +17,7 @@ namespace edged::ros1 {
 
 /// The counters of one topic.
 struct InputCounters {
+  bool optional = false;  ///< a sensor that no mode needs
   std::size_t messages = 0;
   std::size_t events = 0;      ///< in them
   std::size_t unreadable = 0;  ///< dropped messages: damaged, or of a wrong type
@@ -32,8 +33,9 @@ struct WireMessage {
 
 class SensorInput {
  public:
-  /// camera: whose events or frames come; of no meaning for the IMU.
-  SensorInput(Role role, std::string camera) : role_(role), camera_(std::move(camera)) {}
+  /// camera: whose events or frames come; of no meaning for the other sensors.
+  SensorInput(Role role, std::string camera)
+      : role_(role), camera_(std::move(camera)), counters_{.optional = external_sensor_of(role) != nullptr} {}
 
   /// The measurements of the message; nothing, and counted, if it is unreadable. One thread at a time.
   std::optional<Measurement> read(const WireMessage& message);

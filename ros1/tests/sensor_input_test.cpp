@@ -59,6 +59,20 @@ TEST(SensorInput, ReadsImagesAndImuSamples) {
   EXPECT_EQ(std::get<ImuSample>(*sample).gyro_B, Eigen::Vector3d(1, 2, 3));
 }
 
+TEST(SensorInput, ReadsHeightsAndVelocitiesAsBagsAreRead) {
+  SensorInput height(Role::Height, ""), velocity(Role::Velocity, "");
+  const auto pressure =
+      height.read({"sensor_msgs/FluidPressure", "", as_bytes(pressure_message(Wire::Ros1, kStart, 101325.0))});
+  ASSERT_TRUE(pressure) << height.counters().trouble;
+  EXPECT_NEAR(std::get<HeightSample>(std::get<ExternalSample>(*pressure)).height_m, 0.0, 1e-6);
+  const auto twist =
+      velocity.read({"geometry_msgs/TwistStamped", "", as_bytes(twist_message(Wire::Ros1, kStart, {1, 2, 3}))});
+  ASSERT_TRUE(twist) << velocity.counters().trouble;
+  EXPECT_EQ(std::get<VelocitySample>(std::get<ExternalSample>(*twist)).v_S, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(velocity.counters().optional);
+  EXPECT_FALSE(velocity.read({"sensor_msgs/Range", "", as_bytes(std::string(40, '\0'))}));
+}
+
 TEST(SensorInput, KnowsTypesByTheSumsThatRosHas) {
   EXPECT_EQ(ros1_md5_of("sensor_msgs/Image"), ros::message_traits::MD5Sum<sensor_msgs::Image>::value());
 }

@@ -84,6 +84,8 @@ function facts(run) {
   list.push(['coverage', number(100 * m.coverage, '% of the time Good', 1)]);
   list.push(['first good pose', m.first_good_s === null ? 'never' : 'after ' + number(m.first_good_s, 's', 2)]);
   list.push(['poses, keyframes', m.poses + ', ' + m.keyframes]);
+  for (const [sensor, n] of Object.entries(m.external || {}))
+    list.push([sensor + ' samples', n.used + ' of ' + n.samples + ' used, ' + n.rejected + ' rejected, ' + n.late + ' late']);
   if (m.consistency) list.push(['within 3 σ', number(100 * m.consistency.position.within_3_sigma, '% of the positions', 1)]);
   const process = run.stages.find(stage => stage.stage === 'process');
   if (process) list.push(['a packet takes', number(process.p50_ms, 'ms (median)', 1) + ', ' + number(process.p99_ms, 'ms (99 %)', 1)]);

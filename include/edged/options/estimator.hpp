@@ -89,9 +89,11 @@ struct HeightConfig {
 /// Wheel odometry, optical flow with range, a DVL.
 struct VelocityConfig {
   bool enabled = true;
-  double sigma_mps = 0.1;              ///< of a sample that has none of its own
-  std::string position_m = "0 0 0";    ///< of the sensor in B
-  std::string rotation_deg = "0 0 0";  ///< roll, pitch, yaw of its axes in B
+  double sigma_mps = 0.1;                     ///< of a sample that has none of its own
+  double scale_sigma = 0.05;                  ///< prior of the scale error, measured / true - 1; 0 fixes it at zero
+  static constexpr double scale_walk = 2e-3;  ///< [1/sqrt(s)]
+  std::string position_m = "0 0 0";           ///< of the sensor in B
+  std::string rotation_deg = "0 0 0";         ///< roll, pitch, yaw of its axes in B
   /// The last two; InputError if they are not three numbers.
   SE3 T_B_S() const;
   void visit(ConfigFields& fields);

@@ -7,8 +7,6 @@
 #include <map>
 #include <numeric>
 
-#include "edged/estimator/start_solver.hpp"
-
 namespace edged {
 namespace {
 
@@ -145,8 +143,8 @@ std::vector<InitFrame> without(std::vector<InitFrame> frames, const std::set<Fea
 /// Estimates the motion relative to the static scene from a start-up buffer.
 class MotionSearch {
  public:
-  MotionSearch(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise, double accel_bias_sigma)
-      : frames_(frames), rig_(rig), noise_(noise), accel_bias_sigma_(accel_bias_sigma) {}
+  MotionSearch(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise, const StartPriors& priors)
+      : frames_(frames), rig_(rig), noise_(noise), priors_(priors) {}
 
   /// Dynamic objects bias the gyro bias too: if there are some, it is estimated from the inliers, or is zero at first.
   std::optional<Found> best() {
@@ -169,7 +167,7 @@ class MotionSearch {
  private:
   std::optional<Found> best_at(const std::optional<Vector3d>& bias) {
     if (!bias) return std::nullopt;
-    StartSolver solver(frames_, rig_, *bias, noise_, accel_bias_sigma_);
+    StartSolver solver(frames_, rig_, *bias, noise_, priors_);
     if (solver.tracks().size() < kMinTracks) return std::nullopt;
     const std::optional<RefinedStart> of_all = started(solver, all_of(solver), kIterations);
     if (!of_all) return std::nullopt;
@@ -196,15 +194,15 @@ class MotionSearch {
   const std::vector<InitFrame>& frames_;
   const Rig& rig_;
   const ImuNoise& noise_;
-  double accel_bias_sigma_;
+  const StartPriors& priors_;
   std::optional<Judge> judge_;  ///< the same for all biases, made from the first one
 };
 
 }  // namespace
 
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
-                               double accel_bias_sigma, const OdomState* running) {
-  MotionSearch search(frames, rig, noise, accel_bias_sigma);
+                               const StartPriors& priors, const OdomState* running) {
+  MotionSearch search(frames, rig, noise, priors);
   const std::optional<Found> found = search.best();
   if (!found) return std::nullopt;
   const StartSolver& solver = found->solver;

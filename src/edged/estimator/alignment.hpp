@@ -9,7 +9,8 @@
 //    "Closed-form solution of visual-inertial structure from motion", IJCV 2014); landmarks are eliminated one by one,
 //    and the magnitude of gravity is a constraint. The scale is metric from the start.
 // 3. Feature noise makes that linear solution too small: a few Gauss-Newton steps on the reprojection errors follow,
-//    with the accelerometer bias. Their normal equations give the uncertainty of the scale.
+//    with the accelerometer bias. Their normal equations give the uncertainty of the scale. Samples of a velocity
+//    sensor are linear in the same unknowns (steps 2 and 3): they determine the scale of a motion without acceleration.
 // 4. A dynamic object fits as well as the static scene: the motion relative to it is consistent, too, and the IMU does
 //    not measure velocity. If one motion does not fit nearly all features, patches of the view make hypotheses, and
 //    the one that explains most of the view is chosen.
@@ -21,6 +22,7 @@
 
 #include "edged/core/odom_state.hpp"
 #include "edged/estimator/init_frame.hpp"
+#include "edged/estimator/start_solver.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
 
@@ -40,10 +42,9 @@ struct Alignment {
 std::optional<Eigen::Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, const Rig& rig,
                                                const ImuNoise& noise);
 
-/// States of all frames. accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2]. running: an
-/// estimate at the time of the last frame, to be checked, or null. Nothing when the linear system is not determined
-/// (too few tracks, no translation).
+/// States of all frames. running: an estimate at the time of the last frame, to be checked, or null. Nothing when the
+/// linear system is not determined (too few tracks, no translation).
 std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& rig, const ImuNoise& noise,
-                               double accel_bias_sigma, const OdomState* running = nullptr);
+                               const StartPriors& priors, const OdomState* running = nullptr);
 
 }  // namespace edged

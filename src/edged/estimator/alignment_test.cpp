@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kSpacing_s = 0.08;
-constexpr double kAccelBiasSigma = 0.15;  // [m/s^2]
+constexpr StartPriors kPriors{0.15};
 
 /// `views` views of the world from begin_s on.
 std::vector<InitFrame> views_of(TestWorld& world, double begin_s, int views = 20) {
@@ -75,14 +75,14 @@ TEST(AlignGyroBias, SaysNothingWithoutCommonCorners) {
     for (FeatureObservation& f : frame.observations.front().features) f.id = id++;
   }
   EXPECT_FALSE(align_gyro_bias(frames, world.rig(), world.noise()).has_value());
-  EXPECT_FALSE(align(frames, world.rig(), world.noise(), kAccelBiasSigma).has_value());
+  EXPECT_FALSE(align(frames, world.rig(), world.noise(), kPriors).has_value());
 }
 
 TEST(Align, IsExactWithoutNoise) {
   const TestWorldOptions options{.pixel_noise = 0.0, .imu_noise = 0.0, .bias_accel = {0, 0, 0}};
   for (const double begin : {0.5, 1.7, 4.0}) {
     TestWorld world(options);
-    const auto alignment = align(views_of(world, begin), world.rig(), world.noise(), kAccelBiasSigma);
+    const auto alignment = align(views_of(world, begin), world.rig(), world.noise(), kPriors);
     ASSERT_TRUE(alignment.has_value());
     const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
     EXPECT_LT(e.gravity_deg, 0.05);
@@ -100,7 +100,7 @@ TEST(Align, FindsGravityVelocityAndScaleThroughNoise) {
       const TestWorldOptions options{.cameras = cameras, .bias_accel = {0, 0, 0}, .seed = seed};
       TestWorld world(options);
       const auto alignment =
-          align(views_of(world, 0.7 * static_cast<double>(seed)), world.rig(), world.noise(), kAccelBiasSigma);
+          align(views_of(world, 0.7 * static_cast<double>(seed)), world.rig(), world.noise(), kPriors);
       ASSERT_TRUE(alignment.has_value());
       const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
       EXPECT_LT(e.gravity_deg, 1.0);                        // worst of these 0.29
@@ -115,7 +115,7 @@ TEST(Align, FindsGravityVelocityAndScaleThroughNoise) {
 TEST(Align, TurnsAnAccelerometerBiasIntoNoMoreTiltThanItsShareOfGravity) {
   const TestWorldOptions options{.bias_accel = {0.1, -0.1, 0.0}};
   TestWorld world(options);
-  const auto alignment = align(views_of(world, 1.0), world.rig(), world.noise(), kAccelBiasSigma);
+  const auto alignment = align(views_of(world, 1.0), world.rig(), world.noise(), kPriors);
   ASSERT_TRUE(alignment.has_value());
   const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
   EXPECT_LT(e.gravity_deg, 2.5);
@@ -132,7 +132,7 @@ TEST(Align, FollowsTheRoomThoughMostCornersWalk) {
     const double begin = 0.7 * static_cast<double>(seed);
     const TestWorldOptions options = with_walker(seed, begin);
     TestWorld world(options);
-    const auto alignment = align(views_of(world, begin), world.rig(), world.noise(), kAccelBiasSigma);
+    const auto alignment = align(views_of(world, begin), world.rig(), world.noise(), kPriors);
     ASSERT_TRUE(alignment.has_value());
     const AlignmentErrors e = errors_of(*alignment, world, options.bias_gyro);
     EXPECT_LT(e.speed, 0.15);
@@ -145,7 +145,7 @@ TEST(Align, FollowsTheRoomThoughMostCornersWalk) {
 
 TEST(Align, CallsNothingAnOutlierInAWorldThatHoldsStill) {
   TestWorld world({});
-  const auto alignment = align(views_of(world, 1.0), world.rig(), world.noise(), kAccelBiasSigma);
+  const auto alignment = align(views_of(world, 1.0), world.rig(), world.noise(), kPriors);
   ASSERT_TRUE(alignment.has_value());
   EXPECT_TRUE(alignment->outliers.empty());
 }
@@ -162,7 +162,7 @@ TEST(Align, TellsAnEstimateOfTheRoomFromOneOfWhatWalksInIt) {
     state.T_O_B = world.T_W_B(t);
     state.v_O = world.v_W(t);
     const auto explained = [&](const OdomState& s) {
-      return align(frames, world.rig(), world.noise(), kAccelBiasSigma, &s)->explained;
+      return align(frames, world.rig(), world.noise(), kPriors, &s)->explained;
     };
     const double of_the_room = explained(state);
     EXPECT_GT(of_the_room, 0.6);

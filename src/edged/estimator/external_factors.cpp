@@ -14,43 +14,68 @@ namespace edged {
 namespace {
 
 constexpr double kGate = 4.0;         // [sigma], with the uncertainty of the window included
+constexpr double kStartGate = 10.0;   // [sigma], before an initialization is solved
 constexpr double kBiasSigma_m = 1e3;  // of the level of a height sensor before its first sample
 constexpr Duration kNewLevel =
     std::chrono::milliseconds(1000);  // after this time of rejected heights the level is assumed to have changed
 constexpr Duration kObserved = std::chrono::milliseconds(500);  // time for which a velocity sample bounds the drift
 
+// Their places in ExternalSample.
+constexpr std::size_t kHeight = 0, kVelocity = 1;
+
 Preintegration until(const Preintegration& imu, Timestamp t) {
   return {slice_imu(imu.samples(), imu.begin(), t), imu.bias_gyro(), imu.bias_accel(), imu.noise()};
 }
 
-/// Innovation of a measurement in the window. The covariance of the window is computed only if the sigma of the
-/// measurement does not explain the difference.
-bool believable(const Window& window, const Factor& factor) {
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Residual of a factor in the window, and its derivatives by its blocks.
+struct Evaluated {
+  Eigen::VectorXd r;
+  std::vector<RowMajorMatrix> J;
+};
+
+std::optional<Evaluated> evaluated(const Window& window, const Factor& factor) {
+  Evaluated result{Eigen::VectorXd(factor.num_residuals()), {}};
   std::vector<const double*> values;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> by_block;
   std::vector<double*> data;
   for (const BlockKey& key : factor.blocks()) {
     values.push_back(window.block(key));
-    by_block.emplace_back(factor.num_residuals(), block_size(key.kind));
+    result.J.emplace_back(factor.num_residuals(), block_size(key.kind));
   }
-  for (auto& J : by_block) data.push_back(J.data());
-  Eigen::VectorXd r(factor.num_residuals());
-  if (!factor.Evaluate(values.data(), r.data(), data.data())) return false;
+  for (RowMajorMatrix& J : result.J) data.push_back(J.data());
+  return factor.Evaluate(values.data(), result.r.data(), data.data()) ? std::optional(std::move(result)) : std::nullopt;
+}
+
+}  // namespace
+
+/// How far a measurement is from what the window expects. Its covariance is only asked where the measurement's own
+/// sigma does not explain the difference.
+bool ExternalFactors::believable(const Window& window, const Factor& factor) const {
+  const std::optional<Evaluated> found = evaluated(window, factor);
+  if (!found) return false;
+  const Eigen::VectorXd& r = found->r;
+  if (starting_) return r.norm() <= kStartGate;
   if (r.norm() <= kGate) return true;
   const auto P = covariance(window, {factor.blocks().begin(), factor.blocks().end()});
   if (!P) return true;
   Eigen::MatrixXd J(r.size(), P->cols());  // blocks stand in the order of their keys
   Eigen::Index column = 0;
-  for (std::size_t i = 0; i < by_block.size(); ++i) {
+  for (std::size_t i = 0; i < found->J.size(); ++i) {
     const int size = tangent_size(factor.blocks()[i].kind);
-    J.middleCols(column, size) = by_block[i].leftCols(size);
+    J.middleCols(column, size) = found->J[i].leftCols(size);
     column += size;
   }
   const Eigen::MatrixXd S = Eigen::MatrixXd::Identity(r.size(), r.size()) + J * *P * J.transpose();
   return r.dot(S.ldlt().solve(r)) <= kGate * kGate;
 }
 
-}  // namespace
+void ExternalFactors::add_to_start(Window& window, StateId from, const Preintegration& imu,
+                                   std::span<const ExternalSample> samples) {
+  starting_ = true;
+  add(window, from, imu, samples);
+  starting_ = false;
+}
 
 void ExternalFactors::add(Window& window, StateId from, const Preintegration& imu,
                           std::span<const ExternalSample> samples) {
@@ -74,10 +99,14 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   if (bias && believable(window, *factor(*bias))) {
     height_refused_since_.reset();
     window.add(factor(*bias));
+    ++use_.used[kHeight];
     return;
   }
   if (bias && !height_refused_since_) height_refused_since_ = sample.t;
-  if (bias && sample.t - *height_refused_since_ < kNewLevel) return;
+  if (bias && sample.t - *height_refused_since_ < kNewLevel) {
+    ++use_.rejected[kHeight];
+    return;
+  }
   // The first sample, or the first accepted one after a step of the level.
   if (bias) forget_walk(window, BlockKind::HeightBias);
   height_refused_since_.reset();
@@ -86,6 +115,7 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
                            .bias_at(state.pose.data(), state.motion.data());
   window.begin_walk(BlockKind::HeightBias, level, {kBiasSigma_m, height_.bias_walk});
   window.add(factor(*window.walking(BlockKind::HeightBias)));
+  ++use_.used[kHeight];
 }
 
 void ExternalFactors::add_sample(Window& window, StateId from, const Preintegration& imu,
@@ -93,9 +123,16 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   if (!velocity_.enabled || sample.sigma.array().isInf().all()) return;
   VelocitySample known = sample;
   for (double& sigma : known.sigma) sigma = sigma > 0.0 ? sigma : velocity_.sigma_mps;
-  auto factor = std::make_shared<VelocityFactor>(from, until(imu, sample.t), velocity_.T_B_S(), known);
-  if (!believable(window, *factor)) return;
+  if (!window.walking(BlockKind::VelocityScale))
+    window.begin_walk(BlockKind::VelocityScale, 0.0, {velocity_.scale_sigma, velocity_.scale_walk});
+  auto factor = std::make_shared<VelocityFactor>(from, *window.walking(BlockKind::VelocityScale), until(imu, sample.t),
+                                                 velocity_.T_B_S(), known);
+  if (!believable(window, *factor)) {
+    ++use_.rejected[kVelocity];
+    return;
+  }
   window.add(std::move(factor));
+  ++use_.used[kVelocity];
   velocity_at_ = sample.t;
 }
 

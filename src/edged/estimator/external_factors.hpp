@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "edged/counters.hpp"
 #include "edged/estimator/window.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options/estimator.hpp"
@@ -19,16 +20,24 @@ class ExternalFactors {
   /// Puts samples of the IMU interval from a state on into the window, in time order. imu: that interval; samples
   /// outside it, and those that fail the gate, are dropped.
   void add(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
+  /// The same of a window that has not been solved yet: what is grossly wrong is left out.
+  void add_to_start(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
 
   /// Whether a velocity sample from just before t is in the window.
   bool velocity_observed(Timestamp t) const;
 
+  /// What became of the samples so far.
+  const ExternalUse& use() const { return use_; }
+
  private:
+  bool believable(const Window& window, const Factor& factor) const;
   void add_sample(Window& window, StateId from, const Preintegration& imu, const HeightSample& sample);
   void add_sample(Window& window, StateId from, const Preintegration& imu, const VelocitySample& sample);
 
   HeightConfig height_;
   VelocityConfig velocity_;
+  bool starting_ = false;
+  ExternalUse use_;
   std::optional<Timestamp> height_refused_since_, velocity_at_;
 };
 

@@ -30,6 +30,7 @@ struct Flight {
 struct Errors {
   double position = 0.0, height = 0.0;  ///< the largest since the start [m]
   double level = 0.0;                   ///< estimate of the height sensor, relative to the start of the body
+  double scale = 0.0;                   ///< error of the estimated scale of the velocity sensor
   double observed_share = 0.0;          ///< of the packets without vision
   bool plausible = true;
 };
@@ -88,8 +89,11 @@ Errors fly(const Flight& flight) {
   }
   const auto level = estimator.window().walking(BlockKind::HeightBias);
   if (level) errors.level = *estimator.window().block(*level) - T_true_est->translation().z();
+  const auto scale = estimator.window().walking(BlockKind::VelocityScale);
+  if (scale) errors.scale = *estimator.window().block(*scale);
   errors.observed_share = blind == 0 ? 0.0 : static_cast<double>(observed) / blind;
-  std::printf("position %.3f m, height %.3f m, level %.3f m\n", errors.position, errors.height, errors.level);
+  std::printf("position %.3f m, height %.3f m, level %.3f m, scale %+.3f\n", errors.position, errors.height,
+              errors.level, errors.scale);
   return errors;
 }
 
@@ -151,6 +155,21 @@ TEST(ExternalFactors, OfAWrongScaleDoNotBreakAnEstimateThatSees) {
     EXPECT_TRUE(errors.plausible) << scale;
     EXPECT_LT(errors.position, without.position + 0.15) << scale;
   }
+}
+
+TEST(ExternalFactors, FindTheScaleOfAVelocitySensorAndTakeItIntoTheDark) {
+  const Errors exact = fly({.velocity = true, .blind_from = 9.0, .blind_to = 17.0, .end = 17.0});
+  EXPECT_NEAR(exact.scale, 0.0, 0.02);
+  const Errors wrong = fly({.velocity = true, .blind_from = 9.0, .blind_to = 17.0, .end = 17.0, .scale = 1.1});
+  EXPECT_NEAR(wrong.scale, 0.1, 0.03);
+  EXPECT_LT(wrong.position, exact.position + 0.15);
+}
+
+TEST(ExternalFactors, DoNoHarmInAHover) {
+  const TestWorldOptions hover = {.rest_s = 1.0, .speed = 0.05, .turn = 0.1};
+  const Errors without = fly({.world = hover, .blind_to = 5.0, .end = 20.0}),
+               with = fly({.world = hover, .height = true, .velocity = true, .blind_to = 5.0, .end = 20.0});
+  EXPECT_LT(with.position, without.position + 0.01);
 }
 
 TEST(ExternalFactors, StayInTheWindowWithOneFactorAStateAndSensor) {

@@ -20,6 +20,7 @@ struct InitFrame {
   std::vector<ImuSample> imu;  ///< from the frame before to t; of the first frame unused
   std::vector<CameraObservations> observations;
   std::optional<RegionDepth> depth = std::nullopt;  ///< not used by the alignment, but by the window made from it
+  std::vector<ExternalSample> external = {};        ///< within `imu`, in the order of their stamps
 };
 
 }  // namespace edged

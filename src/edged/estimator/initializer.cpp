@@ -11,6 +11,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/estimator/covariance.hpp"
 #include "edged/estimator/depth_terms.hpp"
+#include "edged/estimator/external_factors.hpp"
 #include "edged/estimator/landmarks.hpp"
 #include "edged/estimator/solver.hpp"
 
@@ -112,15 +113,18 @@ StartResult Initializer::add(const EstimatorInput& input, const StandstillDetect
 /// Keeps the input as a view if the next one is due. True if it did.
 bool Initializer::buffer_view(const EstimatorInput& input) {
   append_imu(pending_imu_, input.motion.samples());
+  pending_external_.insert(pending_external_.end(), input.external.begin(), input.external.end());
   if (to_seconds(input.t - pending_imu_.front().t) > kMaxPendingImu_s) {
     buffer_.clear();
     pending_imu_ = input.motion.samples();
+    pending_external_ = input.external;
   }
   const bool any_corner = std::any_of(input.observations.begin(), input.observations.end(),
                                       [](const CameraObservations& view) { return !view.features.empty(); });
   if (!any_corner || !view_due(input)) return false;
-  buffer_.push_back({input.t, std::move(pending_imu_), input.observations, input.depth});
+  buffer_.push_back({input.t, std::move(pending_imu_), input.observations, input.depth, std::move(pending_external_)});
   pending_imu_.clear();
+  pending_external_.clear();
   if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) make_room();
   return true;
 }
@@ -149,6 +153,9 @@ void Initializer::make_room() {
   std::vector<ImuSample>& imu = buffer_[leaves].imu;
   append_imu(imu, buffer_[leaves + 1].imu);
   buffer_[leaves + 1].imu = std::move(imu);
+  std::vector<ExternalSample>& external = buffer_[leaves].external;
+  external.insert(external.end(), buffer_[leaves + 1].external.begin(), buffer_[leaves + 1].external.end());
+  buffer_[leaves + 1].external = std::move(external);
   buffer_.erase(buffer_.begin() + static_cast<std::ptrdiff_t>(leaves));
 }
 
@@ -183,14 +190,24 @@ StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomStat
   }
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
-  const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, config_.accel_bias_sigma, running);
+  StartResult result = start_by(External::Unused, most_scale_sigma, running);
+  const bool measured = std::ranges::any_of(buffer_, [](const InitFrame& view) { return !view.external.empty(); });
+  if (result.start || !measured) return result;
+  StartResult by_all = start_by(External::Used, most_scale_sigma, running);
+  return by_all.start ? std::move(by_all) : std::move(result);
+}
+
+StartResult Initializer::start_by(External external, double most_scale_sigma, const OdomState* running) {
+  const bool velocities = external == External::Used && config_.velocity.enabled;
+  const StartPriors priors{config_.accel_bias_sigma, velocities ? &config_.velocity : nullptr};
+  const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, priors, running);
   if (!alignment) return {{}, "features tracked over three views"};
-  StartResult result = start_from(*alignment, most_scale_sigma);
+  StartResult result = start_from(*alignment, external, most_scale_sigma);
   result.explained = alignment->explained;
   return result;
 }
 
-StartResult Initializer::start_from(const Alignment& alignment, double most_scale_sigma) {
+StartResult Initializer::start_from(const Alignment& alignment, External external, double most_scale_sigma) {
   if (std::abs(alignment.gravity_error) > kMaxFreeGravityError) {
     const double seen = kGravity * (1.0 + alignment.gravity_error);
     return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
@@ -199,7 +216,7 @@ StartResult Initializer::start_from(const Alignment& alignment, double most_scal
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
   next_solve_ = buffer_.back().t + kSolveEvery;
-  Window window = aligned_window(alignment);
+  Window window = aligned_window(alignment, external);
   solve_start(window);
   std::string doubt = doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma);
   if (!doubt.empty()) return {{}, std::move(doubt)};
@@ -252,7 +269,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
 }
 
 /// The views of the buffer as keyframes at the poses of the alignment.
-Window Initializer::aligned_window(const Alignment& alignment) const {
+Window Initializer::aligned_window(const Alignment& alignment, External external) const {
   Window window = empty_window();
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const OdomState& nav = alignment.states[i];
@@ -268,6 +285,13 @@ Window Initializer::aligned_window(const Alignment& alignment) const {
   unbiased.bias_accel.setZero();
   window.add_soft_prior(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
                                      {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+  if (external == External::Unused) return window;
+  ExternalFactors factors(config_.height, config_.velocity);
+  auto at = window.states().begin();
+  for (std::size_t i = 1; i < buffer_.size(); ++i) {
+    const StateId from = (at++)->first;
+    factors.add_to_start(window, from, at->second.imu, buffer_[i].external);
+  }
   return window;
 }
 

@@ -54,8 +54,11 @@ class Initializer {
   Window start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const;
   void make_room();
   StartResult start_in_motion(double most_scale_sigma, const OdomState* running);
-  StartResult start_from(const Alignment& alignment, double most_scale_sigma);
-  Window aligned_window(const Alignment& alignment) const;
+  /// External: what height and velocity sensors say is used, too.
+  enum class External { Unused, Used };
+  StartResult start_by(External external, double most_scale_sigma, const OdomState* running);
+  StartResult start_from(const Alignment& alignment, External external, double most_scale_sigma);
+  Window aligned_window(const Alignment& alignment, External external) const;
   void solve_start(Window& window) const;
   void weigh_observations(Window& window) const;
   std::string doubt_about(const Window& window, double most_tilt_deg) const;
@@ -65,6 +68,7 @@ class Initializer {
   EstimatorConfig config_;
   std::vector<InitFrame> buffer_;                    ///< views
   std::vector<ImuSample> pending_imu_;               ///< since the last view
+  std::vector<ExternalSample> pending_external_;     ///< the same
   Timestamp next_solve_;                             ///< a rejected window is not solved again with every view
   std::string motion_lacks_ = "features to follow";  ///< why the last view did not initialize in motion
 };

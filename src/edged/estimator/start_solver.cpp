@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -18,6 +19,8 @@ namespace {
 constexpr std::size_t kMinObservations = 3;  // of a feature
 constexpr double kRayNoise = 5e-3;           // [rad]
 constexpr double kHuber = 1.5;               // [kRayNoise]
+// [m] Algebraic errors of rays are lengths, kRayNoise of the depth of their point: so deep is a usual one.
+constexpr double kUsualDepth = 3.0;
 
 /// Of a track: its point P, then the start.
 using PointAndStart = Eigen::Matrix<double, 12, 1>;
@@ -41,22 +44,58 @@ std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, cons
   return tracks;
 }
 
+/// What the IMU makes of a motion, around a gyro bias and no accelerometer bias.
+RelativeMotion moved_on(const RelativeMotion& m, const Preintegration& imu, const Vector3d& bg) {
+  RelativeMotion next;
+  next.t = m.t + imu.dt();
+  next.R = m.R * imu.dR(bg).toRotationMatrix();
+  next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, Vector3d::Zero());
+  next.beta = m.beta + m.R * imu.dv(bg, Vector3d::Zero());
+  next.d_alpha = m.d_alpha + m.d_beta * imu.dt() + m.R * imu.d_dp_d_ba();
+  next.d_beta = m.d_beta + m.R * imu.d_dv_d_ba();
+  return next;
+}
+
 std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames, const Vector3d& bg,
                                             const ImuNoise& noise) {
   std::vector<RelativeMotion> motion(1);
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    const Preintegration imu(frames[i].imu, bg, Vector3d::Zero(), noise);
-    const RelativeMotion& m = motion.back();
-    RelativeMotion next;
-    next.t = m.t + imu.dt();
-    next.R = m.R * imu.dR(bg).toRotationMatrix();
-    next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, Vector3d::Zero());
-    next.beta = m.beta + m.R * imu.dv(bg, Vector3d::Zero());
-    next.d_alpha = m.d_alpha + m.d_beta * imu.dt() + m.R * imu.d_dp_d_ba();
-    next.d_beta = m.d_beta + m.R * imu.d_dv_d_ba();
-    motion.push_back(next);
+    motion.push_back(moved_on(motion.back(), {frames[i].imu, bg, Vector3d::Zero(), noise}, bg));
   }
   return motion;
+}
+
+/// R_S_B (R^T (beta + v + t g + d_beta b_a) + (omega - b_g) x l) = u at the time of the sample.
+StartVelocity velocity_equation(const RelativeMotion& m, const Vector3d& omega_B, const VelocitySample& sample,
+                                const VelocityConfig& config) {
+  const SE3 T_B_S = config.T_B_S();
+  const Matrix3d R_S_0 = T_B_S.R().transpose() * m.R.transpose();
+  StartVelocity equation;
+  equation.A << R_S_0, m.t * R_S_0, R_S_0 * m.d_beta;
+  equation.b = sample.v_S - T_B_S.R().transpose() * omega_B.cross(T_B_S.translation()) - R_S_0 * m.beta;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sigma = sample.sigma[axis] > 0.0 ? sample.sigma[axis] : config.sigma_mps;
+    equation.A.row(axis) /= sigma;
+    equation.b[axis] = std::isinf(sigma) ? 0.0 : equation.b[axis] / sigma;
+  }
+  return equation;
+}
+
+std::vector<StartVelocity> velocity_equations(const std::vector<InitFrame>& frames,
+                                              const std::vector<RelativeMotion>& motion, const Vector3d& bg,
+                                              const ImuNoise& noise, const VelocityConfig& config) {
+  std::vector<StartVelocity> equations;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    for (const ExternalSample& any : frames[i].external) {
+      const auto* sample = std::get_if<VelocitySample>(&any);
+      if (sample == nullptr) continue;
+      const Preintegration imu(slice_imu(frames[i].imu, frames[i].imu.front().t, sample->t), bg, Vector3d::Zero(),
+                               noise);
+      equations.push_back(
+          velocity_equation(moved_on(motion[i - 1], imu, bg), imu.samples().back().gyro_B - bg, *sample, config));
+    }
+  }
+  return equations;
 }
 
 /// The free directions of an initialization: the magnitude of gravity is fixed.
@@ -118,11 +157,15 @@ struct StartEquations {
 };
 
 StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Vector3d& gyro_bias,
-                         const ImuNoise& noise, double accel_bias_sigma)
+                         const ImuNoise& noise, const StartPriors& priors)
     : rig_(&rig),
-      accel_bias_sigma_(accel_bias_sigma),
+      accel_bias_sigma_(priors.accel_bias_sigma),
       motion_(relative_motion(frames, gyro_bias, noise)),
-      tracks_(gather_tracks(frames, rig)) {}
+      tracks_(gather_tracks(frames, rig)) {
+  if (priors.velocity != nullptr) {
+    velocities_ = velocity_equations(frames, motion_, gyro_bias, noise, *priors.velocity);
+  }
+}
 
 /// Pi_j (P - p_j) = Pi_j R_j p_B_C of every view j.
 void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equations) const {
@@ -172,9 +215,24 @@ void StartSolver::add_reprojection(const StartTrack& track, const Start& x, Star
   equations.add(N, c);
 }
 
+/// Those around x; what is far off counts for less.
+void StartSolver::add_velocities(const Start& x, StartEquations& equations) const {
+  for (const StartVelocity& velocity : velocities_) {
+    const double misfit = (velocity.A * x - velocity.b).norm();
+    const double weight = misfit < kHuber ? 1.0 : kHuber / misfit;
+    equations.H += weight * velocity.A.transpose() * velocity.A;
+    equations.b -= weight * velocity.A.transpose() * (velocity.A * x - velocity.b);
+  }
+}
+
 std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_length) const {
   StartEquations equations;
   for (const std::size_t track : chosen) add_algebraic(tracks_[track], equations);
+  const double same_unit = std::pow(kRayNoise * kUsualDepth, 2);
+  for (const StartVelocity& velocity : velocities_) {
+    equations.H += same_unit * velocity.A.transpose() * velocity.A;
+    equations.b += same_unit * velocity.A.transpose() * velocity.b;
+  }
   const Start x = equations.solved_with_gravity_length(free_length);
   return x.allFinite() ? std::optional(x) : std::nullopt;
 }
@@ -186,6 +244,7 @@ std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, i
   for (int iteration = 0; iteration < iterations; ++iteration) {
     StartEquations equations;
     for (const std::size_t track : chosen) add_reprojection(tracks_[track], x, equations);
+    add_velocities(x, equations);
     equations.H.bottomRightCorner<3, 3>() += bias_information * Matrix3d::Identity();
     equations.b.tail<3>() -= bias_information * x.tail<3>();
     free = free_directions(x);

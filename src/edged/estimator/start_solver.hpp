@@ -10,6 +10,7 @@
 #include "edged/core/odom_state.hpp"
 #include "edged/estimator/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -54,6 +55,18 @@ struct RelativeMotion {
   }
 };
 
+/// What is known beside the views.
+struct StartPriors {
+  double accel_bias_sigma;                   ///< how far the accelerometer bias may lie from zero [m/s^2]
+  const VelocityConfig* velocity = nullptr;  ///< null: samples of velocity are not used
+};
+
+/// A velocity sample as rows of equations A x = b over its sigmas; zero for an axis that is not measured.
+struct StartVelocity {
+  Eigen::Matrix<double, 3, 9> A;
+  Eigen::Vector3d b;
+};
+
 struct RefinedStart {
   Start x;
   StartMatrix covariance;
@@ -64,9 +77,8 @@ class StartSolver {
  public:
   using Chosen = std::vector<std::size_t>;
 
-  /// accel_bias_sigma: how far the accelerometer bias may lie from zero [m/s^2].
   StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
-              const ImuNoise& noise, double accel_bias_sigma);
+              const ImuNoise& noise, const StartPriors& priors);
 
   /// Features observed in three views or more.
   const std::vector<StartTrack>& tracks() const { return tracks_; }
@@ -98,11 +110,13 @@ class StartSolver {
   std::vector<View> views(const StartTrack& track, const Start& x) const;
   void add_algebraic(const StartTrack& track, StartEquations& equations) const;
   void add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const;
+  void add_velocities(const Start& x, StartEquations& equations) const;
 
   const Rig* rig_;
   double accel_bias_sigma_;
   std::vector<RelativeMotion> motion_;
   std::vector<StartTrack> tracks_;
+  std::vector<StartVelocity> velocities_;
 };
 
 }  // namespace edged

@@ -49,8 +49,19 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       judge_(config.status),
       body_(noise, duration_from_seconds(config.packets.max_age_s)) {}
 
-void Localization::begin_time() {
+void Localization::begin_estimate() {
+  use_before_.add(estimator_.external_use());
   estimator_ = fresh_estimator();
+}
+
+ExternalUse Localization::external_use() const {
+  ExternalUse use = use_before_;
+  use.add(estimator_.external_use());
+  return use;
+}
+
+void Localization::begin_time() {
+  begin_estimate();
   before_ = final_trajectory();
   mapper_.begin_time();
   judge_.lose("a clock was set back");
@@ -83,7 +94,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.step.relocalized = relocalized;
   output.correction.ended = status == TrackingStatus::Lost && estimator_.initialized();
   if (output.correction.ended) {
-    estimator_ = fresh_estimator();
+    begin_estimate();
     dead_reckoning_until_ = judge_.vision_lost() ? t + kDeadReckoning : t;
   }
   output.correction.provisional = estimator_.provisional();

@@ -52,9 +52,11 @@ class Localization {
   FinalTrajectory final_trajectory() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
+  ExternalUse external_use() const;
 
  private:
   Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
+  void begin_estimate();
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
@@ -68,6 +70,7 @@ class Localization {
   Rig rig_;        ///< the same with online calibration; with residual time offsets
   StageTimings* timings_;
   Estimator estimator_;
+  ExternalUse use_before_;  ///< by the estimators before
   Mapper mapper_;
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;

@@ -93,7 +93,9 @@ Rig Odometry::rig() const { return impl_->packet_odometry.localization().rig(); 
 std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) const {
   return impl_->packet_odometry.localization().calibration_covariance(camera);
 }
-OdometryCounters Odometry::counters() const { return {impl_->intake.counters(), impl_->packetizer.counters()}; }
+OdometryCounters Odometry::counters() const {
+  return {impl_->intake.counters(), impl_->packetizer.counters(), impl_->packet_odometry.localization().external_use()};
+}
 const StageTimings& Odometry::timings() const { return impl_->packet_odometry.timings(); }
 
 void drive(Odometry& odometry, const std::function<std::optional<Measurement>()>& source,

@@ -42,6 +42,7 @@ constexpr std::string_view kForEveryone[] = {
     "height.bias_walk",
     "velocity.enabled",
     "velocity.sigma_mps",
+    "velocity.scale_sigma",
     "velocity.position_m",
     "velocity.rotation_deg",
     "estimator.keyframes",

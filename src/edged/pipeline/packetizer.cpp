@@ -152,27 +152,25 @@ void Packetizer::add_imu(const ImuSample& sample) {
 void Packetizer::add_external(const ExternalSample& sample) {
   const Timestamp t = time_of(sample);
   if (last_handed_out_ && t <= *last_handed_out_) {
-    ++counters_.external_late;
+    ++counters_.external_late[sample.index()];
     return;
   }
   const auto after = std::ranges::upper_bound(external_, t, {}, [](const ExternalSample& one) { return time_of(one); });
   external_.insert(after, sample);
   if (external_.size() <= kMaxWaitingExternal) return;
+  ++counters_.external_lost[external_.front().index()];
   external_.pop_front();
-  ++counters_.external_lost;
 }
 
 /// Those after `from`, up to `to`; older ones are dropped.
 std::vector<ExternalSample> Packetizer::take_external(Timestamp from, Timestamp to) {
   std::vector<ExternalSample> taken;
   for (; !external_.empty() && time_of(external_.front()) <= to; external_.pop_front()) {
-    if (time_of(external_.front()) > from) {
-      taken.push_back(external_.front());
-    } else {
-      ++counters_.external_lost;
-    }
+    const ExternalSample& sample = external_.front();
+    const bool in_time = time_of(sample) > from;
+    ++(in_time ? counters_.external : counters_.external_lost)[sample.index()];
+    if (in_time) taken.push_back(sample);
   }
-  counters_.external += taken.size();
   return taken;
 }
 
@@ -293,7 +291,8 @@ void Packetizer::finish() {
     drop_waiting(std::prev(waiting_.end()));
   }
   const Timestamp last = waiting_.empty() ? last_handed_out_.value_or(Timestamp::min()) : waiting_.back().t;
-  counters_.external_lost += std::erase_if(external_, [last](const auto& sample) { return time_of(sample) > last; });
+  for (; !external_.empty() && time_of(external_.back()) > last; external_.pop_back())
+    ++counters_.external_lost[external_.back().index()];
 }
 
 }  // namespace edged

@@ -423,10 +423,10 @@ TEST(Packetizer, ExternalSamplesGoIntoThePacketOfTheirTimeAndChangeNoCut) {
     taken += packet.external.size();
     from = packet.t;
   }
-  EXPECT_EQ(with.counters.external, taken);
-  EXPECT_GT(with.counters.external_lost, 5U) << "before the IMU, and after the last packet";
-  EXPECT_EQ(taken + with.counters.external_lost, 108U) << "every sample is counted once";
-  EXPECT_EQ(with.counters.external_late, 0U);
+  EXPECT_EQ(with.counters.external[0], taken);
+  EXPECT_GT(with.counters.external_lost[0], 5U) << "before the IMU, and after the last packet";
+  EXPECT_EQ(taken + with.counters.external_lost[0], 108U) << "every sample is counted once";
+  EXPECT_EQ(with.counters.external_late, ExternalCounts{});
 }
 
 TEST(Packetizer, ALateExternalSampleIsUsedUntilItsPacketIsHandedOut) {
@@ -443,7 +443,7 @@ TEST(Packetizer, ALateExternalSampleIsUsedUntilItsPacketIsHandedOut) {
   ASSERT_EQ(first->external.size(), 1U);
   EXPECT_EQ(time_of(first->external[0]), at_ms(9));
   add(height_at(10));
-  EXPECT_EQ(packetizer.counters().external_late, 1U);
+  EXPECT_EQ(packetizer.counters().external_late[0], 1U);
   add(height_at(11));
   add(imu_at(40));
   const auto second = packetizer.next();

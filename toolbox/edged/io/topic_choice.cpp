@@ -39,11 +39,11 @@ const ExternalSensor* external_sensor_of(Role role) {
   return find_external_sensor(kRoleNames[static_cast<std::size_t>(role)]);
 }
 
-namespace {
-
-bool fits(const std::string& type, Role role) {
+bool can_take(const std::string& type, Role role) {
   return role_of(type) == role || (role == Role::Velocity && type == "nav_msgs/Odometry");
 }
+
+namespace {
 
 /// Without being asked for: a bag may hold several barometers, and twists that are commands.
 bool is_chosen_by_itself(Role role, std::size_t fitting) { return fitting == 1 && role != Role::Velocity; }
@@ -68,7 +68,7 @@ std::string listed(const std::vector<Topic>& topics, const std::vector<std::size
 std::size_t wanted_topic(const std::vector<Topic>& topics, Role role, const std::string& name,
                          const std::string& file) {
   for (std::size_t i = 0; i < topics.size(); ++i)
-    if (topics[i].name == name && fits(topics[i].type, role)) return i;
+    if (topics[i].name == name && can_take(topics[i].type, role)) return i;
   throw InputError::format("{}: no topic {} that could be {}; there are: {}", file, name,
                            kRoleNames[static_cast<std::size_t>(role)], listed(topics, candidates(topics, role)));
 }

@@ -31,6 +31,9 @@ const ExternalSensor* external_sensor_of(Role role);
 /// Of messages of that type ("dvs_msgs/EventArray"); nothing for what is of no use here.
 std::optional<Role> role_of(const std::string& type);
 
+/// Whether messages of that type can take the role: those whose role it is, and an Odometry for its twist.
+bool can_take(const std::string& type, Role role);
+
 /// Of the roles that are cameras.
 constexpr std::optional<Modality> modality_of(Role role) {
   if (role == Role::Events) return Modality::Events;

@@ -28,13 +28,22 @@ using CalibrationBlock = std::array<double, 4>;
 /// Errors of scale and axes of the IMU: E_g row by row, then E_a. measured = (I + E) true + bias.
 using ImuIntrinsicsBlock = std::array<double, 18>;
 
-enum class BlockKind : std::uint8_t { Pose, Motion, InverseDepth, LogScale, HeightBias, Calibration, ImuIntrinsics };
+enum class BlockKind : std::uint8_t {
+  Pose,
+  Motion,
+  InverseDepth,
+  LogScale,
+  HeightBias,
+  VelocityScale,
+  Calibration,
+  ImuIntrinsics
+};
 
 /// Of the anchor depth: nearer than this counts as behind the camera.
 inline constexpr double kMinDepthShare = 1e-3;
 
 /// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5),
-/// the bias of a height sensor, the calibration of a camera, or that of the IMU.
+/// the bias of a height sensor, the scale error of a velocity sensor, the calibration of a camera, or that of the IMU.
 struct BlockKey {
   BlockKind kind;
   std::uint64_t id;  ///< state number, FeatureId, number of the piece (WalkingScalar), index of the camera, or 0

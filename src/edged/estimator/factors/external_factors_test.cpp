@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr BlockKey kBias{BlockKind::HeightBias, 0};
+constexpr BlockKey kBias{BlockKind::HeightBias, 0}, kScaleError{BlockKind::VelocityScale, 0};
 constexpr double kEvery_s = 0.005;
 
 /// A body that turns and accelerates, from the truth of its IMU.
@@ -51,9 +51,9 @@ class Motion {
     }
     return {{pose.begin(), pose.end()}, motion};
   }
-  Blocks blocks_with_bias(double t, double bias) const {
+  Blocks blocks_with(double t, double scalar) const {
     Blocks all = blocks(t);
-    all.push_back({bias});
+    all.push_back({scalar});
     return all;
   }
   /// The measurement of a sensor at T_B_S.
@@ -82,7 +82,7 @@ TEST(HeightFactor, JacobiansMatchCentralDifferences) {
   const Motion motion;
   const HeightFactor factor(0, kBias, motion.between(0.1, 0.35), 2.5, 0.2);
   check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion, BlockKind::HeightBias},
-                  shifted(motion.blocks_with_bias(0.1, 0.4)));
+                  shifted(motion.blocks_with(0.1, 0.4)));
 }
 
 TEST(HeightFactor, IsZeroForTheHeightThatWasThere) {
@@ -91,8 +91,8 @@ TEST(HeightFactor, IsZeroForTheHeightThatWasThere) {
   const HeightFactor factor(0, kBias, motion.between(0.1, 0.35), height, 0.2);
   const Blocks blocks = motion.blocks(0.1);
   EXPECT_NEAR(factor.bias_at(blocks[0].data(), blocks[1].data()), 7.0, 1e-6);
-  EXPECT_NEAR(evaluate(factor, motion.blocks_with_bias(0.1, 7.0))[0], 0.0, 1e-5);
-  EXPECT_NEAR(evaluate(factor, motion.blocks_with_bias(0.1, 7.2))[0], 1.0, 1e-5);
+  EXPECT_NEAR(evaluate(factor, motion.blocks_with(0.1, 7.0))[0], 0.0, 1e-5);
+  EXPECT_NEAR(evaluate(factor, motion.blocks_with(0.1, 7.2))[0], 1.0, 1e-5);
 }
 
 TEST(HeightFactor, MovesWithItsStateToTheStateBefore) {
@@ -104,11 +104,11 @@ TEST(HeightFactor, MovesWithItsStateToTheStateBefore) {
   EXPECT_EQ(moved->blocks()[0], (BlockKey{BlockKind::Pose, 0}));
   EXPECT_EQ(moved->blocks()[1], (BlockKey{BlockKind::Motion, 0}));
   EXPECT_EQ(moved->blocks()[2], kBias);
-  EXPECT_NEAR(evaluate(*moved, motion.blocks_with_bias(0.1, 0.0))[0], 0.0, 1e-5);
+  EXPECT_NEAR(evaluate(*moved, motion.blocks_with(0.1, 0.0))[0], 0.0, 1e-5);
   check_jacobians(*moved, {BlockKind::Pose, BlockKind::Motion, BlockKind::HeightBias},
-                  shifted(motion.blocks_with_bias(0.1, 0.4)));
+                  shifted(motion.blocks_with(0.1, 0.4)));
   const HeightFactor at_once(0, kBias, motion.between(0.1, 0.4), height, 0.2);
-  const Blocks elsewhere = shifted(motion.blocks_with_bias(0.1, 0.4));
+  const Blocks elsewhere = shifted(motion.blocks_with(0.1, 0.4));
   EXPECT_NEAR(evaluate(*moved, elsewhere)[0], evaluate(at_once, elsewhere)[0], 1e-3);
 }
 
@@ -118,7 +118,7 @@ TEST(HeightFactor, OfManySamplesHasTheMeanOfTheirResidualsByWeight) {
       other(0, kBias, motion.between(0.1, 0.4), 3.5, 0.2);
   HeightFactor both(0, kBias, motion.between(0.1, 0.2), 2.5, 0.1);
   ASSERT_TRUE(both.absorb(other));
-  const Blocks blocks = shifted(motion.blocks_with_bias(0.1, 0.4));
+  const Blocks blocks = shifted(motion.blocks_with(0.1, 0.4));
   const double r = evaluate(one, blocks)[0], r_other = evaluate(other, blocks)[0];
   EXPECT_NEAR(evaluate(both, blocks)[0], (r / 0.1 + r_other / 0.2) / std::sqrt(1.0 / 0.01 + 1.0 / 0.04), 1e-9);
   check_jacobians(both, {BlockKind::Pose, BlockKind::Motion, BlockKind::HeightBias}, blocks);
@@ -135,15 +135,24 @@ TEST(VelocityFactor, JacobiansMatchCentralDifferences) {
   VelocitySample sample = motion.velocity(0.35, kSensor, 0.1);
   for (const double last : {0.3, std::numeric_limits<double>::infinity()}) {
     sample.sigma = {0.1, 0.2, last};
-    const VelocityFactor factor(0, motion.between(0.1, 0.35), kSensor, sample);
-    check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion}, shifted(motion.blocks(0.1)));
+    const VelocityFactor factor(0, kScaleError, motion.between(0.1, 0.35), kSensor, sample);
+    check_jacobians(factor, {BlockKind::Pose, BlockKind::Motion, BlockKind::VelocityScale},
+                    shifted(motion.blocks_with(0.1, 0.2)));
   }
 }
 
 TEST(VelocityFactor, IsZeroForTheVelocityThatWasThere) {
   const Motion motion;
-  const VelocityFactor factor(0, motion.between(0.1, 0.35), kSensor, motion.velocity(0.35, kSensor, 0.05));
-  EXPECT_LT(evaluate(factor, motion.blocks(0.1)).norm(), 1e-4);
+  const VelocityFactor factor(0, kScaleError, motion.between(0.1, 0.35), kSensor, motion.velocity(0.35, kSensor, 0.05));
+  EXPECT_LT(evaluate(factor, motion.blocks_with(0.1, 0.0)).norm(), 1e-4);
+}
+
+TEST(VelocityFactor, IsZeroForASensorThatReadsTooMuchByItsScaleError) {
+  const Motion motion;
+  VelocitySample sample = motion.velocity(0.35, kSensor, 0.05);
+  sample.v_S *= 1.1;
+  const VelocityFactor factor(0, kScaleError, motion.between(0.1, 0.35), kSensor, sample);
+  EXPECT_LT(evaluate(factor, motion.blocks_with(0.1, 0.1)).norm(), 1e-4);
 }
 
 TEST(VelocityFactor, SaysNothingOfAnAxisThatIsNotMeasured) {
@@ -151,43 +160,45 @@ TEST(VelocityFactor, SaysNothingOfAnAxisThatIsNotMeasured) {
   VelocitySample sample = motion.velocity(0.35, kSensor, 0.05);
   sample.v_S.x() = std::numeric_limits<double>::quiet_NaN();
   sample.sigma.x() = std::numeric_limits<double>::infinity();
-  VelocityFactor factor(0, motion.between(0.1, 0.35), kSensor, sample);
-  EXPECT_EQ(evaluate(factor, shifted(motion.blocks(0.1)))[0], 0.0);
-  ASSERT_TRUE(factor.absorb(VelocityFactor(0, motion.between(0.1, 0.35), kSensor, sample)));
-  EXPECT_EQ(evaluate(factor, shifted(motion.blocks(0.1)))[0], 0.0);
-  EXPECT_GT(std::abs(evaluate(factor, shifted(motion.blocks(0.1)))[1]), 0.1);
+  VelocityFactor factor(0, kScaleError, motion.between(0.1, 0.35), kSensor, sample);
+  EXPECT_EQ(evaluate(factor, shifted(motion.blocks_with(0.1, 0.2)))[0], 0.0);
+  ASSERT_TRUE(factor.absorb(VelocityFactor(0, kScaleError, motion.between(0.1, 0.35), kSensor, sample)));
+  EXPECT_EQ(evaluate(factor, shifted(motion.blocks_with(0.1, 0.2)))[0], 0.0);
+  EXPECT_GT(std::abs(evaluate(factor, shifted(motion.blocks_with(0.1, 0.2)))[1]), 0.1);
 }
 
 TEST(VelocityFactor, MovesWithItsStateToTheStateBefore) {
   const Motion motion;
   const VelocitySample sample = motion.velocity(0.4, kSensor, 0.05);
-  const VelocityFactor factor(1, motion.between(0.25, 0.4), kSensor, sample);
+  const VelocityFactor factor(1, kScaleError, motion.between(0.25, 0.4), kSensor, sample);
   const Preintegration into = motion.between(0.1, 0.25), joined = motion.between(0.1, 0.5);
   const auto moved = factor.without({0, 1, 2, joined, into});
   EXPECT_EQ(moved->blocks()[0], (BlockKey{BlockKind::Pose, 0}));
-  EXPECT_LT(evaluate(*moved, motion.blocks(0.1)).norm(), 1e-4);
-  check_jacobians(*moved, {BlockKind::Pose, BlockKind::Motion}, shifted(motion.blocks(0.1)));
+  EXPECT_LT(evaluate(*moved, motion.blocks_with(0.1, 0.0)).norm(), 1e-4);
+  check_jacobians(*moved, {BlockKind::Pose, BlockKind::Motion, BlockKind::VelocityScale},
+                  shifted(motion.blocks_with(0.1, 0.2)));
 }
 
 TEST(VelocityFactor, OfManySamplesHasTheMeanOfTheirResidualsByWeight) {
   const Motion motion;
   VelocitySample first = motion.velocity(0.2, kSensor, 0.1), second = motion.velocity(0.4, kSensor, 0.2);
   first.v_S += Vector3d(0.1, 0.0, -0.2);
-  const VelocityFactor one(0, motion.between(0.1, 0.2), kSensor, first),
-      other(0, motion.between(0.1, 0.4), kSensor, second);
-  VelocityFactor both(0, motion.between(0.1, 0.2), kSensor, first);
+  const VelocityFactor one(0, kScaleError, motion.between(0.1, 0.2), kSensor, first),
+      other(0, kScaleError, motion.between(0.1, 0.4), kSensor, second);
+  VelocityFactor both(0, kScaleError, motion.between(0.1, 0.2), kSensor, first);
   ASSERT_TRUE(both.absorb(other));
-  const Blocks blocks = shifted(motion.blocks(0.1));
+  const Blocks blocks = shifted(motion.blocks_with(0.1, 0.2));
   const Eigen::VectorXd expected =
       (evaluate(one, blocks) / 0.1 + evaluate(other, blocks) / 0.2) / std::sqrt(1.0 / 0.01 + 1.0 / 0.04);
   EXPECT_LT((evaluate(both, blocks) - expected).norm(), 1e-9);
-  check_jacobians(both, {BlockKind::Pose, BlockKind::Motion}, blocks);
+  check_jacobians(both, {BlockKind::Pose, BlockKind::Motion, BlockKind::VelocityScale}, blocks);
 }
 
 TEST(ExternalFactors, OfTwoKindsAreNotOne) {
   const Motion motion;
   HeightFactor height(0, kBias, motion.between(0.1, 0.2), 2.5, 0.1);
-  EXPECT_FALSE(height.absorb(VelocityFactor(0, motion.between(0.1, 0.2), kSensor, motion.velocity(0.2, kSensor, 0.1))));
+  EXPECT_FALSE(height.absorb(
+      VelocityFactor(0, kScaleError, motion.between(0.1, 0.2), kSensor, motion.velocity(0.2, kSensor, 0.1))));
 }
 
 }  // namespace

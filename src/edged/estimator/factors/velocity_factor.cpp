@@ -34,31 +34,33 @@ void VelocityFactor::Way::add(const Vector3d& share, const Way& other) {
   off += share.asDiagonal() * (other.off - off);
 }
 
-VelocityFactor::VelocityFactor(StateId state, Way way, const Vector3d& weight)
-    : Factor(3, {{BlockKind::Pose, state}, {BlockKind::Motion, state}}),
+VelocityFactor::VelocityFactor(StateId state, BlockKey scale, Way way, const Vector3d& measured, const Vector3d& weight)
+    : Factor(3, {{BlockKind::Pose, state}, {BlockKind::Motion, state}, scale}),
       way_(std::move(way)),
+      measured_(measured),
       weight_(weight),
       loss_(kVelocityLoss) {}
 
-VelocityFactor::VelocityFactor(StateId state, const Preintegration& imu, const SE3& T_B_S, const VelocitySample& sample)
-    : VelocityFactor(state, Way{}, sample.sigma.cwiseInverse().cwiseAbs2()) {
+VelocityFactor::VelocityFactor(StateId state, BlockKey scale, const Preintegration& imu, const SE3& T_B_S,
+                               const VelocitySample& sample)
+    : VelocityFactor(state, scale, Way{}, sample.v_S, sample.sigma.cwiseInverse().cwiseAbs2()) {
   const Matrix3d R_S_B = T_B_S.R().transpose();
   const Vector3d& omega_B = imu.samples().back().gyro_B;
-  Way there{R_S_B, Matrix3d::Zero(), R_S_B * skew(T_B_S.translation()), Matrix3d::Zero(),
-            R_S_B * omega_B.cross(T_B_S.translation())};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (weight_[axis] > 0.0) there.off[axis] -= sample.v_S[axis];
-  }
+  const Way there{R_S_B, Matrix3d::Zero(), R_S_B * skew(T_B_S.translation()), Matrix3d::Zero(),
+                  R_S_B * omega_B.cross(T_B_S.translation())};
   way_ = there.after(imu);
+  measured_ = (weight_.array() > 0.0).select(measured_.array(), 0.0);  // it may be no number
 }
 
 bool VelocityFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   const Matrix3d R_B_O = pose_of(blocks[0]).R().transpose();
   const Eigen::Map<const Vector3d> v_O(blocks[1]), bias_gyro(blocks[1] + 3), bias_accel(blocks[1] + 6);
-  const Vector3d v_B = R_B_O * v_O, g_B = R_B_O * kGravity_W, scale = weight_.cwiseSqrt();
-  Eigen::Map<Vector3d>{residuals} = scale.asDiagonal() * (way_.by_velocity * v_B + way_.by_gravity * g_B + way_.off +
-                                                          way_.by_gyro * bias_gyro + way_.by_accel * bias_accel);
+  const Vector3d v_B = R_B_O * v_O, g_B = R_B_O * kGravity_W, per_sigma = weight_.cwiseSqrt();
+  const Vector3d predicted =
+      way_.by_velocity * v_B + way_.by_gravity * g_B + way_.off + way_.by_gyro * bias_gyro + way_.by_accel * bias_accel;
+  Eigen::Map<Vector3d>{residuals} = per_sigma.asDiagonal() * ((1.0 + blocks[2][0]) * predicted - measured_);
   if (jacobians == nullptr) return true;
+  const Vector3d scale = (1.0 + blocks[2][0]) * per_sigma;
   if (jacobians[0] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, 7, Eigen::RowMajor>> J(jacobians[0]);
     J.setZero();
@@ -69,11 +71,17 @@ bool VelocityFactor::Evaluate(double const* const* blocks, double* residuals, do
     J << way_.by_velocity * R_B_O, way_.by_gyro, way_.by_accel;
     J = (scale.asDiagonal() * J).eval();
   }
+  if (jacobians[2] != nullptr) Eigen::Map<Vector3d>{jacobians[2]} = per_sigma.asDiagonal() * predicted;
   return true;
 }
 
+bool VelocityFactor::marginalized_with(const std::set<BlockKey>& leaving) const {
+  return leaving.contains(blocks()[0]);
+}
+
 std::shared_ptr<Factor> VelocityFactor::without(const DroppedState& dropped) const {
-  return std::shared_ptr<Factor>(new VelocityFactor(dropped.before, way_.after(dropped.imu_into), weight_));
+  return std::shared_ptr<Factor>(
+      new VelocityFactor(dropped.before, blocks()[2], way_.after(dropped.imu_into), measured_, weight_));
 }
 
 bool VelocityFactor::absorb(const Factor& other) {
@@ -84,6 +92,7 @@ bool VelocityFactor::absorb(const Factor& other) {
   const Vector3d share =
       (weight_.array() > 0.0).select(velocities->weight_.cwiseQuotient(weight_).array(), 0.0).matrix();
   way_.add(share, velocities->way_);
+  measured_ += share.asDiagonal() * (velocities->measured_ - measured_);
   return true;
 }
 

@@ -8,16 +8,19 @@
 
 namespace edged {
 
-/// Blocks: pose and motion of the state before the samples. Residual (3): R_S_B (R_B_O v + omega x t_B_S) there -
-/// measurement, over its sigmas; 0 for an axis without a measurement. The IMU propagates the state to the time of a
-/// sample (docs/math.md, X3), with the gyro bias of that time for the rotation. Many samples merge into their weighted
-/// mean, and those of a dropped state move to the state before, as those of height do.
+/// Blocks: pose and motion of the state before the samples, scale error of the sensor. Residual (3): (1 + scale error)
+/// R_S_B (R_B_O v + omega x t_B_S) there - measurement, over its sigmas; 0 for an axis without a measurement. The IMU
+/// propagates the state to the time of a sample (docs/math.md, X3), with the gyro bias of that time for the rotation.
+/// Many samples merge into their weighted mean, and those of a dropped state move to the state before, as those of
+/// height do.
 class VelocityFactor final : public Factor {
  public:
   /// imu: from the state to the sample's time. All sigmas of the sample [m/s] must be positive; infinite: not measured.
-  VelocityFactor(StateId state, const Preintegration& imu, const SE3& T_B_S, const VelocitySample& sample);
+  VelocityFactor(StateId state, BlockKey scale, const Preintegration& imu, const SE3& T_B_S,
+                 const VelocitySample& sample);
   const ceres::LossFunction* loss() const override { return &loss_; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  bool marginalized_with(const std::set<BlockKey>& leaving) const override;
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
   bool absorb(const Factor& other) override;
 
@@ -33,10 +36,12 @@ class VelocityFactor final : public Factor {
     void add(const Eigen::Vector3d& share, const Way& other);
   };
 
-  VelocityFactor(StateId state, Way way, const Eigen::Vector3d& weight);
+  VelocityFactor(StateId state, BlockKey scale, Way way, const Eigen::Vector3d& measured,
+                 const Eigen::Vector3d& weight);
 
   Way way_;
-  Eigen::Vector3d weight_;  ///< sum of 1 / sigma^2
+  Eigen::Vector3d measured_;  ///< weighted mean; 0 for an axis that is not measured
+  Eigen::Vector3d weight_;    ///< sum of 1 / sigma^2
   ceres::CauchyLoss loss_;
 };
 

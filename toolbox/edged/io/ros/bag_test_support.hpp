@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -146,6 +147,34 @@ inline std::string event_packet_message(Wire wire, Timestamp stamp, std::uint64_
   out.text(encoding);
   out.number(std::uint8_t{0});
   out.bytes(as_bytes(events));
+  return out.message();
+}
+
+/// sensor_msgs/FluidPressure [Pa].
+inline std::string pressure_message(Wire wire, Timestamp stamp, double pressure_pa, double variance = 0.0) {
+  WireWriter out(wire);
+  out.header(stamp, "barometer");
+  out.number(pressure_pa);
+  out.number(variance);
+  return out.message();
+}
+
+/// sensor_msgs/Range of 0.2 to 40 m.
+inline std::string range_message(Wire wire, Timestamp stamp, float range_m) {
+  WireWriter out(wire);
+  out.header(stamp, "sonar");
+  out.number(std::uint8_t{0});
+  for (const float value : {0.1F, 0.2F, 40.0F, range_m}) out.number(value);
+  return out.message();
+}
+
+/// geometry_msgs/TwistStamped, or with the variances of the linear velocity a TwistWithCovarianceStamped.
+inline std::string twist_message(Wire wire, Timestamp stamp, const Eigen::Vector3d& v,
+                                 const std::optional<Eigen::Vector3d>& variances = std::nullopt) {
+  WireWriter out(wire);
+  out.header(stamp, "wheels");
+  for (int i = 0; i < 6; ++i) out.number(i < 3 ? v[i] : 0.1);
+  for (int i = 0; variances && i < 36; ++i) out.number(i % 7 == 0 && i / 7 < 3 ? (*variances)[i / 7] : 0.0);
   return out.message();
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "edged/io/open_recording.hpp"
+#include "edged/io/ros/bag_test_support.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -102,6 +103,55 @@ TEST(RosDataset, PacketsOfACompressedDavisRecordingKeepToTheirTimeBases) {
   }
   EXPECT_EQ(messages, 100u);
   EXPECT_TRUE(repairs.counts().empty());
+}
+
+/// The small recording with a barometer, a sonar and wheels: 40 messages each, the last of the sonar out of its range.
+fs::path bag_with_sensors(const TempFolder& folder, const BagContainer& container) {
+  const Wire wire = container.make(folder.path() / "none")->wire();
+  SmallBag bag(wire);
+  TestTopic pressure{"/baro", "sensor_msgs/FluidPressure", {}, {}}, range{"/sonar", "sensor_msgs/Range", {}, {}},
+      twist{"/wheels", "geometry_msgs/TwistWithCovarianceStamped", {}, {}},
+      command{"/cmd", "geometry_msgs/TwistStamped", {}, {}};
+  for (int i = 0; i < 40; ++i) {
+    const Timestamp t = bag.topics[2].messages[static_cast<std::size_t>(i)].first;
+    pressure.messages.emplace_back(t, pressure_message(wire, t, 101325.0 - 12.0132 * i, 144.0));
+    range.messages.emplace_back(t, range_message(wire, t, i == 39 ? 99.0F : 1.5F));
+    twist.messages.emplace_back(t, twist_message(wire, t, {1.0, 0.1 * i, 0.0}, Eigen::Vector3d(0.04, 0.0, 1e6)));
+    command.messages.emplace_back(t, twist_message(wire, t, {9.0, 9.0, 9.0}));
+  }
+  for (TestTopic* topic : {&pressure, &range, &twist, &command}) bag.topics.push_back(std::move(*topic));
+  return write_bag(folder, container, bag.topics);
+}
+
+std::vector<ExternalSample> external_of(Dataset& dataset) {
+  std::vector<ExternalSample> samples;
+  while (const auto measurement = dataset.next())
+    if (const auto* sample = std::get_if<ExternalSample>(&*measurement)) samples.push_back(*sample);
+  return samples;
+}
+
+TEST(RosDataset, HeightsAndVelocitiesAreReadFromTheTopicsThatAreNamed) {
+  const double none = std::numeric_limits<double>::infinity();
+  for (const BagContainer& container : {kBagContainers[0], kBagContainers[2], kBagContainers[5]}) {
+    const TempFolder folder;
+    const fs::path bag = bag_with_sensors(folder, container);
+    EXPECT_TRUE(external_of(*open_recording(bag).dataset).empty()) << "two heights, and twists that may be commands";
+    RecordingOptions options;
+    options.topics = {{"height", "/baro"}, {"velocity", "/wheels"}};
+    const Recording named = open_recording(bag, nullptr, options);
+    const std::vector<ExternalSample> samples = external_of(*named.dataset);
+    ASSERT_EQ(samples.size(), 80U) << container.name;
+    const auto& height = std::get<HeightSample>(samples[78].index() == 0 ? samples[78] : samples[79]);
+    EXPECT_NEAR(height.height_m, 39.0, 0.2);
+    EXPECT_NEAR(height.sigma_m, 1.0, 0.01);
+    const auto& velocity = std::get<VelocitySample>(samples[78].index() == 1 ? samples[78] : samples[79]);
+    EXPECT_EQ(velocity.v_S, Eigen::Vector3d(1.0, 3.9, 0.0));
+    EXPECT_EQ(velocity.sigma, Eigen::Vector3d(0.2, 0.0, none));
+    options.topics = {{"height", "/sonar"}};
+    const Recording sonar = open_recording(bag, nullptr, options);
+    EXPECT_EQ(external_of(*sonar.dataset).size(), 39U);
+    EXPECT_FALSE(sonar.dataset->repairs().empty());
+  }
 }
 
 TEST(RosDataset, ABagCutAnywhereGivesWhatCameBeforeOrIsRefused) {
