@@ -20,8 +20,9 @@ std::filesystem::path part_of(std::filesystem::path file);
 /// Throws InputError where the file cannot be written, as those below do.
 std::ofstream open_for_writing(const std::filesystem::path& file);
 
-/// Before what a long run has seen can then not be kept: throws InputError where the file's folder does not exist.
-void check_folder_of(const std::filesystem::path& file);
+/// Before work begins whose result could then not be kept: throws InputError, which names the option, where the file
+/// cannot be written.
+void check_writable(const std::filesystem::path& file, const char* option);
 
 /// Throw InputError where --out cannot be used.
 void make_picture_folder(const std::filesystem::path& folder);

@@ -17,6 +17,7 @@
 #include "edged/io/recording.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"
+#include "edged/survey/finding.hpp"
 
 namespace edged {
 
@@ -34,6 +35,13 @@ struct SourceOptions {
   std::optional<double> duration_s;  ///< of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
+
+/// The ground truth that a recording brings. A run goes on without one that cannot be read.
+struct OwnTruth {
+  std::optional<GroundTruth> truth;
+  std::string problem;  ///< why it cannot be read; empty otherwise
+};
+OwnTruth read_truth(const Dataset& dataset);
 
 struct Source {
   std::unique_ptr<Dataset> dataset;
@@ -64,6 +72,20 @@ cv::Size recording_event_sensor(const Recording& recording);
 Source open_source(const SourceOptions& options);
 /// The same of a recording that is open.
 Source calibrated(const SourceOptions& options, Recording recording);
+
+/// One word of a command line, quoted where a shell would take it for something else.
+std::string shell_word(const std::string& text);
+
+/// `edged COMMAND RECORDING` with the options that tell how to read it, as words of a shell.
+std::string command_line(const std::string& command, const SourceOptions& source);
+
+/// When the first event or frame comes [s from the start of the recording], where the chosen piece ends before. Reads
+/// the recording again.
+std::optional<double> cameras_start_after_s(const SourceOptions& options);
+
+/// What to say of that, and where a run should start.
+Finding cameras_start_later(double start_s);
+double later_start_s(double start_s);
 
 /// Calls the cameras that the mode needs as the recording does, and warns of what it had to assume for that. Throws
 /// InputError where it cannot be known.

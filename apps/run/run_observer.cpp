@@ -20,9 +20,9 @@ constexpr std::array kObservers = {
     observe_map,
     observe_states,
     observe_external,
-    observe_album,  // which those below look at
+    observe_summary,  // before what is large, or may be done again by `edged report`
+    observe_album,    // which those below look at
     observe_final_trajectory,
-    observe_summary,
     observe_overview,
     observe_report,  // of the files of those above
     observe_mcap,

@@ -20,6 +20,7 @@ struct CalibrationFound {
   bool beyond = false;  ///< farther off than estimator.calibration.* says it may be: not corrected, but wrong
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of what was found; nothing where there is no estimate
   bool inverse = false;                                     ///< the inverse of the given rotation is what was found
+  bool events = false;                                      ///< its pixels have a latency, which is part of its clock
 
   bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }
 };

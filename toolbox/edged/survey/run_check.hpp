@@ -30,6 +30,9 @@ class RunCheck {
   /// Warnings and errors by all that has come; after the last measurement. truth: that of the dataset.
   std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth);
 
+  /// Whether by the gyro, too, the camera is mounted as this one, which the run has estimated. After findings().
+  bool agrees_with(const RigCamera& estimated) const;
+
  private:
   struct Camera {
     RigCamera given;
