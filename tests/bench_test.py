@@ -94,6 +94,15 @@ class Bench(unittest.TestCase):
         self.assertEqual([job[3:] for job in found], [("fused", 3.0, 103.0), ("fused", 4.0, 104.0), ("frames", 2.0, 102.0),
                                                       ("frames", 3.0, 103.0)])
 
+    def test_alarms_tells_a_false_alarm_from_what_is_true(self):
+        alarms = script("alarms")
+        lost, camera = ({"severity": "warning", "text": text} for text in ("lost 1 times, for 0.5 s", "camera events: its rotation"))
+        metrics = {"evaluation": {"ate_m": {"mean": 0.001}, "path_length_m": 3.0}, "first_good_s": 0.4, "coverage": 0.95,
+                   "status": "not to be trusted", "findings": [lost, camera]}
+        self.assertEqual(alarms.alarms_of(metrics), (["warning: camera events: its rotation"], ["warning: lost 1 times, for 0.5 s"]))
+        metrics["evaluation"]["ate_m"]["mean"] = 0.5
+        self.assertEqual(alarms.alarms_of(metrics)[0], [])
+
     def test_mirrors_prints_a_row_a_mode_that_has_its_sensors_and_keeps_what_it_has_run(self):
         recording = harness.simulated(harness.DEFAULT_PROGRAM, self.folder, "room", 1, 3)
         (recording / "events.txt").unlink()

@@ -3,24 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """edged calib --check: calibrations that fit, that do not, and of which nobody can tell. Usage: EDGED=path/to/edged calib_check_test.py"""
 import json
-import math
 import re
 import unittest
 
-from program import WithFlight, edged, with_imu, with_transform
+from faults import late, turned
+from program import WithFlight, edged, with_imu
 
 FITS, UNDETERMINED, DOES_NOT_FIT = 0, 4, 5
-
-
-def turned(degrees):
-    """T_B_C with the camera turned about its y axis."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return with_transform(lambda rows: [[c * a - s * z, b, s * a + c * z, t] for a, b, z, t in rows[:3]] + [rows[3]])
-
-
-def late(seconds):
-    """time_offset of the first camera, or of both."""
-    return lambda text: re.sub(r"time_offset: (\S+)", lambda match: f"time_offset: {float(match.group(1)) + seconds}", text)
 
 
 class CalibCheck(WithFlight):

@@ -62,8 +62,19 @@ class Maps(WithFlight):
         result = edged("run", "sim:poster:3", "--duration", "8", "--mode", "frames", "--map", self.map, "--save-map", poster, "--out",
                        self.folder / "run", "--quiet")
         self.assertRegex(result.stdout, "map +not found")
+        self.assertEqual(result.returncode, 5, result.stdout)
+        self.assertRegex(result.stdout, r"error +map: never matched in ")
         self.assertIn("not written", result.stderr)
         self.assertFalse(poster.exists())
+
+    def test_a_map_that_the_mode_cannot_match_is_a_finding(self):
+        fused = self.folder / "fused.map"  # whose keyframes are frames
+        made = edged("run", self.flight, "--duration", 6, "--save-map", fused, "--out", self.folder / "fused", "--quiet")
+        self.assertEqual(made.returncode, 0, made.stdout)
+        result = edged("run", self.flight, "--mode", "events", "--map", fused, "--out", self.folder / "run", "--json", "--quiet")
+        summary = json.loads(result.stdout)
+        self.assertEqual((result.returncode, summary["status"]), (5, "not to be trusted"))
+        self.assertIn(f"map: never matched in {fused}: it was built with frames, which mode events does not use", summary["verdict"])
 
     def test_what_cannot_be_used_is_refused(self):
         damaged = self.folder / "damaged.map"

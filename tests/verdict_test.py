@@ -3,18 +3,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run says of its own result: calibrations and recordings that contradict it. Usage: EDGED=path/to/edged verdict_test.py"""
 import json
+import pathlib
 import re
 import unittest
 
-from program import WithFlight, edged, with_imu, with_transform
+import faults
+from program import WithFlight, edged
 
 MODES = ("events", "frames", "fused")
-DEG = 57.29578
-G = 9.80665
-
-
-def scaled(factor, v):
-    return [factor * x for x in v]
 
 
 class Verdict(WithFlight):
@@ -24,9 +20,18 @@ class Verdict(WithFlight):
         self.assertTrue((out / "metrics.json").is_file(), result.stderr)
         return result, json.loads((out / "metrics.json").read_text())
 
-    def assert_not_trusted(self, name, change, text, remedy):
+    def assert_one_verdict(self, result, metrics):
+        """Table, page, log and metrics.json have the same words; overview.png has those of the page."""
+        folder = pathlib.Path(metrics["folder"])
+        said = re.search(r"verdict +(.*\n(?: {20,}.*\n)*)", result.stdout).group(1)
+        self.assertEqual(" ".join(said.split()), metrics["verdict"])
+        data = json.loads(re.search(r'id="data">(.*?)</script>', (folder / "report.html").read_text(), re.S).group(1))
+        self.assertEqual(data["runs"][0]["metrics"], metrics)
+        self.assertIn(f"verdict: {metrics['verdict']}\n", (folder / "run.log").read_text())
+
+    def assert_not_trusted(self, fault, text, remedy):
         """In every mode: said on the way or at the end, in metrics.json and by the exit code, with what to do."""
-        recording = self.changed(name, change)
+        recording = self.changed(*faults.NOT_TRUSTED[fault])
         for mode in MODES:
             with self.subTest(mode=mode):
                 result, metrics = self.run_it(recording, mode)
@@ -36,53 +41,44 @@ class Verdict(WithFlight):
                 errors = [f for f in metrics["findings"] if f["severity"] == "error"]
                 self.assertTrue(any(re.search(text, f["text"]) and re.search(remedy, f["remedy"]) for f in errors), errors)
                 self.assertRegex(result.stdout, text)
-                self.assertRegex(result.stdout, r"verdict +the result is not to be trusted\n +next +edged doctor ")
+                self.assertRegex(result.stdout, r"verdict +the result is not to be trusted: .*\n( {20,}.*\n)* +next +edged doctor ")
+                self.assert_one_verdict(result, metrics)
                 self.assertEqual(metrics["next"], f"edged doctor {recording}")
 
     def test_a_healthy_recording_raises_no_finding(self):
         for mode in MODES:
             result, metrics = self.run_it(self.flight, mode)
             self.assertEqual((result.returncode, metrics["status"], result.stderr), (0, "good", ""))
-            self.assertEqual((metrics["findings"], metrics["trusted"], metrics["next"]), ([], True, ""))
-            self.assertRegex(result.stdout, r"verdict +nothing contradicts the result")
+            self.assertEqual((metrics["findings"], metrics["trusted"]), ([], True))
+            self.assertEqual(metrics["next"], f"open {metrics['folder']}/report.html")
+            self.assertEqual(metrics["verdict"], "nothing contradicts the result")
+            self.assert_one_verdict(result, metrics)
 
     def test_a_camera_mounted_a_quarter_turn_off(self):
-        def quarter_turn(rows):  # about the body's x: y' = -z, z' = y
-            x, y, z, last = rows
-            return [x, scaled(-1, z), y, last]
-        self.assert_not_trusted("calibration.yaml", with_transform(quarter_turn), r"contradicts the gyro|off the calibration",
-                                r"axis|edged calib")
+        self.assert_not_trusted("quarter turn", r"contradicts the gyro|off the calibration", r"axis|edged calib")
 
     def test_a_lever_arm_in_millimetres(self):
-        def millimetres(rows):
-            return [row[:3] + [1000 * row[3]] for row in rows[:3]] + [rows[3]]
-        self.assert_not_trusted("calibration.yaml", with_transform(millimetres), "millimetres", "divide that of T_B_C by 1000")
+        self.assert_not_trusted("millimetres", "millimetres", "divide that of T_B_C by 1000")
 
     def test_clocks_that_are_100_s_apart(self):
-        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t + 100, a, g)), "clocks of the sensors do not overlap",
-                                "one clock")
+        self.assert_not_trusted("clocks 100 s apart", "clocks of the sensors do not overlap", "one clock")
 
     def test_a_gyro_in_degrees(self):
-        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t, a, scaled(DEG, g))), "gyro.* deg/s", "pi / 180")
+        self.assert_not_trusted("gyro in degrees", "gyro.* deg/s", "pi / 180")
 
     def test_an_accelerometer_in_g(self):
-        self.assert_not_trusted("imu.txt", with_imu(lambda t, a, g: (t, scaled(1 / G, a), g)), "accelerometer in g",
-                                "9.80665")
+        self.assert_not_trusted("accelerometer in g", "accelerometer in g", "9.80665")
 
     def test_imu_axes_that_are_negated(self):
-        negated = with_imu(lambda t, a, g: (t, scaled(-1, a), scaled(-1, g)))
-        self.assert_not_trusted("imu.txt", negated, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
-        one = with_imu(lambda t, a, g: (t, [-a[0], *a[1:]], [-g[0], *g[1:]]))
-        self.assert_not_trusted("imu.txt", one, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
-        two = with_imu(lambda t, a, g: (t, [-a[0], -a[1], a[2]], [-g[0], -g[1], g[2]]))
-        self.assert_not_trusted("imu.txt", two, r"contradicts the gyro|off the calibration", "axis|edged calib")
+        for fault in ("all axes negated", "one axis negated"):
+            self.assert_not_trusted(fault, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
+        self.assert_not_trusted("two axes negated", r"contradicts the gyro|off the calibration", "axis|edged calib")
 
     def test_an_accelerometer_with_other_axes_than_the_gyro(self):
-        other = with_imu(lambda t, a, g: (t, [-a[0], *a[1:]], g))
-        self.assert_not_trusted("imu.txt", other, "gravity does not turn in its axes", r"\(-x, y, z\)")
+        self.assert_not_trusted("accelerometer's axes", "gravity does not turn in its axes", r"\(-x, y, z\)")
 
-    def assert_said(self, name, change, severity, text, remedy):
-        recording = self.changed(name, change)
+    def assert_said(self, fault, severity, text, remedy):
+        recording = self.changed(*faults.TOLD[fault])
         for mode in ("frames", "fused"):
             with self.subTest(mode=mode):
                 _, metrics = self.run_it(recording, mode)
@@ -91,18 +87,32 @@ class Verdict(WithFlight):
                 self.assertRegex(said[0]["remedy"], remedy)
 
     def test_an_accelerometer_of_which_the_sign_alone_is_wrong(self):
-        self.assert_said("imu.txt", with_imu(lambda t, a, g: (t, scaled(-1, a), g)), "error", "accelerometer: camera .* moves against it",
-                         "multiply it by -1")
+        self.assert_said("accelerometer negated", "error", "accelerometer: camera .* moves against it", "multiply it by -1")
 
     def test_a_gyro_that_reads_a_tenth_too_much(self):
-        self.assert_said("imu.txt", with_imu(lambda t, a, g: (t, a, scaled(1.1, g))), "warning",
-                         r"the gyro reads (9|10|11)\.\d % .* too much", r"divide the gyro by 1\.(09|1)")
+        self.assert_said("gyro 1.1", "warning", r"the gyro reads (9|10|11)\.\d % .* too much", r"divide the gyro by 1\.(09|1)")
 
     def test_a_transform_near_identity_that_points_the_other_way(self):
-        def inverse(rows):
-            R, t = [row[:3] for row in rows[:3]], [row[3] for row in rows[:3]]
-            return [[R[j][i] for j in range(3)] + [-sum(R[j][i] * t[j] for j in range(3))] for i in range(3)] + [rows[3]]
-        self.assert_said("calibration.yaml", with_transform(inverse), "warning", "the inverse fits", "T_C_B")
+        self.assert_said("inverse near identity", "warning", "the inverse fits", "T_C_B")
+
+    def test_a_rotation_that_the_run_has_corrected_is_no_reason_for_distrust(self):
+        result, metrics = self.run_it(self.changed(*faults.TOLD["turned by 5 deg"]), "fused")
+        self.assertEqual((result.returncode, metrics["status"]), (0, "good"), result.stdout)
+        self.assertTrue(any("off the calibration" in f["text"] for f in metrics["findings"]), metrics["findings"])
+        self.assertNotIn("more than a run can correct", result.stdout)
+        self.assert_one_verdict(result, metrics)
+
+    def test_cameras_that_start_after_the_chosen_piece_have_one_remedy(self):
+        def after_5_s(text):
+            return "".join(f"{5 + float(t):.9f} {rest}" for t, rest in (line.split(" ", 1) for line in text.splitlines(True)))
+        recording = self.changed("events.txt", after_5_s)
+        (recording / "images.txt").write_text(after_5_s((recording / "images.txt").read_text()))
+        result, metrics = self.run_it(recording, "fused", "--duration", 2)
+        self.assertEqual((result.returncode, [f["remedy"] for f in metrics["findings"]]), (4, ["use --start 5"]), result.stdout)
+        self.assertEqual(metrics["verdict"], "never good: cameras start at 5.0 s")
+        self.assertEqual(metrics["next"], f"edged run {recording} --from 5 --duration 2")
+        checked = edged("doctor", recording, "--duration", 2, "--quiet")
+        self.assertIn("cameras start at 5.0 s\n           -> use --start 5\n1 errors", checked.stdout)
 
     def test_frames_that_never_come_are_missed(self):
         result, metrics = self.run_it(self.changed("images.txt", lambda text: text.replace("frame_", "gone_")), "fused")

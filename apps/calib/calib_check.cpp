@@ -53,7 +53,7 @@ class CheckRun {
   }
 
   CalibrationFit fit() {
-    return judge_fit(found_, check_.findings(*source_.dataset, source_.dataset->ground_truth()),
+    return judge_fit(found_, check_.findings(*source_.dataset, read_truth(*source_.dataset).truth),
                      statistics_.waiting_for());
   }
   /// The estimated calibration, from all measurements up to the last good estimate.
@@ -124,17 +124,25 @@ int exit_code_of(Fit fit) {
   return fit == Fit::Fits ? kExitOk : fit == Fit::DoesNotFit ? kExitNotTrusted : kExitNeverGood;
 }
 
+std::string next_line(const CalibCheckOptions& options, Fit fit) {
+  SourceOptions whole = options.source;
+  whole.duration_s.reset();
+  return fmt::format("{:<11} {}\n", "next",
+                     fit == Fit::Fits ? command_line("run", whole) : command_line("doctor", whole));
+}
+
 }  // namespace
 
 int check_calibration(CalibCheckOptions options) {
   catch_interrupts();
+  if (!options.out.empty()) check_writable(options.out, "--out");
   if (!options.source.piece.to_s && !options.source.duration_s) options.source.duration_s = kCheckedSeconds;
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);
   const auto [fit, found] = check(options, source, mode);
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
-  fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit));
+  fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit) + next_line(options, fit.fit));
   if (!options.out.empty()) write_file(options.out, to_yaml(with_found(source.calibration, found)));
   return exit_code_of(fit.fit);
 }

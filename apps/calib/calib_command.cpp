@@ -243,7 +243,11 @@ int run_calib(const CalibOptions& options) {
     fmt::print("{}\n", calibration_json(calibration).dump(2));
   } else {
     fmt::print("{}", describe(calibration));
-    if (!options.out.empty() && !calibration.has_extrinsics) tell_to_fill_in(options.out);
+    const std::string file = options.out.empty() ? options.file : options.out.string();
+    if (!options.out.empty() && !calibration.has_extrinsics)
+      tell_to_fill_in(options.out);
+    else
+      fmt::print("next: edged calib {} --check RECORDING\n", shell_word(file));
   }
   return kExitOk;
 }

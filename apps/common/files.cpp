@@ -2,18 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/files.hpp"
 
+#include <unistd.h>
 #include <opencv2/imgcodecs.hpp>
 #include <system_error>
+
+#include <cerrno>
+#include <cstdlib>
 
 #include "edged/core/check.hpp"
 
 namespace edged {
+namespace {
+
+std::string reason() { return std::generic_category().message(errno); }
+
+}  // namespace
 
 std::filesystem::path part_of(std::filesystem::path file) { return file += ".part"; }
 
 std::ofstream open_for_writing(const std::filesystem::path& file) {
   std::ofstream out(file);
-  if (!out) throw InputError::format("{}: cannot be written; check the folder given to --out", file.string());
+  if (!out) throw InputError::format("{}: cannot be written: {}", file.string(), reason());
   return out;
 }
 
@@ -21,15 +30,26 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path part = part_of(file);
   std::ofstream out = open_for_writing(part);
   out << text;
-  if (!out.flush()) throw InputError::format("{}: cannot be written; is the disk full?", file.string());
+  if (!out.flush()) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);  // other files may need its room
+    throw InputError::format("{}: cannot be written; is the disk full?", file.string());
+  }
   std::filesystem::rename(part, file);
 }
 
-void check_folder_of(const std::filesystem::path& file) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+void check_writable(const std::filesystem::path& file, const char* option) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored))
-    throw InputError::format("{}: cannot be written: no folder {}", file.string(), folder.string());
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError::format("{}: is a folder; give {} a file", file.string(), option);
+  std::string trial = file.string() + ".XXXXXX";
+  const int opened = mkstemp(trial.data());
+  if (opened < 0)
+    throw InputError::format(
+        "{}: cannot be written: {}; give {} a file in a folder that is there and may be written to", file.string(),
+        reason(), option);
+  close(opened);
+  std::filesystem::remove(trial, ignored);
 }
 
 void make_picture_folder(const std::filesystem::path& folder) {

@@ -20,8 +20,9 @@ std::filesystem::path part_of(std::filesystem::path file);
 /// Throws InputError where the file cannot be written, as those below do.
 std::ofstream open_for_writing(const std::filesystem::path& file);
 
-/// Throws InputError if the file's folder does not exist: checked before a long run whose result could not be saved.
-void check_folder_of(const std::filesystem::path& file);
+/// Throws InputError, which names the option, if the file cannot be written. Called before a long run whose result
+/// could not be saved.
+void check_writable(const std::filesystem::path& file, const char* option);
 
 /// Throw InputError where --out cannot be used.
 void make_picture_folder(const std::filesystem::path& folder);

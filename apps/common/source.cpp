@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/source.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/camera_names.hpp"
@@ -177,6 +180,62 @@ Source calibrated(const SourceOptions& options, Recording recording) {
   std::optional<int> seed;
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) seed = config->seed;
   return {std::move(recording.dataset), std::move(*recording.calibration), seed};
+}
+
+OwnTruth read_truth(const Dataset& dataset) try { return {dataset.ground_truth(), ""}; } catch (const InputError& e) {
+  return {std::nullopt, e.what()};
+}
+
+std::string shell_word(const std::string& text) {
+  const bool plain =
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
+      std::string::npos;
+  if (plain && !text.empty()) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_line(const std::string& command, const SourceOptions& source) {
+  std::string line = fmt::format("edged {} {}", command, shell_word(source.recording));
+  const auto add = [&line](const std::string& name, const std::string& value) {
+    if (!value.empty()) line += fmt::format(" {} {}", name, shell_word(value));
+  };
+  add("--rig", source.rig);
+  add("--calib", source.calib.string());
+  add("--imu", source.imu.string());
+  for (const auto& [name, file] : source.external) add("--" + name, file.string());
+  add("--geometry", source.geometry);
+  add("--time-unit", source.time_unit);
+  for (const std::string& topic : source.topics) add("--topic", topic);
+  if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
+  if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
+  if (source.duration_s) add("--duration", fmt::format("{}", *source.duration_s));
+  if (source.dim_frames) add("--dim-frames", fmt::format("{}", *source.dim_frames));
+  return line;
+}
+
+std::optional<double> cameras_start_after_s(const SourceOptions& options) {
+  if ((!options.duration_s && !options.piece.to_s) || is_live(options)) return std::nullopt;
+  const double end_s = options.duration_s ? options.piece.from_s + *options.duration_s : *options.piece.to_s;
+  const Recording recording = open_whole(options);
+  std::optional<Timestamp> begin = recording.dataset->info().begin;
+  while (const std::optional<Measurement> measurement = recording.dataset->next()) {
+    const std::optional<Timestamp> first = first_stamp(*measurement);
+    if (!begin) begin = first;
+    if (interrupt_signal() != 0) break;
+    if (!first || camera_of(*measurement) == nullptr) continue;
+    const double start_s = to_seconds(*first - *begin);
+    return start_s >= end_s ? std::optional(start_s) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+double later_start_s(double start_s) { return std::floor(10.0 * start_s) / 10.0; }
+
+Finding cameras_start_later(double start_s) {
+  return {Severity::Error, fmt::format("cameras start at {:.1f} s", start_s),
+          fmt::format("use --start {:g}", later_start_s(start_s))};
 }
 
 void match_cameras(Source& source, Mode mode) {

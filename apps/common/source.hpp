@@ -16,6 +16,7 @@
 #include "edged/io/recording.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"
+#include "edged/survey/finding.hpp"
 
 namespace edged {
 
@@ -33,6 +34,13 @@ struct SourceOptions {
   std::optional<double> duration_s;  ///< of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
+
+/// The ground truth that a recording brings. A run goes on without one that cannot be read.
+struct OwnTruth {
+  std::optional<GroundTruth> truth;
+  std::string problem;  ///< why it cannot be read; empty otherwise
+};
+OwnTruth read_truth(const Dataset& dataset);
 
 struct Source {
   std::unique_ptr<Dataset> dataset;
@@ -63,6 +71,20 @@ cv::Size recording_event_sensor(const Recording& recording);
 Source open_source(const SourceOptions& options);
 /// The same of a recording that is open.
 Source calibrated(const SourceOptions& options, Recording recording);
+
+/// One word of a command line, quoted if a shell needs it.
+std::string shell_word(const std::string& text);
+
+/// `edged COMMAND RECORDING` with the options that say how to read it, as words of a shell.
+std::string command_line(const std::string& command, const SourceOptions& source);
+
+/// Time of the first event or frame [s from the start of the recording], if the chosen piece ends before it. Reads the
+/// recording again.
+std::optional<double> cameras_start_after_s(const SourceOptions& options);
+
+/// The finding about that, and the time at which a run should start [s].
+Finding cameras_start_later(double start_s);
+double later_start_s(double start_s);
 
 /// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
 /// InputError if that is ambiguous.

@@ -42,6 +42,14 @@ void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
   for (std::string& line : lines) findings.push_back({Severity::Warning, std::move(line), ""});
 }
 
+std::string next_step(const DoctorOptions& options, const Recording& recording, bool ill) {
+  if (ill) return "mend the errors above, then " + command_line("doctor", options.source);
+  if (!recording.calibration)
+    return "edged calib --new CAMERA --out head.yaml, then " + command_line("doctor", options.source) +
+           " --calib head.yaml";
+  return command_line("run", options.source);
+}
+
 int run_doctor(const DoctorOptions& options) {
   catch_interrupts();
   HeldWarnings held;
@@ -64,11 +72,14 @@ int run_doctor(const DoctorOptions& options) {
                       compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset)});
   std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
   external.judge(gyro, read.survey.external, findings);
+  if (read.survey.events.count + read.survey.frames.count == 0)
+    if (const auto start_s = cameras_start_after_s(options.source)) findings = {cameras_start_later(*start_s)};
   add_log(held.take(), findings);
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});
-  fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n" : to_text(findings));
   const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
+  fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n"
+                                : to_text(findings) + "next     " + next_step(options, recording, ill) + "\n");
   return ill ? kExitInput : kExitOk;
 }
 

@@ -47,7 +47,8 @@ int run_info(const InfoOptions& options) {
   if (options.json)
     fmt::print("{}\n", json_text(to_json(survey)));
   else
-    fmt::print("{}{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording));
+    fmt::print("{}{:<15} {}\n{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording), "next",
+               command_line("doctor", options.source));
   if (damage) throw InputError(*damage);
   if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts cover the part that was read");
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();

@@ -72,7 +72,7 @@ int run_info(const MapCommandOptions& options) {
 
 int run_show(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file);
-  check_folder_of(options.out);
+  check_writable(options.out, "--out");
   write_file(options.out, map_ply(mapped(map)));
   if (options.json)
     fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
@@ -84,7 +84,7 @@ int run_show(const MapCommandOptions& options) {
 
 int run_merge(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file), other = read_map(options.other);
-  check_folder_of(options.out);
+  check_writable(options.out, "--out");
   const std::optional<SE3> T_A_B = find_map_in(map, other);
   if (!T_A_B)
     throw InputError::format(

@@ -150,12 +150,13 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
 
 int show_recording(const ShowOptions& options) {
   catch_interrupts();
+  const bool page = options.out.extension() == ".html";
+  if (page) check_writable(options.out, "--out");
   const Recording recording = open_uncalibrated(options.source);
   Dataset& dataset = *recording.dataset;
   if (!dataset.info().has_events)
     throw InputError::format("{}: has no events to show; take another recording", dataset.info().name);
   const cv::Size sensor = recording_event_sensor(recording);
-  const bool page = options.out.extension() == ".html";
   const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
   if (shown.pictures == 0) spdlog::warn(fmt::format("{}: no events", dataset.info().name));
   print_shown(options, shown, dataset.repairs());

@@ -8,6 +8,7 @@
 
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
+#include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
@@ -274,7 +275,9 @@ SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<voi
   } catch (const InputError& error) {
     damage = error.what();
   }
-  return {surveyor.result(dataset, dataset.ground_truth()), damage};
+  const OwnTruth truth = read_truth(dataset);
+  if (!damage && !truth.problem.empty()) damage = truth.problem;
+  return {surveyor.result(dataset, truth.truth), damage};
 }
 
 }  // namespace edged

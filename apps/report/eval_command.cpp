@@ -8,11 +8,13 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "common/numbers.hpp"
+#include "common/source.hpp"
 #include "edged/core/check.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"
@@ -53,20 +55,48 @@ Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate,
   return result;
 }
 
-Evaluation evaluate_files(const EvalOptions& options, const CLI::App& eval) {
+struct Compared {
+  Evaluation evaluation;
+  std::optional<TimeOffset> offset;  ///< nothing without times
+};
+
+Compared evaluate_files(const EvalOptions& options, const CLI::App& eval) {
   const bool timed = trajectory_format(options.truth) != TrajectoryFormat::Kitti &&
                      trajectory_format(options.estimate) != TrajectoryFormat::Kitti;
   if (!timed) refuse_times(options, eval);
   const Trajectory truth = read_trajectory(options.truth);
   const Trajectory estimate = read_trajectory(options.estimate);
-  if (!timed) return evaluate_untimed(truth, estimate, options);
-  const Association association = associate(truth, estimate, duration_from_seconds(options.how.max_gap_s));
-  return evaluate(association, chosen_protocol(options.how), options.deltas_s);
+  if (!timed) return {evaluate_untimed(truth, estimate, options), std::nullopt};
+  const Duration max_gap = duration_from_seconds(options.how.max_gap_s);
+  return {evaluate(associate(truth, estimate, max_gap), chosen_protocol(options.how), options.deltas_s),
+          fit_time_offset(truth, estimate, max_gap)};
+}
+
+std::string offset_text(const TimeOffset& offset) {
+  return fmt::format(
+      "  time offset            {:+.1f} ms fits best: ATE {:.4f} m with it (SE3 on all poses, {:.4f} m without)\n",
+      1e3 * offset.offset_s, offset.ate_rmse_m, offset.ate_given_m);
+}
+
+/// What follows from it.
+std::string next_text(const EvalOptions& options, const Compared& compared) {
+  if (compared.offset && compared.offset->matters())
+    return fmt::format("add {:.4f} s to the stamps of {}: they are {}\n", -compared.offset->offset_s,
+                       options.truth.string(), compared.offset->offset_s > 0.0 ? "late" : "early");
+  return fmt::format("edged report {} --truth {}\n", shell_word(options.estimate.string()),
+                     shell_word(options.truth.string()));
 }
 
 int run_eval(const EvalOptions& options, const CLI::App& eval) {
-  const Evaluation evaluation = evaluate_files(options, eval);
-  fmt::print("{}", options.json ? to_json(evaluation).dump(2) + "\n" : to_table(evaluation));
+  const Compared compared = evaluate_files(options, eval);
+  if (options.json) {
+    nlohmann::ordered_json json = to_json(compared.evaluation);
+    if (compared.offset) json["ground_truth_time_offset"] = to_json(*compared.offset);
+    fmt::print("{}\n", json.dump(2));
+    return kExitOk;
+  }
+  fmt::print("{}{}  next                   {}", to_table(compared.evaluation),
+             compared.offset ? offset_text(*compared.offset) : "", next_text(options, compared));
   return kExitOk;
 }
 

@@ -100,6 +100,15 @@ Json map_keyframes_json(const LoadedRun& run, Timestamp origin) {
   return json;
 }
 
+/// What came before the body was found in the map of --map is in a frame of its own, and counts for no error.
+void leave_out_before_map(const LoadedRun& run, Trajectory& body, std::vector<std::size_t>& rows) {
+  if (run.album.is_null() || run.album.value("in_map_since_ns", Json()).is_null()) return;
+  const Timestamp since = timestamp_from_ns(run.album["in_map_since_ns"].get<std::int64_t>());
+  const auto first = std::ranges::lower_bound(body, since, {}, &StampedPose::t);
+  rows.erase(rows.begin(), rows.begin() + (first - body.begin()));
+  body.erase(body.begin(), first);
+}
+
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   if (!fs::exists(folder / "states.csv") || !fs::exists(folder / "calibration.yaml")) {
     throw InputError::format("{}: is no run folder (states.csv, calibration.yaml); give a folder of `edged run`",
@@ -126,7 +135,8 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
     run.truth = GroundTruth{read_trajectory(options.truth), output_frame(run)};
   }
   std::vector<std::size_t> rows;
-  const Trajectory body = body_poses(run.states, &rows);
+  Trajectory body = body_poses(run.states, &rows);
+  leave_out_before_map(run, body, rows);
   run.poses = lay_onto_truth(body, covariance_samples_of(run.states), run.given->rig, output_frame(run), run.truth,
                              options.how);
   run.poses.rows = rows;

@@ -13,18 +13,19 @@ namespace edged {
 namespace {
 
 void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& frame, const Association& association) {
-  auto pair = association.pairs.begin();
   for (std::size_t i = 0; i < path.shown.size(); ++i) {
-    StampedPose& pose = path.shown[i];
-    while (pair != association.pairs.end() && pair->t < pose.t) ++pair;
-    const bool paired = pair != association.pairs.end() && pair->t == pose.t;
-    pose.T = path.alignment * pose.T;
-    path.body[i].T = frame.to_body(pose).T;
-    if (!paired) continue;
-    path.truth[i] = pair->truth;
-    path.true_body[i] = frame.to_body({pose.t, pair->truth}).T;
-    path.error_m[i] = (pair->truth.translation() - pose.T.translation()).norm();
-    path.rotation_deg[i] = kDegreesPerRadian * so3::log(pair->truth.rotation().conjugate() * pose.T.rotation()).norm();
+    path.shown[i].T = path.alignment * path.shown[i].T;
+    path.body[i].T = frame.to_body(path.shown[i]).T;
+  }
+  std::size_t i = 0;  // of the pose that is nearest in time
+  for (const PosePair& pair : association.pairs) {
+    const auto apart = [&](std::size_t k) { return std::chrono::abs(path.shown[k].t - pair.t); };
+    while (i + 1 < path.shown.size() && apart(i + 1) < apart(i)) ++i;
+    const SE3 estimate = path.alignment * pair.estimate;
+    path.truth[i] = pair.truth;
+    path.true_body[i] = frame.to_body({pair.t, pair.truth}).T;
+    path.error_m[i] = (pair.truth.translation() - estimate.translation()).norm();
+    path.rotation_deg[i] = kDegreesPerRadian * so3::log(pair.truth.rotation().conjugate() * estimate.rotation()).norm();
   }
   for (const StampedPose& pose : truth.trajectory) {
     if (pose.t >= path.shown.front().t && pose.t <= path.shown.back().t) path.true_path.push_back(pose);

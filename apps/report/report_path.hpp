@@ -21,7 +21,7 @@ struct ReportPath {
   Trajectory shown;                           ///< in the world of the truth, else in that of the estimate
   Trajectory body;                            ///< the same of the body, on the IMU clock
   std::vector<std::size_t> rows;              ///< of states.csv, one for each pose
-  std::vector<std::optional<SE3>> truth;      ///< true pose, one for each pose
+  std::vector<std::optional<SE3>> truth;      ///< true pose, one for each pose; of a sparse truth, at the nearest one
   std::vector<std::optional<SE3>> true_body;  ///< the same of the body
   Trajectory true_path;                       ///< the ground truth over the time of the run
   std::vector<double> error_m, rotation_deg;  ///< one for each pose, NaN where there is no truth

@@ -175,17 +175,6 @@ int draw_image(cv::Mat& canvas, const cv::Mat& image, const std::string& caption
   return sized.rows;
 }
 
-/// In a line; empty without problems.
-std::string what_is_wrong(const RunSummary& summary) {
-  const auto error = std::ranges::find(summary.verdict.findings, Severity::Error, &Finding::severity);
-  const std::string because = error != summary.verdict.findings.end() ? error->text : summary.verdict.waiting_for;
-  const double silent_s = summary.consistency ? summary.consistency->silent_s() : 0.0;
-  if (!summary.verdict.trusted)
-    return because.starts_with(summary.status) ? because : fmt::format("{}: {}", summary.status, because);
-  if (silent_s > 0.0) return fmt::format("error beyond its covariance for {:.1f} s", silent_s);
-  return summary.statistics.times_lost() > 0 ? fmt::format("lost {} times", summary.statistics.times_lost()) : "";
-}
-
 class OverviewFile : public RunObserver {
  public:
   explicit OverviewFile(const RunContext& run) : run_(run) {}
@@ -201,7 +190,7 @@ class OverviewFile : public RunObserver {
     const ReportPath& path = end.path;
     OverviewContent content;
     content.title = fmt::format("{}, {}", end.summary.recording, end.summary.mode);
-    content.wrong = what_is_wrong(end.summary);
+    if (!end.summary.verdict.plain()) content.wrong = end.summary.verdict.text;
     content.moment = moment_;
     content.changes = run_.album.changes();
     content.end = run_.album.last();

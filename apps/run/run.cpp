@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <system_error>
 
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
@@ -32,23 +33,6 @@ std::string config_text(const RunContext& run) {
          options_text(run.config);
 }
 
-std::string run_status(const RunStatistics& statistics, const Verdict& verdict) {
-  if (interrupt_signal() != 0) return "interrupted";
-  if (!statistics.first_good_s()) return "never good";
-  if (verdict.contradicted && is_tracking(statistics.last_status())) return "not to be trusted";
-  switch (statistics.last_status()) {
-    case TrackingStatus::Good:
-      return "good";
-    case TrackingStatus::Degraded:
-      return "degraded";
-    case TrackingStatus::Lost:
-      return "lost";
-    case TrackingStatus::Initializing:
-      return "lost, initializing again";
-  }
-  EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
-}
-
 RunSummary facts_of(const RunContext& run) {
   RunSummary summary;
   summary.wall_s = run.meter.wall_s();
@@ -70,7 +54,7 @@ RunSummary facts_of(const RunContext& run) {
 }  // namespace
 
 Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
-    : run_(options, std::move(source), mode, config) {
+    : run_(options, std::move(source), mode, config), truth_(read_truth(*run_.source.dataset)) {
   if (options.live && run_.source.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}",
                              run_.info().name);
@@ -102,6 +86,8 @@ void Run::make_folder() {
   const DatasetInfo& info = run_.info();
   spdlog::info(fmt::format("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(run_.mode)));
   spdlog::info(describe(run_.source.calibration));
+  if (!truth_.problem.empty())
+    spdlog::warn(fmt::format("the ground truth cannot be read, so nothing is compared with it: {}", truth_.problem));
 }
 
 RunSummary Run::go() {
@@ -146,9 +132,21 @@ void Run::observe(const Step& step, RunReader& reader) {
 
 RunSummary Run::finish(RunReader& reader, bool broken_off) {
   reader.stop();
-  const RunEnd end = summarize(reader, broken_off);
-  for (const auto& observer : observers_) observer->on_end(end);
-  if (!run_.archive.empty()) zip_folder(run_.archive, run_.folder);  // may fail, on a full disk
+  RunEnd end = summarize(reader, broken_off);
+  std::vector<std::string> unwritten;
+  // One that fails, on a full disk, costs no other.
+  const auto attempt = [&unwritten](const auto& write) {
+    try {
+      write();
+    } catch (const InputError& e) {
+      unwritten.emplace_back(e.what());
+    } catch (const std::system_error& e) {
+      unwritten.emplace_back(e.what());
+    }
+  };
+  for (const auto& observer : observers_) attempt([&] { observer->on_end(end); });
+  if (!run_.archive.empty()) attempt([&] { zip_folder(run_.archive, run_.folder); });
+  end.summary.unwritten = std::move(unwritten);
   return end.summary;
 }
 
@@ -156,14 +154,20 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   RunEnd end;
   end.summary = facts_of(run_);
   end.summary.live = reader.live_summary();
-  end.truth = run_.source.dataset->ground_truth();
+  end.truth = truth_.truth;
+  if (!truth_.problem.empty())
+    end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be read: " + truth_.problem,
+                                            "mend or remove the file: the run is compared with nothing"});
   for (const auto& observer : observers_) observer->on_summary(end);
-  end.summary.status = broken_off ? "broken off" : run_status(run_.statistics, end.summary.verdict);
   {
     const auto timer = run_.timings.measure("final_trajectory");
     end.known = run_.odometry.final_trajectory();
   }
   compare_with_truth(end);
+  const Ending ending = broken_off                ? Ending::BrokenOff
+                        : interrupt_signal() != 0 ? Ending::Interrupted
+                                                  : Ending::Complete;
+  judge_run(end.summary, run_.options.source, ending);
   end.summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
   return end;
 }

@@ -28,6 +28,7 @@ class Run {
   void compare_with_truth(RunEnd& end) const;
 
   RunContext run_;
+  OwnTruth truth_;
   std::vector<std::unique_ptr<RunObserver>> observers_;
 };
 

@@ -24,7 +24,7 @@ class AlbumFiles : public RunObserver {
   explicit AlbumFiles(RunContext& run) : run_(run) {}
   void on_step(const Step& step) override { run_.album.add(step); }
   void on_end(const RunEnd& end) override {
-    run_.album.write(run_.folder, run_.source.calibration, run_.odometry.rig(), end.truth);
+    run_.album.write(run_.folder, run_.source.calibration, run_.odometry.rig(), end.truth, end.in_map_since);
   }
 
  private:
@@ -94,11 +94,13 @@ void RunAlbum::note_points(const Step& step) {
   }
 }
 
-nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame) const {
+nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame, std::optional<Timestamp> in_map_since) const {
   nlohmann::ordered_json json = {{"truth_frame", truth_frame},
+                                 {"in_map_since_ns", nullptr},
                                  {"changes", nlohmann::ordered_json::array()},
                                  {"points", nlohmann::ordered_json::array()},
                                  {"pictures", nlohmann::ordered_json::array()}};
+  if (in_map_since) json["in_map_since_ns"] = to_ns(*in_map_since);
   for (const StatusChange& change : changes_.all()) {
     json["changes"].push_back({{"t_ns", to_ns(change.t)},
                                {"status", to_string(change.status)},
@@ -116,18 +118,19 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame) const {
 }
 
 void RunAlbum::write(const std::filesystem::path& folder, const Calibration& given, const Rig& found,
-                     const std::optional<GroundTruth>& truth) const {
+                     const std::optional<GroundTruth>& truth, std::optional<Timestamp> in_map_since) const {
   constexpr Duration kMargin = std::chrono::seconds(1);  // clocks of sensors differ by less
   if (truth && !changes_.all().empty()) {
-    Trajectory meanwhile;
-    for (const StampedPose& pose : truth->trajectory) {
-      if (pose.t >= changes_.all().front().t - kMargin && pose.t <= last_ + kMargin) meanwhile.push_back(pose);
-    }
-    write_tum(folder / "groundtruth.tum", meanwhile,
+    const Trajectory& poses = truth->trajectory;
+    auto first = std::ranges::lower_bound(poses, changes_.all().front().t - kMargin, {}, &StampedPose::t);
+    auto past = std::ranges::upper_bound(poses, last_ + kMargin, {}, &StampedPose::t);
+    if (first != poses.begin()) --first;  // of a sparse one, what the first pose lies between
+    if (past != poses.end()) ++past;
+    write_tum(folder / "groundtruth.tum", Trajectory(first, past),
               {"ground truth while the run lasted: " + OutputFrame(given.rig, truth->frame).describe()});
   }
   write_file(folder / "calibration_found.yaml", to_yaml(with_found(given, found)));
-  write_file(folder / "album.json", to_json(truth ? truth->frame : "").dump() + "\n");
+  write_file(folder / "album.json", to_json(truth ? truth->frame : "", in_map_since).dump() + "\n");
 }
 
 std::unique_ptr<RunObserver> observe_album(RunContext& run) { return std::make_unique<AlbumFiles>(run); }

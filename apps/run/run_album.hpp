@@ -36,12 +36,12 @@ class RunAlbum {
   Timestamp last() const { return last_; }  ///< step
 
   /// truth_frame: whose pose the ground truth is; "" where there is none.
-  nlohmann::ordered_json to_json(const std::string& truth_frame) const;
+  nlohmann::ordered_json to_json(const std::string& truth_frame, std::optional<Timestamp> in_map_since) const;
 
   /// album.json, groundtruth.tum where there is a truth, and calibration_found.yaml: `given` with the cameras of
   /// `found`.
   void write(const std::filesystem::path& folder, const Calibration& given, const Rig& found,
-             const std::optional<GroundTruth>& truth) const;
+             const std::optional<GroundTruth>& truth, std::optional<Timestamp> in_map_since = std::nullopt) const;
 
  private:
   /// JPEG, empty if the step has none.

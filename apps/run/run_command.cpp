@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
@@ -32,7 +33,9 @@ int run(RunOptions options) {
     if (!uses(mode, modality)) source.dataset->leave_out(modality);
   const RunSummary summary = Run(options, std::move(source), mode, config).go();
   fmt::print("{}", options.json ? json_text(to_json(summary)) + "\n" : to_table(summary));
+  for (const std::string& failure : summary.unwritten) spdlog::error(failure);
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (!summary.unwritten.empty()) return kExitInput;
   if (summary.verdict.contradicted) return kExitNotTrusted;
   return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
 }

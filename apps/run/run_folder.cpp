@@ -119,19 +119,10 @@ void add_archive_option(CLI::App& app, std::string& archive) {
 
 void check_archive(const std::filesystem::path& file, EarlierRun earlier) {
   std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw InputError::format("{}: is a folder; give a file, --archive=FILE.zip", file.string());
-  if (earlier == EarlierRun::Keep && std::filesystem::exists(file, error))
+  if (earlier == EarlierRun::Keep && std::filesystem::is_regular_file(file, error))
     throw InputError::format("{}: is there already; give another --archive=FILE, or --force to replace it",
                              file.string());
-  // Errors of writing are reported before the run, not after it.
-  std::string trial = file.string() + ".XXXXXX";
-  const int opened = mkstemp(trial.data());
-  if (opened < 0)
-    throw InputError::format(
-        "{}: cannot be written; give --archive=FILE in a folder that is there and may be written to", file.string());
-  close(opened);
-  std::filesystem::remove(trial, error);
+  check_writable(file, "--archive");
 }
 
 }  // namespace edged

@@ -58,6 +58,7 @@ class RunLog : public RunObserver {
     for (const auto& [kind, count] : summary.repairs) spdlog::info(fmt::format("repaired: {} x {}", count, kind));
     for (const Finding& finding : summary.verdict.findings)
       spdlog::info(fmt::format("found: {}: {}", finding.text, finding.remedy));
+    spdlog::info(fmt::format("verdict: {}", summary.verdict.text));
     spdlog::info(fmt::format("status {}, {} poses, {} keyframes", summary.status, summary.poses,
                              summary.statistics.keyframes()));
   }

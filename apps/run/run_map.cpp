@@ -3,11 +3,14 @@
 #include "run/run_map.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -40,9 +43,13 @@ class RunMap : public RunObserver {
   explicit RunMap(RunContext& run) : run_(run), options_(run.options.map) {
     if (!run.config.odometry.map.enabled)
       throw InputError("--map and --save-map need the map: leave out map.enabled=false");
-    if (!options_.save.empty()) check_folder_of(options_.save);
+    if (!options_.save.empty()) check_writable(options_.save, "--save-map");
     if (!options_.load.empty())
-      read_map_file(options_.load, [&run](const std::string& bytes) { run.odometry.load_map(bytes); });
+      read_map_file(options_.load, [&](const std::string& bytes) {
+        run.odometry.load_map(bytes);
+        for (const MapKeyframe& keyframe : saved_map_from_bytes(bytes).keyframes) made_by_.insert(keyframe.camera);
+        return 0;
+      });
   }
 
   void on_step(const Step& step) override {
@@ -51,28 +58,52 @@ class RunMap : public RunObserver {
     if (!options_.load.empty() && !found_ && !run_.odometry.awaiting_relocalization()) found_ = step.t;
   }
 
-  /// Writes the map of --save-map.
   void on_summary(RunEnd& end) override {
     MapSummary& summary = end.summary.map.emplace(MapSummary{options_.load.string(), {}, {}});
     end.in_map_since = found_;
     if (found_) summary.found_s = to_seconds(*found_ - *first_pose_);
-    if (!options_.load.empty() && !found_)
-      spdlog::warn(
-          fmt::format("--map {}: not relocalized; the poses are in a frame of their own", options_.load.string()));
+    if (!options_.load.empty() && !found_) end.summary.verdict.findings.push_back(not_found());
     if (options_.save.empty()) return;
-    if (const std::optional<std::string> map = run_.odometry.save_map()) {
-      write_file(options_.save, *map);
+    map_ = run_.odometry.save_map();
+    if (map_ && !saved_map_from_bytes(*map_).keyframes.empty()) {
       summary.saved = options_.save.string();
-    } else {
-      spdlog::warn(fmt::format("--save-map {}: not written, as this run has not been relocalized in that of --map",
-                               options_.save.string()));
+      return;
     }
+    const std::string why =
+        map_ ? "no keyframe has left the window" : "this run has not found its place in that of --map";
+    spdlog::warn(fmt::format("--save-map {}: not written, as {}", options_.save.string(), why));
+    end.summary.verdict.findings.push_back(
+        {Severity::Error, fmt::format("map: not saved to {}: {}", options_.save.string(), why),
+         map_ ? "record for longer, and move: a map is of keyframes that were left behind"
+              : "start where the map of --map was made, or leave --map out"});
+    map_.reset();
+  }
+
+  /// Writes the map that is to be kept.
+  void on_end(const RunEnd&) override {
+    if (map_) write_file(options_.save, *map_);
   }
 
  private:
+  /// Keyframes are matched within one camera.
+  Finding not_found() const {
+    const auto used = [this](const std::string& name) {
+      return std::ranges::count(run_.used.cameras, name, &RigCamera::name) > 0;
+    };
+    if (std::ranges::none_of(made_by_, used))
+      return {Severity::Error,
+              fmt::format("map: never matched in {}: it was built with {}, which mode {} does not use",
+                          options_.load.string(), fmt::join(made_by_, " and "), mode_name(run_.mode)),
+              "build it in the same --mode; the poses are in a frame of their own"};
+    return {Severity::Error, fmt::format("map: never matched in {}", options_.load.string()),
+            "the poses are in a frame of their own: start where the map was made, facing the same way"};
+  }
+
   const RunContext& run_;
   MapOptions options_;
+  std::set<std::string> made_by_;  ///< cameras of the map's keyframes
   std::optional<Timestamp> first_pose_, found_;
+  std::optional<std::string> map_;  ///< to be written
 };
 
 }  // namespace

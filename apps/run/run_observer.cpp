@@ -20,9 +20,9 @@ constexpr std::array kObservers = {
     observe_map,
     observe_states,
     observe_external,
-    observe_album,  // which those below use
+    observe_summary,  // before large outputs, and those that `edged report` can write again
+    observe_album,    // which those below use
     observe_final_trajectory,
-    observe_summary,
     observe_overview,
     observe_report,  // of the files of those above
     observe_mcap,

@@ -45,8 +45,8 @@ void RunReader::stop() {
 
 std::optional<LiveSummary> RunReader::live_summary() const {
   if (!live_) return std::nullopt;
-  return LiveSummary{live_->latency(), live_->shed(), run_.odometry.counters().packets.packets_overflow,
-                     live_->peaks()};
+  return LiveSummary{live_->latency(), live_->shed(), run_.odometry.counters().packets.packets_overflow, live_->peaks(),
+                     run_.config.live.max_age_s};
 }
 
 }  // namespace edged

@@ -39,6 +39,7 @@ void RunStatistics::add_visual(const Measurement& measurement, const Rig& used) 
   const std::optional<Timestamp> first = first_stamp(measurement);
   const std::string* name = camera_of(measurement);
   if (!first || !name) return;
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) events_ += batch->events.size();
   const auto camera = std::ranges::find(used.cameras, *name, &RigCamera::name);
   if (camera != used.cameras.end())
     add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);

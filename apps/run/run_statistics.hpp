@@ -30,7 +30,8 @@ class RunStatistics {
   void add(const Step& step);
 
   std::size_t packets() const { return packets_; }
-  std::size_t poses() const { return poses_; }  ///< Good and Degraded packets
+  std::size_t events() const { return events_; }  ///< that reached the odometry
+  std::size_t poses() const { return poses_; }    ///< Good and Degraded packets
   std::size_t keyframes() const { return keyframes_; }
   std::size_t times_lost() const { return times_lost_; }
   /// First visual measurement to last [s].
@@ -56,7 +57,7 @@ class RunStatistics {
   std::optional<Timestamp> first_visual_;
   Timestamp last_visual_;
   std::optional<Timestamp> last_packet_;
-  std::size_t packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0;
+  std::size_t events_ = 0, packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0;
   std::array<double, 4> seconds_{};
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;

@@ -85,17 +85,16 @@ std::string live_table(const LiveSummary& live) {
 std::string calibration_line(const CalibrationFound& c) {
   const auto sigma = [](const std::optional<double>& value) { return value ? fmt::format(" +- {:.2f}", *value) : ""; };
   return line("camera calibration", fmt::format("{:.2f}{} deg", c.rotation_deg, sigma(c.rotation_sigma_deg)),
-              fmt::format("of rotation off, clock {:.2f}{} ms (given {:.2f}): {}", c.time_offset_ms,
-                          sigma(c.time_sigma_ms), c.given_offset_ms, c.camera));
+              fmt::format("of rotation off, time offset {:.2f}{} ms, with the latency of its pixels (given {:.2f}): {}",
+                          c.time_offset_ms, sigma(c.time_sigma_ms), c.given_offset_ms, c.camera));
 }
 
 std::string verdict_text(const RunSummary& s) {
   const Verdict& v = s.verdict;
   std::string text;
   if (!v.findings.empty()) text += to_text(v.findings);
-  text += line("verdict", v.trusted ? "nothing contradicts the result" : "the result is not to be trusted");
-  if (!v.next.empty()) text += line("next", v.next);
-  return text;
+  for (const std::string& failure : s.unwritten) text += line("not written", failure);
+  return text + line("verdict", v.text) + line("next", v.next);
 }
 
 class SummaryFiles : public RunObserver {
@@ -121,6 +120,7 @@ void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector
     Trajectory true_body;
     for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
     summary.consistency = check_consistency(true_body, claims);
+    summary.truth_offset = fit_time_offset(truth.trajectory, frame(body));
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
         summary.mpe_percent[name] = evaluate(association, protocol(name), {}, {}).mpe_percent;
@@ -177,6 +177,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
                                  {"version", kVersion},
                                  {"seed", s.seed ? nlohmann::ordered_json(*s.seed) : nlohmann::ordered_json(nullptr)},
                                  {"status", s.status},
+                                 {"verdict", s.verdict.text},
                                  {"trusted", s.verdict.trusted},
                                  {"findings", to_json(s.verdict.findings)},
                                  {"waiting_for", s.verdict.waiting_for},
@@ -205,12 +206,14 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   json["depth_scale_sigma_ln"] = number_or_null(ln_s ? std::optional(ln_s->sigma) : std::nullopt);
   if (s.live) json["live"] = live_json(*s.live);
   if (!s.archive.empty()) json["archive"] = s.archive;
+  if (!s.unwritten.empty()) json["unwritten"] = s.unwritten;
   if (s.map)
     json["map"] = {{"loaded", s.map->loaded}, {"found_s", number_or_null(s.map->found_s)}, {"saved", s.map->saved}};
   json["calibration"] = nlohmann::ordered_json::array();
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
   json["consistency"] = s.consistency ? to_json(*s.consistency) : nlohmann::ordered_json(nullptr);
+  json["ground_truth_time_offset"] = s.truth_offset ? to_json(*s.truth_offset) : nlohmann::ordered_json(nullptr);
   for (const auto& [sensor, e] : s.external)
     json["external"][sensor] = {{"samples", e.samples}, {"used", e.used}, {"rejected", e.rejected}, {"late", e.late}};
   json["repairs"] = s.repairs;

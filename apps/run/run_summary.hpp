@@ -14,6 +14,7 @@
 #include "edged/dataset.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
+#include "edged/eval/time_offset.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/timing.hpp"
 #include "run/run_statistics.hpp"
@@ -27,13 +28,14 @@ struct LiveSummary {
   ShedCounters shed;             ///< by the queue before the packetizer
   std::size_t shed_packets = 0;  ///< by the packetizer, while the IMU stayed away
   QueuePeaks peaks;
+  double max_age_s = 0.0;  ///< that was allowed to wait
 };
 
 /// The results of --map and --save-map.
 struct MapSummary {
   std::string loaded;             ///< file; empty: none was given
   std::optional<double> found_s;  ///< from the first pose until relocalization in it
-  std::string saved;              ///< file; empty: not requested, or nothing to save
+  std::string saved;              ///< file; empty: not requested, or there is nothing to save
 };
 
 /// What became of the samples of a height or velocity sensor. The rest came before the first pose, while lost, or after
@@ -61,7 +63,9 @@ struct RunSummary {
   std::optional<Evaluation> evaluation;             ///< SE(3) on all poses; nothing without ground truth
   std::optional<Evaluation> final_evaluation;       ///< the same of the final trajectory, not causal
   std::optional<Consistency> consistency;           ///< nothing without ground truth
+  std::optional<TimeOffset> truth_offset;           ///< the same
   std::map<std::string, double> mpe_percent;        ///< per protocol P1..P4 that could be applied
+  std::vector<std::string> unwritten;               ///< outputs that could not be written, and why
 };
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their

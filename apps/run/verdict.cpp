@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "edged/core/angles.hpp"
+#include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/survey/run_check.hpp"
 #include "run/run_observer.hpp"
@@ -17,38 +18,10 @@
 namespace edged {
 namespace {
 
-/// One quoted word of a command line.
-std::string shell_word(const std::string& text) {
-  const bool plain =
-      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
-      std::string::npos;
-  if (plain && !text.empty()) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-std::string doctor_command(const SourceOptions& source) {
-  std::string command = "edged doctor " + shell_word(source.recording);
-  const auto add = [&command](const char* name, const std::string& value) {
-    if (!value.empty()) command += fmt::format(" {} {}", name, shell_word(value));
-  };
-  add("--rig", source.rig);
-  add("--calib", source.calib.string());
-  add("--imu", source.imu.string());
-  add("--geometry", source.geometry);
-  add("--time-unit", source.time_unit);
-  for (const std::string& topic : source.topics) add("--topic", topic);
-  if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
-  if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
-  if (source.duration_s) add("--duration", fmt::format("{}", *source.duration_s));
-  if (source.dim_frames) add("--dim-frames", fmt::format("{}", *source.dim_frames));
-  return command;
-}
-
 /// An estimate is a finding only if the calibration error exceeds the uncertainty of the estimate.
 void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
   constexpr double kSigmas = 3.0, kLeast_deg = 1.0, kLeast_ms = 5.0;  // smaller errors are harmless
+  constexpr double kMostLatency_ms = 15.0;
   const double shift_ms = c.time_offset_ms - c.given_offset_ms;
   const Severity severity = c.beyond ? Severity::Error : Severity::Warning;
   const std::string done = c.beyond ? "more than a run can correct" : "the run has corrected it";
@@ -63,7 +36,9 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
                    fmt::format("camera {}: its rotation to the IMU is {:.2f} deg +- {:.2f} deg off the calibration",
                                c.camera, c.rotation_deg, *c.rotation_sigma_deg),
                    done + "; calibrate camera and IMU anew"});
-  if (c.time_sigma_ms && std::abs(shift_ms) > std::max(kLeast_ms, kSigmas * *c.time_sigma_ms))
+  // In dim light the pixels of an event camera answer late: an estimate takes that for its clock, rightly.
+  const bool latency = c.events && shift_ms < 0.0 && shift_ms > -kMostLatency_ms;
+  if (c.time_sigma_ms && !latency && std::abs(shift_ms) > std::max(kLeast_ms, kSigmas * *c.time_sigma_ms))
     out.push_back({severity,
                    fmt::format("camera {}: t_imu = t_cam {:+.2f} ms +- {:.2f} ms was estimated, {:+.2f} ms is given",
                                c.camera, c.time_offset_ms, *c.time_sigma_ms, c.given_offset_ms),
@@ -118,6 +93,99 @@ void judge_external(const OdometryCounters& counters, std::vector<Finding>& out)
   }
 }
 
+/// Latency of the results, and the share of dropped events.
+void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<Finding>& out) {
+  constexpr double kSome = 0.1, kMost = 0.5, kLate = 4.0;
+  const double dropped =
+      run.events() > 0 || live.shed.events > 0
+          ? static_cast<double>(live.shed.events) / static_cast<double>(live.shed.events + run.events())
+          : 0.0;
+  const double late_s = live.latency.quantile_s(0.50);
+  const bool too_late = late_s > kLate * live.max_age_s;
+  if (dropped < kSome && !too_late) return;
+  out.push_back(
+      {dropped > kMost || too_late ? Severity::Error : Severity::Warning,
+       fmt::format("live: too slow for this recording: {:.0f} % of the events dropped, latency {:.2f} s "
+                   "(median; live.max_age_s {:g})",
+                   100 * dropped, late_s, live.max_age_s),
+       "lower packets.max_rate_hz or the number of features, choose another --mode, or use a faster computer"});
+}
+
+/// An offset between the stamps explains the other contradictions.
+void judge_against_truth(const RunSummary& s, std::vector<Finding>& out) {
+  constexpr double kMostOutside = 0.5, kGrossNees = 140.0;
+  if (s.truth_offset && s.truth_offset->matters()) {
+    const TimeOffset& offset = *s.truth_offset;
+    out.push_back(
+        {Severity::Warning,
+         fmt::format("ground truth: its stamps are {:.1f} ms {}: with that offset the ATE is {:.2f} mm, as given "
+                     "{:.2f} mm",
+                     1e3 * std::abs(offset.offset_s), offset.offset_s > 0 ? "late" : "early", 1e3 * offset.ate_rmse_m,
+                     1e3 * offset.ate_given_m),
+         fmt::format("add {:.4f} s to its stamps; `edged eval` takes the file as it is", -offset.offset_s)});
+  } else if (s.consistency && s.consistency->silent_s() > 0.0) {
+    const Consistency& c = *s.consistency;
+    const bool gross = c.silent_s() > kMostOutside * s.evaluation->duration_s ||
+                       std::max(c.position.max_nees, c.rotation.max_nees) > kGrossNees;
+    out.push_back(
+        {gross ? Severity::Error : Severity::Warning,
+         fmt::format("ground truth: the estimate is outside 3 sigma of its covariance for {:.1f} s", c.silent_s()),
+         "its errors are larger than its covariance: see `error since the start` in report.html"});
+  }
+}
+
+/// If the cameras start after the chosen piece, that is the only finding.
+void judge_no_start(const RunStatistics& statistics, const SourceOptions& source, Ending ending, Verdict& verdict) {
+  if (ending == Ending::Complete && statistics.visual_span_s() <= 0.0) {
+    if (const std::optional<double> start_s = cameras_start_after_s(source)) {
+      verdict.findings = {cameras_start_later(*start_s)};
+      verdict.contradicted = false;
+      SourceOptions later = source;
+      later.piece.from_s = later_start_s(*start_s);
+      later.piece.to_s.reset();
+      verdict.next = command_line("run", later);
+      verdict.waiting_for.clear();
+      return;
+    }
+  }
+  verdict.next = command_line("doctor", source);
+  const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
+                          : verdict.waiting_for.empty() ? "no start was tried"
+                                                        : "it waited for " + verdict.waiting_for;
+  verdict.findings.push_back(
+      {Severity::Error, "never good: " + why, "check recording and calibration: " + verdict.next});
+}
+
+std::string status_of(const RunStatistics& statistics, const Verdict& verdict, Ending ending) {
+  if (ending == Ending::BrokenOff) return "broken off";
+  if (ending == Ending::Interrupted) return "interrupted";
+  if (!statistics.first_good_s()) return "never good";
+  if (verdict.contradicted && is_tracking(statistics.last_status())) return "not to be trusted";
+  switch (statistics.last_status()) {
+    case TrackingStatus::Good:
+      return "good";
+    case TrackingStatus::Degraded:
+      return "degraded";
+    case TrackingStatus::Lost:
+      return "lost";
+    case TrackingStatus::Initializing:
+      return "lost, initializing again";
+  }
+  EDGED_CHECK(false, "status {}", static_cast<int>(statistics.last_status()));
+}
+
+std::string text_of(const RunSummary& s, Ending ending) {
+  const Verdict& verdict = s.verdict;
+  const auto error = std::ranges::find(verdict.findings, Severity::Error, &Finding::severity);
+  if (ending == Ending::BrokenOff) return "an error ended the run; the results up to then are complete";
+  if (ending == Ending::Interrupted) return "the run was interrupted; the results up to then are complete";
+  if (verdict.contradicted) return "the result is not to be trusted: " + error->text;
+  if (!verdict.trusted) return error->text.starts_with(s.status) ? error->text : s.status + ": " + error->text;
+  if (s.status != "good") return "nothing contradicts the result, but it ends " + s.status;
+  if (verdict.findings.empty()) return "nothing contradicts the result";
+  return "nothing contradicts the result, but note: " + verdict.findings.front().text;
+}
+
 /// Contradictions are reported as soon as they are known, so that the user can stop the run.
 class RunJudge : public RunObserver {
  public:
@@ -133,9 +201,11 @@ class RunJudge : public RunObserver {
     RunSummary& summary = end.summary;
     summary.calibration =
         compare_calibrations(run_.source.calibration.rig, run_.odometry, run_.config.odometry.estimator.calibration);
-    std::vector<Finding> findings = check_.findings(*run_.source.dataset, end.truth);
-    judge_external(run_.odometry.counters(), findings);
-    summary.verdict = judge_run(std::move(findings), run_.statistics, summary.calibration, run_.options.source);
+    for (Finding& finding : check_.findings(*run_.source.dataset, end.truth))
+      summary.verdict.findings.push_back(std::move(finding));
+    judge_external(run_.odometry.counters(), summary.verdict.findings);
+    for (CalibrationFound& found : summary.calibration)
+      found.beyond = found.beyond && !check_.agrees_with(run_.odometry.rig().camera(found.camera));
   }
 
  private:
@@ -161,6 +231,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
                            std::nullopt};
     found.beyond = found.rotation_deg > kBeyond * config.rotation_sigma_deg ||
                    std::abs(found.time_offset_ms - found.given_offset_ms) > kBeyond * config.time_offset_sigma_ms;
+    found.events = camera.modality == Modality::Events;
     if (const auto P = odometry.calibration_covariance(camera.name)) {
       const Eigen::Matrix3d rotation = P->topLeftCorner<3, 3>();
       // Of the estimated angle; if that is zero, of the least certain axis.
@@ -187,29 +258,26 @@ Calibration with_found(Calibration given, const Rig& found) {
   return given;
 }
 
-Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics,
-                  const std::vector<CalibrationFound>& calibration, const SourceOptions& source) {
-  Verdict verdict;
-  verdict.findings = std::move(findings);
-  for (const CalibrationFound& found : calibration) judge_calibration(found, verdict.findings);
+void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
+  Verdict& verdict = s.verdict;
+  const RunStatistics& statistics = s.statistics;
   const bool ever_good = statistics.first_good_s().has_value();
+  for (const CalibrationFound& found : s.calibration) judge_calibration(found, verdict.findings);
   if (ever_good) {
     judge_losses(statistics, verdict.findings);
     judge_biases(statistics, verdict.findings);
   }
-  verdict.contradicted = std::ranges::count(verdict.findings, Severity::Error, &Finding::severity) > 0;
-  verdict.trusted = ever_good && !verdict.contradicted;
+  if (s.live) judge_live(*s.live, statistics, verdict.findings);
+  judge_against_truth(s, verdict.findings);
   const bool lost = statistics.last_status() == TrackingStatus::Lost;
   if (!ever_good || lost) verdict.waiting_for = statistics.waiting_for();
-  if (!verdict.trusted) verdict.next = doctor_command(source);
-  if (!ever_good) {
-    const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
-                            : verdict.waiting_for.empty() ? "no start was tried"
-                                                          : "it waited for " + verdict.waiting_for;
-    verdict.findings.push_back(
-        {Severity::Error, "never good: " + why, "check recording and calibration: " + verdict.next});
-  }
-  return verdict;
+  verdict.contradicted = std::ranges::count(verdict.findings, Severity::Error, &Finding::severity) > 0;
+  if (!ever_good) judge_no_start(statistics, source, ending, verdict);
+  verdict.trusted = ever_good && !verdict.contradicted;
+  if (verdict.next.empty())
+    verdict.next = verdict.trusted ? fmt::format("open {}/report.html", s.folder) : command_line("doctor", source);
+  s.status = status_of(statistics, verdict, ending);
+  verdict.text = text_of(s, ending);
 }
 
 std::unique_ptr<RunObserver> observe_verdict(RunContext& run) { return std::make_unique<RunJudge>(run); }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The verdict on the result of a run, without ground truth.
+// The verdict on the result of a run. Terminal, page, picture, metrics.json and exit code share it.
 #pragma once
 
 #include <string>
@@ -24,14 +24,22 @@ Calibration with_found(Calibration given, const Rig& found);
 
 struct Verdict {
   std::vector<Finding> findings;  ///< warnings and errors
-  bool contradicted = false;      ///< by recording, calibration or the estimate itself
+  bool contradicted = false;      ///< by recording, calibration, the estimate itself, or ground truth
   bool trusted = true;            ///< not contradicted, and there is a result
+  std::string text;               ///< in one line, the same wherever it is shown
   std::string waiting_for;        ///< never good, or lost at the end: the last reason
-  std::string next;               ///< the command to run then; may be empty
+  std::string next;               ///< the next step: a command, or the page to open
+
+  /// Without any finding.
+  bool plain() const { return trusted && findings.empty(); }
 };
 
-/// findings: of recording and calibration.
-Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics,
-                  const std::vector<CalibrationFound>& calibration, const SourceOptions& source);
+enum class Ending { Complete, Interrupted, BrokenOff };
+
+struct RunSummary;
+
+/// Sets status and verdict by all that the summary holds: the findings so far (of recording and map), the estimate, and
+/// how it compares with ground truth. Once, when nothing more will be known.
+void judge_run(RunSummary& summary, const SourceOptions& source, Ending ending);
 
 }  // namespace edged

@@ -101,7 +101,7 @@ async function showReport(say, metrics) {
     buildPage(JSON.parse(page.getElementById('data').textContent));
     document.getElementById('footer').textContent += ' The run is over; this page stays, and lies in ' + metrics.folder + '/report.html.';
   } catch (error) {
-    say('It is over (' + metrics.status + '); its report lies in ' + metrics.folder + '/report.html.', (kSays[metrics.status] || ['', 'degraded'])[1]);
+    say(metrics.verdict + '; the report lies in ' + metrics.folder + '/report.html.', inkOf(metrics));
   }
 }
 

@@ -7,16 +7,8 @@ let report = null, runs = [], time = null, space = null;
 const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false, kept: false, links: true};
 const kLinkedAfter_s = 5;  // matches of younger keyframes are no return to an earlier place
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
-const kSays = {
-  'good': ['It worked: there is a pose to the end, and nothing contradicts it.', 'good'],
-  'degraded': ['It got to the end, but its last poses are less certain.', 'degraded'],
-  'not to be trusted': ['There is a path to the end, but it is not to be trusted.', 'lost'],
-  'lost': ['Tracking was lost, and did not recover.', 'lost'],
-  'lost, initializing again': ['Tracking was lost, and was starting again at the end.', 'lost'],
-  'never good': ['There never was a good pose.', 'lost'],
-  'interrupted': ['It was interrupted; all up to then is here.', 'degraded'],
-  'broken off': ['An error ended it; all up to then is here.', 'lost'],
-};
+/** The colour of a verdict. */
+const inkOf = m => m.status === 'good' && !(m.findings || []).length ? 'good' : m.trusted || m.status === 'interrupted' ? 'degraded' : 'lost';
 
 /** An element with text or children; null children are left out. */
 function make(tag, attributes, ...children) {
@@ -101,7 +93,7 @@ function verdictCard(run, i) {
   const m = run.metrics;
   const [says, ink] = run.is_file ? ['A trajectory file of another program.', 'initializing']
     : !m ? ['It ended before it could write its numbers; what it wrote until then is here.', 'lost']
-    : kSays[m.status] || [m.status, 'degraded'];
+    : [m.verdict || m.status, inkOf(m)];
   const card = make('article', {class: 'card verdict'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), fullName(run)),
                     make('p', {class: 'says'}, says));
   card.style.setProperty('--verdict', 'var(--' + ink + ')');

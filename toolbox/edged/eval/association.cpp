@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/eval/association.hpp"
 
+#include <algorithm>
+
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -16,32 +18,51 @@ void require_ascending(const Trajectory& trajectory, const char* what) {
   }
 }
 
-SE3 between(const StampedPose& before, const StampedPose& after, Timestamp t) {
+std::size_t count_outside(const Trajectory& truth, const Trajectory& estimate) {
+  return static_cast<std::size_t>(std::ranges::count_if(estimate, [&truth](const StampedPose& pose) {
+    return truth.empty() || pose.t < truth.front().t || pose.t > truth.back().t;
+  }));
+}
+
+}  // namespace
+
+Duration typical_step(const Trajectory& trajectory) {
+  std::vector<Duration> steps;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) steps.push_back(trajectory[i].t - trajectory[i - 1].t);
+  if (steps.empty()) return Duration::max();
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+  std::ranges::nth_element(steps, middle);
+  return *middle;
+}
+
+SE3 interpolated(const StampedPose& before, const StampedPose& after, Timestamp t) {
   const double span = to_seconds(after.t - before.t);
   const double a = span > 0.0 ? to_seconds(t - before.t) / span : 0.0;
   return {before.T.rotation().slerp(a, after.T.rotation()),
           (1.0 - a) * before.T.translation() + a * after.T.translation()};
 }
 
-}  // namespace
-
 Association associate(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
   require_ascending(truth, "ground truth");
   require_ascending(estimate, "estimate");
   Association result;
-  result.pairs.reserve(estimate.size());
-  if (!truth.empty()) result.truth_begin = truth.front().t;
-  std::size_t after = 0;  // first true pose at or after the estimate's stamp
-  for (const StampedPose& pose : estimate) {
-    while (after < truth.size() && truth[after].t < pose.t) ++after;
-    if (after == truth.size() || (after == 0 && truth[0].t != pose.t)) {
-      ++result.outside;
-    } else if (truth[after].t == pose.t) {
-      result.pairs.push_back({pose.t, truth[after].T, pose.T});
-    } else if (truth[after].t - truth[after - 1].t > max_gap) {
+  result.outside = count_outside(truth, estimate);
+  if (!estimate.empty()) result.estimate_begin = estimate.front().t;
+  const bool truth_is_denser = typical_step(truth) <= typical_step(estimate);
+  const Trajectory& dense = truth_is_denser ? truth : estimate;
+  const auto add = [&](const StampedPose& pose, const SE3& T) {
+    result.pairs.push_back({pose.t, truth_is_denser ? T : pose.T, truth_is_denser ? pose.T : T});
+  };
+  std::size_t after = 0;  // first pose of the denser one at or after the stamp
+  for (const StampedPose& pose : truth_is_denser ? estimate : truth) {
+    while (after < dense.size() && dense[after].t < pose.t) ++after;
+    if (after == dense.size()) break;
+    if (dense[after].t == pose.t) {
+      add(pose, dense[after].T);
+    } else if (after > 0 && dense[after].t - dense[after - 1].t > max_gap) {
       ++result.in_gaps;
-    } else {
-      result.pairs.push_back({pose.t, between(truth[after - 1], truth[after], pose.t), pose.T});
+    } else if (after > 0) {
+      add(pose, interpolated(dense[after - 1], dense[after], pose.t));
     }
   }
   return result;
@@ -53,7 +74,7 @@ Association associate_by_index(const Trajectory& truth, const Trajectory& estima
                              truth.size(), estimate.size());
   }
   Association result;
-  if (!truth.empty()) result.truth_begin = truth.front().t;
+  if (!estimate.empty()) result.estimate_begin = estimate.front().t;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     result.pairs.push_back({truth[i].t, truth[i].T, estimate[i].T});
   }

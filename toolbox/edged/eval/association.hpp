@@ -21,15 +21,21 @@ struct PosePair {
 struct Association {
   std::vector<PosePair> pairs;  ///< in time order
   std::size_t outside = 0;      ///< estimates before the first or after the last true pose
-  std::size_t in_gaps = 0;      ///< estimates where neighbouring true poses are too far apart
-  Timestamp truth_begin{};      ///< of the first true pose
+  std::size_t in_gaps = 0;      ///< poses of the sparser where the neighbours in the denser are too far apart
+  Timestamp estimate_begin{};   ///< of the first estimated pose
 };
 
 /// No interpolation between true poses further apart than this [s].
 constexpr double kDefaultMaxGap_s = 0.2;
 
-/// The truth at the estimate's stamps: position linear, rotation slerp between the two neighbours in time.
-/// Both trajectories must be in ascending time order, else InputError.
+/// Median time between neighbours; Duration::max() where there are none.
+Duration typical_step(const Trajectory& trajectory);
+
+/// The pose at t: position linear, rotation slerp.
+SE3 interpolated(const StampedPose& before, const StampedPose& after, Timestamp t);
+
+/// Both at the stamps of the sparser one, for which the denser one is interpolated: between poses that are far apart a
+/// motion is no line. Both trajectories must be in ascending time order, else InputError.
 Association associate(const Trajectory& truth, const Trajectory& estimate,
                       Duration max_gap = duration_from_seconds(kDefaultMaxGap_s));
 

@@ -41,6 +41,29 @@ TEST(Association, DoesNotBridgeAGapInTheTruth) {
   EXPECT_EQ(associate(truth, estimate, duration_from_seconds(1.0)).pairs.size(), 3u);
 }
 
+TEST(Association, InterpolatesTheEstimateWhereTheTruthIsSparser) {
+  const Trajectory motion = winding_motion(20.0, 100.0);
+  for (const std::size_t stride : {100U, 50U, 20U, 3U}) {  // 1, 2, 5, 33 Hz
+    Trajectory truth, estimate;
+    for (std::size_t i = 0; i < motion.size(); i += stride) truth.push_back(motion[i]);
+    for (std::size_t i = 1; i < motion.size(); i += 2) estimate.push_back(motion[i]);  // 50 Hz, between these
+    const Association result = associate(truth, estimate);
+    EXPECT_GE(result.pairs.size() + 2, truth.size()) << stride;
+    for (const PosePair& pair : result.pairs)
+      EXPECT_LT((pair.truth.translation() - pair.estimate.translation()).norm(), 2e-4) << stride;
+  }
+}
+
+TEST(Association, DoesNotBridgeAGapInTheEstimate) {
+  const Trajectory truth = {pose(1.0, 0), pose(2.0, 0), pose(3.0, 0), pose(4.0, 0)};
+  Trajectory estimate;
+  for (int i = 0; i <= 300; ++i)
+    if (i < 50 || i > 150) estimate.push_back(pose(1.0 + 0.01 * i, 0));
+  const Association result = associate(truth, estimate);
+  EXPECT_EQ(result.pairs.size(), 3u);
+  EXPECT_EQ(result.in_gaps, 1u);
+}
+
 TEST(Association, SurvivesRepeatedStampsAndEmptyTrajectories) {
   const Trajectory truth = {pose(1.0, 0), pose(1.0, 1), pose(1.1, 2)};
   EXPECT_EQ(associate(truth, {pose(1.0, 0), pose(1.05, 0)}).pairs.size(), 2u);

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "edged/eval/association.hpp"
@@ -31,10 +32,10 @@ struct Anchor {
   Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the sample, in the true W [m^2]
   double yaw = 0.0;                                    ///< its variance about z [rad^2]
 
-  Anchor(const SE3& true_pose, const PoseCovarianceSample& sample)
-      : T_Wtrue_W(gauge(true_pose, sample.T_W_B)), truth(true_pose) {
+  Anchor(const PosePair& pair, const PoseCovarianceSample& sample)
+      : T_Wtrue_W(gauge(pair.truth, pair.estimate)), truth(pair.truth) {
     position = T_Wtrue_W.R() * sample.position * T_Wtrue_W.R().transpose();
-    const Eigen::Vector3d up_B = sample.T_W_B.R().row(2);
+    const Eigen::Vector3d up_B = pair.estimate.R().row(2);
     yaw = up_B.dot(sample.rotation * up_B);
   }
   /// Its part in the covariance of a position.
@@ -118,11 +119,12 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCov
   int start = 0;
   auto sample = samples.begin();
   for (const PosePair& pair : associate(truth, estimate).pairs) {
-    while (sample->t != pair.t) ++sample;
+    while (sample->t < pair.t) ++sample;  // where the truth is sparser, the first one after its stamp
+    if (sample->t != pair.t && sample->start != std::prev(sample)->start) continue;
     if (anchor && sample->start != start) anchor.reset(), silent.end();
     if (!anchor) {
       if (!sample->good) continue;
-      anchor.emplace(pair.truth, *sample);
+      anchor.emplace(pair, *sample);
       start = sample->start;
       ++result.starts;
     }

@@ -55,6 +55,10 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
   return json;
 }
 
+nlohmann::ordered_json to_json(const TimeOffset& offset) {
+  return {{"offset_s", offset.offset_s}, {"ate_rmse_m", offset.ate_rmse_m}, {"matters", offset.matters()}};
+}
+
 nlohmann::ordered_json to_json(const Consistency& c) {
   nlohmann::ordered_json json = {{"poses", c.poses},
                                  {"starts", c.starts},

@@ -7,11 +7,13 @@
 
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
+#include "edged/eval/time_offset.hpp"
 
 namespace edged {
 
 /// NaN (no window, no motion) becomes null when it is printed.
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
 nlohmann::ordered_json to_json(const Consistency& consistency);
+nlohmann::ordered_json to_json(const TimeOffset& offset);
 
 }  // namespace edged

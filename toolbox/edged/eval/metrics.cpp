@@ -132,7 +132,7 @@ LocalError local_error(const Association& association, double window_s) {
   const auto before = [](const PosePair& pair, Timestamp t) { return pair.t < t; };
   double sum = 0.0;
   auto first = pairs.begin();
-  for (Timestamp t = std::max(pairs.front().t, association.truth_begin + duration_from_seconds(kLocalAfter_s));
+  for (Timestamp t = std::max(pairs.front().t, association.estimate_begin + duration_from_seconds(kLocalAfter_s));
        t + length < pairs.back().t; t += step) {
     first = std::lower_bound(first, pairs.end(), t, before);
     const auto last = std::lower_bound(first, pairs.end(), t + length, before);
@@ -149,8 +149,8 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
                     std::span<const double> local_windows_s) {
   if (association.pairs.empty()) {
     throw InputError::format(
-        "no estimated pose has ground truth ({} outside its time span, {} in its gaps); do the "
-        "stamps share one clock?",
+        "no estimated pose has ground truth ({} outside its time span, {} where neighbours are too far apart to "
+        "interpolate); do the stamps share one clock? A longer --max-gap bridges gaps",
         association.outside, association.in_gaps);
   }
   Evaluation result;

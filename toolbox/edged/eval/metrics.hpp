@@ -54,8 +54,8 @@ struct LocalError {
 constexpr std::array<double, 3> kLocalWindows_s = {1.0, 3.0, 10.0};
 
 /// RMS over all windows [s, s + window_s), a quarter of a window apart, of the RMS position error after SE(3) alignment
-/// of the window alone. The first begins 4 s after the first true pose (or with the first pair, if that is later), the
-/// last ends before the last pair. Windows of 10 pairs or fewer do not count.
+/// of the window alone. The first begins 4 s after the first estimated pose (or with the first pair, if that is later),
+/// the last ends before the last pair. Windows of 10 pairs or fewer do not count.
 LocalError local_error(const Association& association, double window_s);
 
 struct Evaluation {

@@ -20,6 +20,7 @@ struct CalibrationFound {
   bool beyond = false;  ///< farther off than the priors estimator.calibration.*: wrong, and not corrected
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of the estimate; nothing without one
   bool inverse = false;                                     ///< the estimate is the inverse of the given rotation
+  bool events = false;                                      ///< its pixels have a latency, which is part of its clock
 
   bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }
 };

@@ -181,7 +181,8 @@ void judge_frames(const Survey& s, Findings& out) {
 }
 
 void judge_shift(const CameraCheck& check, Findings& out) {
-  // In dim light events are delayed by milliseconds relative to good light.
+  // In dim light the events are delayed by milliseconds relative to good light: no error of the clock.
+  constexpr double kDetermined_ms = 2.5;
   const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
@@ -195,6 +196,9 @@ void judge_shift(const CameraCheck& check, Findings& out) {
              "check the clocks of camera and IMU");
   else if (std::abs(shift - given) > std::max(least_ms, kSigmas * sigma))
     out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
+  else if (sigma > kDetermined_ms)
+    out.note(fmt::format("camera {}: its time offset cannot be determined by its turning (+- {:.1f} ms)",
+                         check.camera.name, sigma));
   else
     out.good(text);
 }
@@ -223,7 +227,8 @@ RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found)
   const auto axis = unknown_axis(found);
   const Eigen::AngleAxisd turn(axis ? Eigen::Quaterniond::FromTwoVectors(*axis, off * *axis) : Eigen::Quaterniond(off));
   RotationError error{turn.angle() * turn.axis(), turn.angle() * kDegreesPerRadian, 0.0, 0.0};
-  const Eigen::Matrix3d& measured = found.rotation_covariance;
+  const Eigen::Matrix3d measured =
+      found.rotation_covariance + found.common_error * found.common_error * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d whole =
       measured + std::pow(kSystematic_deg / kDegreesPerRadian, 2) * Eigen::Matrix3d::Identity();
   error.sigma_deg = std::sqrt(turn.axis().dot(measured * turn.axis())) * kDegreesPerRadian;
@@ -240,6 +245,7 @@ bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, cons
 
 void judge_rotation(const CameraCheck& check, Findings& out) {
   constexpr double kWrong_deg = 8.0;  // online calibration corrects less than this, at a cost
+  constexpr double kDetermined_deg = 1.5;
   const GyroAgreement& found = *check.agreement;
   const std::string name = "camera " + check.camera.name;
   const auto axis = unknown_axis(found);
@@ -251,10 +257,10 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
   const Eigen::Matrix3d given = check.camera.T_B_C.rotation().toRotationMatrix();
   const RotationError error = error_of(given, found);
   const std::string number = fmt::format("{:.1f} deg +- {:.1f} deg", error.degrees, error.sigma_deg);
-  if (error.unclear())
-    return out.note(
-        fmt::format("{}: its rotation differs from the gyro's by {}: too uncertain for a verdict", name, number),
-        "turn the sensor about all axes before a scene with texture");
+  if (error.unclear() || (error.right() && error.sigma_deg > kDetermined_deg))
+    return out.note(fmt::format("{}: its rotation to the IMU cannot be determined from this motion (+- {:.1f} deg)",
+                                name, error.sigma_deg),
+                    "turn the sensor about all axes before a scene with texture");
   if (error.right()) return out.good(fmt::format("{}: its rotation agrees with the gyro to {}", name, number));
   const Eigen::Vector3d about = error.turn.normalized();
   const std::string remedy = fmt::format(
@@ -290,15 +296,19 @@ void judge_scale(const CameraCheck& check, Findings& out) {
 /// With too few or too blurred corners the rotation is underestimated. (Correct calibrations: frames within 1.5 %,
 /// events within 1.6 %, but up to 33 % where 12 % or more stay unexplained.)
 void judge_gyro_scale(const CameraCheck& check, Findings& out) {
-  constexpr double kLeast = 0.04, kUnexplained = 0.1;
+  constexpr double kLeast = 0.04, kUnexplained = 0.1, kDetermined = 0.015;
   const GyroAgreement& found = *check.agreement;
   if (found.scale_sigma <= 0.0 || found.scale_unexplained > kUnexplained) return;
+  const double sigma = std::hypot(found.scale_sigma, found.scale_unexplained / 10);  // of common errors, as above
   const double off = found.gyro_scale - 1.0;
-  const std::string number = fmt::format("{:.1f} % +- {:.1f} %", 100 * std::abs(off), 100 * found.scale_sigma);
-  if (std::abs(off) > std::max(kLeast, kSigmas * found.scale_sigma))
+  const std::string number = fmt::format("{:.1f} % +- {:.1f} %", 100 * std::abs(off), 100 * sigma);
+  if (std::abs(off) > std::max(kLeast, kSigmas * sigma))
     out.warn(fmt::format("camera {}: the gyro reads {} too {} by its turning", check.camera.name, number,
                          off > 0 ? "much" : "little"),
              fmt::format("divide the gyro by {:.3f}; or the focal length is wrong by as much", found.gyro_scale));
+  else if (sigma > kDetermined)
+    out.note(fmt::format("camera {}: the gyro's scale cannot be determined by it (+- {:.1f} %)", check.camera.name,
+                         100 * sigma));
   else
     out.good(fmt::format("camera {}: the gyro's scale agrees with it to {}", check.camera.name, number));
 }

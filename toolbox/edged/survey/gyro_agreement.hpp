@@ -22,9 +22,11 @@ struct GyroAgreement {
   double rotation_sigma = 0.0;  ///< of the least certain axis [rad]; large if it rotated about one axis only
   /// Of R_B_C * Exp(error), from the scatter of the estimates from parts of the recording [rad^2].
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  bool mirrored = false;           ///< fits only after its turns are negated: axes of the gyro have the wrong sign
-  double gyro_scale = 1.0;         ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
-  double scale_sigma = 0.0;        ///< 0: only units can be determined
+  double common_error =
+      0.0;                   ///< of the rotation: an error shared by all parts, which their scatter does not show [rad]
+  bool mirrored = false;     ///< fits only after its turns are negated: axes of the gyro have the wrong sign
+  double gyro_scale = 1.0;   ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+  double scale_sigma = 0.0;  ///< 0: only units can be determined
   double scale_unexplained = 1.0;  ///< as unexplained, with that scale
   AccelAgreement accel;            ///< of the accelerometer on the same turns
 };

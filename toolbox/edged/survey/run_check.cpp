@@ -210,6 +210,17 @@ std::vector<Finding> RunCheck::news() {
   return fresh;
 }
 
+bool RunCheck::agrees_with(const RigCamera& estimated) const {
+  constexpr double kLeast = 1.5 * kDegree, kSureOf = 2.0 * kDegree, kSigmas = 3.0;
+  return std::ranges::any_of(cameras_, [&](const Camera& camera) {
+    const bool behind_its_lens = camera.given.name == estimated.name || is_same_lens(camera.given, estimated);
+    if (!behind_its_lens || !agrees(camera.agreement) || camera.agreement->mirrored) return false;
+    const double sigma = camera.agreement->rotation_sigma;
+    const double off = Eigen::AngleAxisd(estimated.T_B_C.R().transpose() * camera.agreement->R_B_C).angle();
+    return sigma < kSureOf && off < std::max(kLeast, kSigmas * sigma);
+  });
+}
+
 std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
   for (Camera& camera : cameras_) {
     if (!camera.done && !camera.waits && camera.turning >= least_turning(camera.given)) compare(camera);

@@ -29,6 +29,9 @@ class RunCheck {
   /// Warnings and errors from all measurements; after the last one. truth: that of the dataset.
   std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth);
 
+  /// Whether by the gyro, too, the camera is mounted as this one, which the run has estimated. After findings().
+  bool agrees_with(const RigCamera& estimated) const;
+
  private:
   struct Camera {
     RigCamera given;

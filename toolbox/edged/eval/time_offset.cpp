@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/time_offset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "edged/eval/alignment.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kMost_s = 0.5, kCoarse_s = 0.02;  // within a step, motion is nearly steady
+constexpr std::size_t kMostPoses = 2000;
+
+/// The ATE with that offset, infinite where too few of the poses that have a truth without it still do.
+class Errors {
+ public:
+  Errors(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) : truth_(truth), max_gap_(max_gap) {
+    const bool thin = typical_step(truth) <= typical_step(estimate);
+    const std::size_t stride = thin ? estimate.size() / kMostPoses + 1 : 1;
+    for (std::size_t i = 0; i < estimate.size(); i += stride) estimate_.push_back(estimate[i]);
+    fewest_ = static_cast<std::size_t>(kFewest * static_cast<double>(pairs_at(0.0).size()));
+  }
+
+  double operator()(double offset_s) const {
+    const std::vector<PosePair> pairs = pairs_at(offset_s);
+    if (pairs.size() < std::max<std::size_t>(3, fewest_)) return std::numeric_limits<double>::infinity();
+    const Similarity alignment = align_rigidly(pairs);
+    double sum = 0.0;
+    for (const PosePair& pair : pairs)
+      sum += (pair.truth.translation() - alignment * pair.estimate.translation()).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(pairs.size()));
+  }
+
+ private:
+  static constexpr double kFewest = 0.8;
+
+  std::vector<PosePair> pairs_at(double offset_s) const {
+    Trajectory shifted = estimate_;
+    for (StampedPose& pose : shifted) pose.t += duration_from_seconds(offset_s);
+    return associate(truth_, shifted, max_gap_).pairs;
+  }
+
+  const Trajectory& truth_;
+  Duration max_gap_;
+  Trajectory estimate_;
+  std::size_t fewest_ = 0;
+};
+
+}  // namespace
+
+bool TimeOffset::matters() const {
+  constexpr double kLeast_s = 0.005, kClearlyLess = 0.7;
+  return std::abs(offset_s) > kLeast_s && ate_rmse_m < kClearlyLess * ate_given_m;
+}
+
+TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
+  const Errors error(truth, estimate, max_gap);
+  const double given = error(0.0);
+  if (!std::isfinite(given)) return {};
+  TimeOffset best{0.0, given, given};
+  const auto consider = [&](double offset_s) {
+    const double ate_m = error(offset_s);
+    if (ate_m < best.ate_rmse_m) best.offset_s = offset_s, best.ate_rmse_m = ate_m;
+  };
+  for (double offset_s = -kMost_s; offset_s <= kMost_s; offset_s += kCoarse_s) consider(offset_s);
+  for (double step_s = kCoarse_s / 2; step_s > 1e-4; step_s /= 2) {
+    const double middle_s = best.offset_s;
+    for (const double sign : {-1.0, 1.0}) consider(middle_s + sign * step_s);
+  }
+  return best;
+}
+
+}  // namespace edged

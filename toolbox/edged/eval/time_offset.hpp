@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Whether the stamps of estimate and ground truth differ by a constant.
+#pragma once
+
+#include "edged/eval/association.hpp"
+
+namespace edged {
+
+struct TimeOffset {
+  double offset_s = 0.0;     ///< that fits best: t_truth = t_estimate + offset
+  double ate_rmse_m = 0.0;   ///< with it, after SE(3) alignment
+  double ate_given_m = 0.0;  ///< without it
+
+  /// Whether the stamps are what is wrong: by milliseconds any estimate fits better somewhere else.
+  bool matters() const;
+};
+
+/// Offsets of up to half a second are tried. Zeros where nothing can be compared.
+TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate,
+                           Duration max_gap = duration_from_seconds(kDefaultMaxGap_s));
+
+}  // namespace edged

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/eval/time_offset.hpp"
+
+#include <gtest/gtest.h>
+
+#include "edged/eval/test_trajectories.hpp"
+
+namespace edged {
+namespace {
+
+TEST(TimeOffset, IsFoundAtAnyRateOfTheTruth) {
+  const Trajectory estimate = winding_motion(20.0, 30.0);
+  for (const double rate_hz : {100.0, 20.0, 2.0}) {
+    Trajectory truth = winding_motion(22.0, rate_hz);
+    for (StampedPose& pose : truth) pose.t += duration_from_seconds(0.05);  // late
+    const TimeOffset found = fit_time_offset(truth, estimate);
+    EXPECT_NEAR(found.offset_s, 0.05, 5e-4) << rate_hz;
+    EXPECT_LT(found.ate_rmse_m, 1e-3) << rate_hz;
+    EXPECT_GT(found.ate_given_m, 0.01) << rate_hz;
+    EXPECT_TRUE(found.matters());
+  }
+}
+
+TEST(TimeOffset, OfATruthOnTheSameClockDoesNotMatter) {
+  const Trajectory motion = winding_motion(20.0, 50.0);
+  EXPECT_NEAR(fit_time_offset(motion, motion).offset_s, 0.0, 1e-3);
+  EXPECT_FALSE(fit_time_offset(motion, motion).matters());
+  EXPECT_FALSE(fit_time_offset(motion, scaled(1.2, motion)).matters());  // another kind of error
+  EXPECT_FALSE(fit_time_offset({}, motion).matters());
+}
+
+}  // namespace
+}  // namespace edged
