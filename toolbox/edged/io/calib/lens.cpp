@@ -6,51 +6,13 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/io/distortion.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
 constexpr double kMaxPixels = 65535;
-
-struct Distortion {
-  DistortionModel model = DistortionModel::None;
-  std::array<double, 5> k{};
-};
-
-bool only_zeros(const std::vector<double>& k, std::size_t from) {
-  return std::all_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(from, k.size())), k.end(),
-                     [](double x) { return x == 0.0; });
-}
-
-Distortion make_distortion(const YamlReader& place, const Intrinsics& in) {
-  const std::string name = lower_case(in.distortion);
-  const auto is_one_of = [&name](std::initializer_list<std::string_view> names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  Distortion out;
-  std::size_t most = 0;
-  if (is_one_of({"none", "no", ""})) {
-  } else if (is_one_of({"radtan", "radial-tangential", "radialtangential", "plumb_bob"})) {
-    out.model = DistortionModel::RadTan, most = 5;
-    if (in.coefficients.size() < 4) place.fail("radtan takes 4 or 5 numbers: k1 k2 p1 p2 [k3]");
-  } else if (is_one_of({"rational_polynomial", "rational"})) {
-    out.model = DistortionModel::RadTan, most = 5;
-    if (in.coefficients.size() < 5) place.fail("a rational polynomial takes 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
-    if (!only_zeros(in.coefficients, most))
-      place.fail("a rational polynomial with k4 to k6 is not supported: calibrate with plumb_bob or equidistant");
-  } else if (is_one_of({"equidistant", "fisheye", "kannala_brandt", "kb4"})) {
-    out.model = DistortionModel::Equidistant, most = 4;
-    if (in.coefficients.size() < 4) place.fail("equidistant takes 4 numbers: k1 k2 k3 k4");
-  } else {
-    place.fail("distortion " + name + " is not supported; radtan, equidistant and none are");
-  }
-  if (!only_zeros(in.coefficients, most))
-    place.fail(fmt::format("distortion {} has {} coefficients, here are {}", name.empty() ? "none" : name, most,
-                           in.coefficients.size()));
-  std::copy_n(in.coefficients.begin(), std::min(most, in.coefficients.size()), out.k.begin());
-  return out;
-}
 
 bool has_any(const std::string& text, std::initializer_list<std::string_view> words) {
   return std::any_of(words.begin(), words.end(), [&text](auto w) { return text.find(w) != std::string::npos; });
@@ -99,8 +61,8 @@ CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
       !(in.height <= kMaxPixels) || !(in.width >= 1) || !(in.height >= 1))
     place.fail(fmt::format("image size {} x {}: must be whole pixels, from 1 to {}", in.width, in.height, kMaxPixels));
   if (in.projection.size() != 4) place.fail("intrinsics must be [fx, fy, cx, cy]");
-  const Distortion distortion = make_distortion(place, in);
   try {
+    const Distortion distortion = make_distortion(in.distortion, in.coefficients);
     const auto& f = in.projection;
     return CameraModel(static_cast<int>(in.width), static_cast<int>(in.height), f[0], f[1], f[2], f[3],
                        distortion.model, distortion.k);
@@ -118,8 +80,9 @@ CameraModel read_model(const YamlReader& camera, const std::string& distortion_k
   const std::vector<double> size = resolution.numbers();
   if (size.size() != 2) resolution.fail("must be [width, height]");
   const std::string distortion = camera.text_or(distortion_key, "none");
+  const auto coefficients = distortion == "none" ? camera.find(coefficients_key) : camera.at(coefficients_key);
   return make_model(intrinsics, {size[0], size[1], intrinsics.numbers(), distortion,
-                                 distortion == "none" ? std::vector<double>{} : camera.at(coefficients_key).numbers()});
+                                 coefficients ? coefficients->numbers() : std::vector<double>{}});
 }
 
 std::optional<Sees> parse_sees(std::string_view text) {

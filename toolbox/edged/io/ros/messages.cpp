@@ -12,6 +12,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/io/distortion.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -172,20 +173,13 @@ CameraModel read_camera_info(WireReader message) try {
   const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
   if (width > kLargestSide || height > kLargestSide) throw Damage("no size of an image");
   const std::string name(message.text());
-  const bool equidistant = name == "equidistant" || name == "fisheye";
-  const bool radial = name == "plumb_bob" || name == "rational_polynomial" || name.empty();
-  const std::size_t known = equidistant ? 4 : 5;
-  std::array<double, 5> coefficients{};
-  for (std::size_t i = 0, count = message.list(sizeof(double)); i < count; ++i) {
-    const auto k = message.number<double>();
-    if (i < known) coefficients[i] = k;
-    if (k != 0.0 && (i >= known || !(equidistant || radial)))
-      throw Damage("distortion `" + name + "` with such coefficients is not supported");
-  }
+  std::vector<double> coefficients(message.list(sizeof(double)));
+  for (double& k : coefficients) k = message.number<double>();
   const Eigen::Matrix<double, 9, 1> K = message.vector<9>();
   if (K[0] == 0.0) throw Damage("not calibrated");
-  return CameraModel(static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5],
-                     equidistant ? DistortionModel::Equidistant : DistortionModel::RadTan, coefficients);
+  const Distortion distortion = make_distortion(name.empty() ? "plumb_bob" : name, coefficients);
+  return CameraModel(static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5], distortion.model,
+                     distortion.k);
 } catch (const InputError& e) {
   throw Damage(e.what());
 }
