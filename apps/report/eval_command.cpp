@@ -70,7 +70,7 @@ struct ReadFile {
 /// A quaternion read in the wrong order turns by an angle of its own: the other order fits much better then.
 void warn_of_other_order(const ReadFile& truth, const ReadFile& estimate, const EvalOptions& options,
                          double rotation_deg) {
-  constexpr double kSuspicious_deg = 15.0, kMuchBetter = 0.3;
+  constexpr double kSuspicious_deg = 3.0, kMuchBetter = 0.3;
   if (!(rotation_deg > kSuspicious_deg)) return;
   const auto try_other = [&](const ReadFile& suspect, bool is_truth) {
     if (suspect.form.columns.named) return;
