@@ -51,6 +51,7 @@ RecordingOptions recording_options(const SourceOptions& options) {
       throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
   chosen.cameras = options.cameras;
+  chosen.own_imu = options.imu.empty();
   chosen.interrupted = [] { return interrupt_signal() != 0; };
   if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
   for (const std::string& text : options.topics) {

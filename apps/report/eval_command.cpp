@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -55,21 +56,56 @@ Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate,
   return result;
 }
 
+/// A trajectory and how its file was read.
+struct ReadFile {
+  std::filesystem::path file;
+  TrajectoryForm form;
+  Trajectory poses;
+
+  explicit ReadFile(const std::filesystem::path& path)
+      : file(path), form(find_trajectory_form(path)), poses(read_trajectory(path, form)) {
+    if (!form.columns.doubt.empty())
+      spdlog::warn(fmt::format("{}: read as {}; {}", file.string(), form.columns.said, form.columns.doubt));
+  }
+};
+
+/// A quaternion read in the wrong order gives a large rotation error; the other order fits much better then.
+void warn_of_other_order(const ReadFile& truth, const ReadFile& estimate, const EvalOptions& options,
+                         double rotation_deg) {
+  constexpr double kSuspicious_deg = 3.0, kMuchBetter = 0.3;
+  if (!(rotation_deg > kSuspicious_deg)) return;
+  const auto try_other = [&](const ReadFile& suspect, bool is_truth) {
+    if (suspect.form.columns.named) return;
+    const Trajectory other = read_trajectory(suspect.file, {false, with_other_scalar(suspect.form.columns)});
+    const Association association = associate(is_truth ? other : truth.poses, is_truth ? estimate.poses : other,
+                                              duration_from_seconds(options.how.max_gap_s));
+    const double error_deg = evaluate(association, chosen_protocol(options.how), {}, {}).rotation_deg.rmse;
+    if (error_deg < kMuchBetter * rotation_deg)
+      spdlog::warn(
+          fmt::format("{}: read as {}; with the scalar at the other end the rotation error is {:.2f} deg instead of "
+                      "{:.2f}: name the columns in a first line, `timestamp tx ty tz qx qy qz qw`",
+                      suspect.file.string(), suspect.form.columns.said, error_deg, rotation_deg));
+  };
+  try_other(truth, true);
+  try_other(estimate, false);
+}
+
 struct Compared {
   Evaluation evaluation;
   std::optional<TimeOffset> offset;  ///< nothing without times
 };
 
-Compared evaluate_files(const EvalOptions& options, const CLI::App& eval) {
-  const bool timed = trajectory_format(options.truth) != TrajectoryFormat::Kitti &&
-                     trajectory_format(options.estimate) != TrajectoryFormat::Kitti;
-  if (!timed) refuse_times(options, eval);
-  const Trajectory truth = read_trajectory(options.truth);
-  const Trajectory estimate = read_trajectory(options.estimate);
-  if (!timed) return {evaluate_untimed(truth, estimate, options), std::nullopt};
+Compared compare(const ReadFile& truth, const ReadFile& estimate, const EvalOptions& options, const CLI::App& eval) {
+  if (truth.form.untimed || estimate.form.untimed) {
+    refuse_times(options, eval);
+    return {evaluate_untimed(truth.poses, estimate.poses, options), std::nullopt};
+  }
   const Duration max_gap = duration_from_seconds(options.how.max_gap_s);
-  return {evaluate(associate(truth, estimate, max_gap), chosen_protocol(options.how), options.deltas_s),
-          fit_time_offset(truth, estimate, max_gap)};
+  Compared compared{
+      evaluate(associate(truth.poses, estimate.poses, max_gap), chosen_protocol(options.how), options.deltas_s),
+      fit_time_offset(truth.poses, estimate.poses, max_gap)};
+  warn_of_other_order(truth, estimate, options, compared.evaluation.rotation_deg.rmse);
+  return compared;
 }
 
 std::string offset_text(const TimeOffset& offset) {
@@ -78,7 +114,7 @@ std::string offset_text(const TimeOffset& offset) {
       1e3 * offset.offset_s, offset.ate_rmse_m, offset.ate_given_m);
 }
 
-/// What follows from it.
+/// The next step for the user.
 std::string next_text(const EvalOptions& options, const Compared& compared) {
   if (compared.offset && compared.offset->matters())
     return fmt::format("add {:.4f} s to the stamps of {}: they are {}\n", -compared.offset->offset_s,
@@ -88,14 +124,18 @@ std::string next_text(const EvalOptions& options, const Compared& compared) {
 }
 
 int run_eval(const EvalOptions& options, const CLI::App& eval) {
-  const Compared compared = evaluate_files(options, eval);
+  const ReadFile truth(options.truth), estimate(options.estimate);
+  const Compared compared = compare(truth, estimate, options, eval);
   if (options.json) {
     nlohmann::ordered_json json = to_json(compared.evaluation);
+    json["ground_truth_columns"] = truth.form.columns.said;
+    json["estimate_columns"] = estimate.form.columns.said;
     if (compared.offset) json["ground_truth_time_offset"] = to_json(*compared.offset);
     fmt::print("{}\n", json.dump(2));
     return kExitOk;
   }
-  fmt::print("{}{}  next                   {}", to_table(compared.evaluation),
+  fmt::print("ground truth: {}\nestimate: {}\n{}{}  next                   {}", truth.form.columns.said,
+             estimate.form.columns.said, to_table(compared.evaluation),
              compared.offset ? offset_text(*compared.offset) : "", next_text(options, compared));
   return kExitOk;
 }
@@ -106,9 +146,10 @@ void add_eval_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<EvalOptions>();
   CLI::App* eval = app.add_subcommand(
       "eval", "Compare a trajectory with ground truth: ATE, local error, RPE, error per metre, scale");
-  eval->add_option("GROUNDTRUTH", options->truth,
-                   "Trajectory file: TUM, EuRoC csv or KITTI (without times: poses are compared by index); the format "
-                   "is detected")
+  eval->add_option(
+          "GROUNDTRUTH", options->truth,
+          "Trajectory file: TUM, EuRoC csv, KITTI (without times: poses are compared by index), or as written by "
+          "ORB-SLAM3, OKVIS2, OpenVINS or VINS; the order of the columns is detected and printed")
       ->required();
   eval->add_option("ESTIMATE", options->estimate, "Trajectory file of the same sensor, on the same clock")->required();
   add_evaluation_options(*eval, options->how);

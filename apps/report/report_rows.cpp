@@ -25,9 +25,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns of the poses, by row of states.csv; NaN where a row has none.
-class PoseColumns {
+class PathColumns {
  public:
-  PoseColumns(std::size_t rows, const ReportPath& path) {
+  PathColumns(std::size_t rows, const ReportPath& path) {
     for (auto* group : {&p_, &angles_, &true_p_, &true_angles_}) group->assign(rows, Eigen::Vector3d::Constant(kNone));
     error_.assign(rows, kNone);
     rotation_.assign(rows, kNone);
@@ -136,7 +136,7 @@ std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vecto
 }
 
 Json rows_json(const StatesTable& states, const ReportPath& path, Timestamp origin, std::size_t most) {
-  const PoseColumns poses(states.t.size(), path);
+  const PathColumns poses(states.t.size(), path);
   const std::vector<std::size_t> chosen = chosen_rows(states, poses.error(), most);
   Json json = {{"t", Json::array()}, {"status", Json::array()}};
   for (const std::size_t row : chosen) {

@@ -10,6 +10,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/bytes.hpp"
+#include "edged/io/ros/bag_folder.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
@@ -59,6 +60,9 @@ std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recog
     else if (recognizes((folder / name).head(kHeadBytes)))
       binary.push_back(name);
   }
+  if (const auto path = folder.disk_path(); path && binary.size() > 1)
+    for (const std::string& first : binary)  // the parts of one bag are one recording
+      if (split_bag_parts(*path / first).size() == binary.size()) return first;
   if (!binary.empty()) return only_one(folder, binary);
   std::erase_if(text, [&folder](const std::string& name) { return !find_event_form(folder / name); });
   return only_one(folder, text);

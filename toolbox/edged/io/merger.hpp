@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "edged/core/external_sensor.hpp"
-#include "edged/core/jump_gate.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/core/stream_order.hpp"
+#include "edged/io/ahead_gate.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/measurement.hpp"
 
@@ -21,8 +21,8 @@ namespace edged {
 /// A batch of events spans no more.
 inline constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 
-/// The items of one stream, T with a `time_of`, sorted although they may come a little out of order. A stamp
-/// far ahead of all others counts only once another confirms it, so that one damaged stamp does not end the stream.
+/// The items of one stream, T with a `time_of`, sorted although they may come a little out of order. Stamps
+/// far ahead pass an AheadGate first.
 template <typename T>
 class ArrivalQueue {
  public:
@@ -61,7 +61,7 @@ class ArrivalQueue {
   std::size_t max_held_;
   Repairs& repairs_;
   std::deque<T> sorted_;
-  JumpGate<T> gate_{true};
+  AheadGate<T> gate_;
   std::optional<Timestamp> last_;
   Timestamp handed_out_ = Timestamp::min();  ///< what is before comes too late
 };

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/aedat/aedat_old.hpp"
 #include "edged/io/bytes.hpp"
 #include "edged/io/calibration_source.hpp"
 #include "edged/io/dataset_folders.hpp"
@@ -23,6 +23,7 @@
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/loose_folder.hpp"
 #include "edged/io/prophesee/raw.hpp"
+#include "edged/io/ros/bag_folder.hpp"
 #include "edged/io/ros/open_messages.hpp"
 #include "edged/io/ros/ros_dataset.hpp"
 #include "edged/io/text/ecd.hpp"
@@ -53,6 +54,7 @@ constexpr std::array kFileFormats = {
     FileFormat{.name = "zip", .recognizes = is_zip, .open = open_archive},
     FileFormat{.name = "HDF5", .recognizes = is_hdf5, .open = open_hdf5},
     FileFormat{.name = "AEDAT4", .recognizes = is_aedat4, .open = open_aedat4, .alone = true},
+    FileFormat{.name = "AEDAT 2.0 or 3.1", .recognizes = is_old_aedat, .open = open_old_aedat, .alone = true},
 };
 
 bool is_alone_format(ByteSpan head) {
@@ -70,6 +72,8 @@ Recording open_main_file(const SourcePath& file, const Rig* rig, const Recording
 Recording open_loose_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
                             const RecordingOptions& options) {
   std::set<std::string> read = {file, "calibration.yaml"};
+  if (const auto path = folder.disk_path())
+    for (const auto& part : split_bag_parts(*path / file)) read.insert(part.filename().string());
   std::optional<Calibration> calibration;
   try {
     if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = read_calibration(own);
@@ -78,7 +82,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   }
   if (!rig && calibration) rig = &calibration->rig;
   Recording recording = open_main_file(folder / file, rig, options);
-  const auto imu = recording.dataset->info().has_imu ? std::nullopt : find_imu_beside(folder, read);
+  const auto imu = recording.dataset->info().has_imu || !options.own_imu ? std::nullopt : find_imu_beside(folder, read);
   if (imu) {
     try {
       recording.dataset = with_imu_file(std::move(recording.dataset), *imu);
@@ -95,16 +99,9 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   return recording;
 }
 
-/// The folder of the first image that images.txt names, or the images that lie beside the list.
+/// The folder of the first image of the list, or the images that lie beside the list.
 std::set<std::string> images_of(const SourcePath& folder) {
-  const SourcePath list = folder / "images.txt";
-  if (!list.is_file()) return {};
-  constexpr std::size_t kHeadBytes = 4096;
-  std::istringstream lines{std::string(as_text(list.head(kHeadBytes)))};
-  std::string stamp, image;
-  for (std::string line; image.empty() && std::getline(lines, line);)
-    if (!line.starts_with('#')) std::istringstream(line) >> stamp >> image;
-  const std::filesystem::path path = std::filesystem::path(image).lexically_normal();
+  const std::filesystem::path path = std::filesystem::path(first_ecd_image(folder).value_or("")).lexically_normal();
   if (path.has_parent_path()) return {path.begin()->string()};
   std::set<std::string> beside;
   for (const std::string& name : folder.names())
@@ -120,13 +117,14 @@ std::optional<Recording> try_bag_folder(const SourcePath& folder, const Rig* rig
 std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
   if (!is_ecd_folder(folder)) return std::nullopt;
   // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
-  const bool imu_alone = !(folder / "events.txt").is_file() && !(folder / "images.txt").is_file();
+  const bool imu_alone = !(folder / "events.txt").is_file() && !find_ecd_image_list(folder);
   if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
     return open_loose_folder(folder, *file, rig, options);
-  Recording recording = open_ecd(folder, rig);
+  Recording recording = open_ecd(folder, rig, options);
   std::set<std::string> read = images_of(folder);
-  read.insert({"events.txt", "images.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml",
-               "depthmaps.txt", "depthmaps"});
+  if (const auto list = find_ecd_image_list(folder)) read.insert(list->name());
+  read.insert(
+      {"events.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
   read.merge(external_file_names());
   tell_unread(folder, read);
   recording.dataset = with_external_files(std::move(recording.dataset), folder);
@@ -136,7 +134,7 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
 std::optional<Recording> try_euroc(const SourcePath& folder, const Rig*, const RecordingOptions& options) {
   const auto mav0 = find_mav0(folder);
   if (!mav0) return std::nullopt;
-  Recording recording = open_euroc(*mav0, options.cameras);
+  Recording recording = open_euroc(*mav0, options);
   recording.dataset = with_external_files(std::move(recording.dataset), *mav0);
   return recording;
 }
@@ -166,7 +164,7 @@ struct FolderFormat {
 /// In the order in which they are tried. A folder of any other names comes after all of them.
 constexpr std::array kFolderFormats = {
     FolderFormat{.files = ".db3 or .mcap files (ROS 2)", .open = try_bag_folder},
-    FolderFormat{.files = "events.txt, images.txt or imu.txt (Event-Camera Dataset)", .open = try_ecd},
+    FolderFormat{.files = "events.txt, images.txt or imu.txt (Event-Camera Dataset, UZH-FPV)", .open = try_ecd},
     FolderFormat{.files = "[mav0/]cam0/data.csv or [mav0/]imu0/data.csv (EuRoC)", .open = try_euroc},
     FolderFormat{.files = ".h5 or .hdf5 files", .open = try_hdf5_folder},
 };

@@ -117,10 +117,11 @@ TEST(Recording, DamageIsMendedAndCounted) {
   EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 2u);
   EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 2u);
   const std::map<std::string, std::size_t> expected{
-      {"imu: duplicate stamp", 1},          {"imu: unreadable line", 2},
-      {"imu: out of order, dropped", 2},    {"imu: last line cut", 1},
-      {"frames: image missing", 1},         {"frames: image unreadable", 1},
-      {"frames: image of another size", 1}, {"groundtruth: bad line", 1}};
+      {"imu: duplicate stamp", 1},       {"imu: unreadable line", 2},
+      {"imu: out of order, dropped", 1}, {"imu: stamp far ahead, dropped", 1},
+      {"imu: last line cut", 1},         {"frames: image missing", 1},
+      {"frames: image unreadable", 1},   {"frames: image of another size", 1},
+      {"groundtruth: bad line", 1}};
   EXPECT_EQ(r.dataset->repairs(), expected);
 }
 

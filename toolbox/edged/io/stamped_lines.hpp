@@ -3,6 +3,9 @@
 // Items with a stamp, one a line, in strictly rising time order whatever the file holds.
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,6 +13,7 @@
 #include <utility>
 
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/io/ahead_gate.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/time.hpp"
@@ -52,7 +56,7 @@ class StampedLines {
   /// One item is held back, so that a single wrong stamp far ahead is dropped instead of everything after it.
   void advance() {
     next_.reset();
-    while (auto item = parse_next()) {
+    while (auto item = next_passed()) {
       if (!held_) {
         held_ = std::move(item);
       } else if (time_of(*item) > time_of(*held_)) {
@@ -68,6 +72,27 @@ class StampedLines {
       }
     }
     next_ = std::exchange(held_, std::nullopt);
+  }
+
+  /// Behind the gate.
+  std::optional<T> next_passed() {
+    const auto pass = [this](T item) { passed_.push_back(std::move(item)); };
+    while (passed_.empty() && !ended_) {
+      if (auto item = parse_next()) {
+        gate_.push(std::move(*item), pass, [this](const T& wrong, Timestamp next) {
+          damage_.bad(
+              line_, "stamp far ahead, dropped",
+              fmt::format("stamp {} s is followed by {} s", format_seconds(time_of(wrong)), format_seconds(next)));
+        });
+      } else {
+        gate_.finish(pass);
+        ended_ = true;
+      }
+    }
+    if (passed_.empty()) return std::nullopt;
+    T item = std::move(passed_.front());
+    passed_.pop_front();
+    return item;
   }
 
   std::optional<T> parse_next() {
@@ -94,6 +119,9 @@ class StampedLines {
   std::size_t line_ = 0;
   bool damage_counted_ = false;
   bool parsed_ = false;  ///< a line so far
+  bool ended_ = false;
+  AheadGate<T> gate_;
+  std::deque<T> passed_;
   std::optional<T> next_, held_;
   std::optional<Timestamp> taken_;
 };

@@ -25,7 +25,7 @@ struct ParsedLine {
   std::string wrong;
 };
 
-using ParseLine = ParsedLine (*)(std::string_view line, std::size_t index);
+using ParseLine = std::function<ParsedLine(std::string_view line, std::size_t index)>;
 
 ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quaterniond& q) {
   if (std::abs(q.norm() - 1.0) > kQuaternionTolerance)
@@ -33,22 +33,23 @@ ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quatern
   return {StampedPose{t, SE3(q, p)}, ""};
 }
 
-template <auto parse_stamp>
-ParsedLine parse_tum(std::string_view line, std::size_t) {
-  FieldReader fields(line);
-  const auto t = parse_stamp(fields.next());
-  std::array<double, 7> v;
-  if (!t || !read_numbers(fields, v) || !fields.rest().empty())
-    return {std::nullopt, "not `t tx ty tz qx qy qz qw` in finite numbers"};
-  return make_pose(*t, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]});
-}
-
-ParsedLine parse_euroc(std::string_view line, std::size_t) {
-  FieldReader fields(line);
-  const auto t = parse_nanoseconds(fields.next());
-  std::array<double, 7> v;
-  if (!t || !read_numbers(fields, v)) return {std::nullopt, "not `t_ns, px, py, pz, qw, qx, qy, qz` in finite numbers"};
-  return make_pose(*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]});
+/// The pose of a line in those columns.
+std::function<ParsedLine(std::string_view, std::size_t)> parse_pose(const PoseColumns& columns) {
+  const std::vector<std::size_t> at = {columns.t,    columns.p[0], columns.p[1], columns.p[2],
+                                       columns.q[0], columns.q[1], columns.q[2], columns.q[3]};
+  return [columns, picker = ColumnPicker(at, columns.exact)](std::string_view line, std::size_t) -> ParsedLine {
+    std::array<std::string_view, 8> fields;
+    std::array<double, 8> v{};
+    bool read = picker.pick(line, fields);
+    const auto t = read ? parse_stamp(fields[0], columns.unit) : std::nullopt;
+    for (std::size_t i = 1; read && i < fields.size(); ++i) {
+      const auto number = parse_number(fields[i]);
+      read = number.has_value();
+      v[i] = number.value_or(0.0);
+    }
+    if (!read || !t) return {std::nullopt, fmt::format("no pose in finite numbers: {}", columns.said)};
+    return make_pose(*t, {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]});
+  };
 }
 
 ParsedLine parse_kitti(std::string_view line, std::size_t index) {
@@ -63,7 +64,7 @@ ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
 }
 
-Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandler& on_damage) {
+Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const DamageHandler& on_damage) {
   const auto damaged = [&](std::size_t line, const std::string& detail) {
     if (!on_damage) throw InputError::format("{}:{}: {}", file.string(), line, detail);
     on_damage(line, detail);
@@ -73,6 +74,7 @@ Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandl
   LineReader lines(file);
   while (const auto line = lines.next()) {
     const ParsedLine parsed = parse(line->text, trajectory.size());
+    if (!parsed.pose && trajectory.empty() && is_heading(line->text)) continue;
     if (!parsed.pose) {
       damaged(line->number, parsed.wrong);
     } else if (trajectory.empty() || parsed.pose->t > trajectory.back().t) {
@@ -88,52 +90,51 @@ Trajectory read_poses(const SourcePath& file, ParseLine parse, const DamageHandl
   return trajectory;
 }
 
+/// By the heading, else as the data set documents it.
+PoseColumns documented(const SourcePath& file, const PoseColumns& columns) {
+  return named_pose_columns(file, columns.unit).value_or(columns);
+}
+
 }  // namespace
 
 Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_tum<parse_seconds>, on_damage);
+  return read_poses(file, parse_pose(documented(file, tum_columns(TimeUnit::Seconds))), on_damage);
 }
 
 Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_tum<parse_microseconds>, on_damage);
+  return read_poses(file, parse_pose(documented(file, tum_columns(TimeUnit::Microseconds))), on_damage);
 }
 
 Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_euroc, on_damage);
+  return read_poses(file, parse_pose(documented(file, euroc_columns())), on_damage);
 }
 
 Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage) {
   return read_poses(file, parse_kitti, on_damage);
 }
 
-TrajectoryFormat trajectory_format(const std::filesystem::path& file) {
+TrajectoryForm find_trajectory_form(const SourcePath& file) {
+  constexpr std::size_t kKittiColumns = 12;
   LineReader lines(file);
   const auto line = lines.next();
   if (!line) throw InputError::format("{}: holds no pose", file.string());
-  FieldReader fields(line->text);
-  const std::string_view first = fields.next();
-  std::size_t columns = 1;
-  while (!fields.next().empty()) ++columns;
-  if (columns == 12) return TrajectoryFormat::Kitti;
-  // Whole numbers are nanoseconds where commas say csv, or where no clock counts so many seconds.
-  const auto whole = parse_nanoseconds(first);
-  const bool commas = line->text.find(',') != std::string_view::npos;
-  if (columns >= 8 && whole && (commas || to_ns(*whole) > 1'000'000'000'000)) return TrajectoryFormat::EurocCsv;
-  if (columns == 8) return TrajectoryFormat::Tum;
-  throw InputError::format("{}:{}: {} columns; TUM has 8, EuRoC csv 8 or more with stamps in ns, KITTI 12",
-                           file.string(), line->number, columns);
+  std::size_t columns = 0;
+  for (FieldReader fields(line->text); !fields.rest().empty(); ++columns) fields.next();
+  const bool kitti = columns == kKittiColumns && line->text.find_first_of(",;") == std::string_view::npos &&
+                     !named_pose_columns(file, TimeUnit::Seconds);
+  if (kitti) return {true, {.said = "[R | t] without times (KITTI)"}};
+  return {false, find_pose_columns(file)};
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
-  switch (trajectory_format(file)) {
-    case TrajectoryFormat::Tum:
-      return read_tum(file);
-    case TrajectoryFormat::EurocCsv:
-      return read_euroc_csv(file);
-    case TrajectoryFormat::Kitti:
-      return read_kitti(file);
-  }
-  EDGED_CHECK(false, "no format of trajectories");
+Trajectory read_trajectory(const SourcePath& file, const TrajectoryForm& form) {
+  return read_poses(file, form.untimed ? ParseLine(parse_kitti) : parse_pose(form.columns), {});
+}
+
+Trajectory read_trajectory(const SourcePath& file) {
+  const TrajectoryForm form = find_trajectory_form(file);
+  if (!form.columns.doubt.empty())
+    spdlog::warn(fmt::format("{}: read as {}; {}", file.string(), form.columns.said, form.columns.doubt));
+  return read_trajectory(file, form);
 }
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,

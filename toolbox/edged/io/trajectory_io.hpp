@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/io/pose_columns.hpp"
 #include "edged/io/source_path.hpp"
 #include "edged/state.hpp"
 
@@ -17,10 +18,10 @@ namespace edged {
 /// Told of each line that is left out, by its number and what is wrong with it.
 using DamageHandler = std::function<void(std::size_t line, const std::string& detail)>;
 
-/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments. Stamps are exact to the nanosecond, exponents included, and rise
-/// strictly in what is returned. A bad line (unreadable, not finite, no unit quaternion, stamp not after the one above)
-/// goes to on_damage; without it, InputError naming file and line, but a repeated stamp only keeps the first pose
-/// (logged).
+/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments, unless a heading names other columns. Stamps are exact to the
+/// nanosecond, exponents included, and rise strictly in what is returned. A bad line (unreadable, not finite, no unit
+/// quaternion, stamp not after the one above) goes to on_damage; without it, InputError naming file and line, but a
+/// repeated stamp only keeps the first pose (logged).
 Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage = {});
 
 /// The same with stamps in microseconds (TUM-VIE).
@@ -32,14 +33,21 @@ Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage
 /// KITTI: 12 numbers of [R | t], row by row; the index of the pose counts as seconds. Damage as read_tum.
 Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
 
+/// How a file of poses reads.
+struct TrajectoryForm {
+  bool untimed = false;  ///< KITTI
+  PoseColumns columns;   ///< of all others; `said` and `doubt` of KITTI, too
+};
+
+/// By heading, columns, separators and stamps. Throws InputError where the file holds no poses.
+TrajectoryForm find_trajectory_form(const SourcePath& file);
+
+/// Of any program: TUM, EuRoC, KITTI, ORB-SLAM3, OKVIS2, OpenVINS, VINS-Mono and VINS-Fusion, Kalibr, maplab.
+Trajectory read_trajectory(const SourcePath& file, const TrajectoryForm& form);
+/// The same, with a warning where the form is in doubt.
+Trajectory read_trajectory(const SourcePath& file);
+
 enum class TrajectoryFormat { Tum, EurocCsv, Kitti };
-
-/// Told apart by the number of columns, by the stamps and by commas (whole numbers: EuRoC). Throws InputError where it
-/// is none of them.
-TrajectoryFormat trajectory_format(const std::filesystem::path& file);
-
-/// Any of the three.
-Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Writes pose after pose, so that an interrupted run leaves a complete file. Numbers read back to the same bits, but
 /// for KITTI's, which are those of a matrix.

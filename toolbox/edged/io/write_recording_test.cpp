@@ -134,6 +134,28 @@ TEST_P(WritableFormats, SayWhereNothingCanBeWritten) {
               HasSubstr(path));
 }
 
+TEST(WrongStamps, OfEventsAheadOfTheOthersAreDroppedAlikeInEveryFormat) {
+  constexpr std::size_t kWrong[] = {300, 301, 302, 900};  // a run of three, and one
+  for (const char* name : {"ecd", "csv", "bag", "mcap", "aedat4"}) {
+    TempFolder folder;
+    const WritableFormat& format = writable_format(name, folder.path());
+    ListedDataset source = random_dataset(std::chrono::microseconds(1));
+    std::size_t count = 0;
+    for (Measurement& m : source.measurements)
+      if (auto* batch = std::get_if<EventBatch>(&m))
+        for (Event& event : batch->events)
+          if (std::ranges::find(kWrong, count++) != std::end(kWrong)) event.t += std::chrono::seconds(1);
+    const auto target = folder.path() / ("out" + std::string(format.extension));
+    write_recording(source, format, target, load_rig("davis240c_ecd"));
+    const Recording recording = open_recording(target, nullptr, {.geometry = cv::Size(240, 180)});
+    const Contents c = read_all(*recording.dataset);
+    EXPECT_EQ(c.events.size(), count - std::size(kWrong)) << name;
+    EXPECT_TRUE(std::ranges::is_sorted(c.events, {}, &Event::t)) << name;
+    const std::map<std::string, std::size_t> expected{{"events: stamp far ahead, dropped", std::size(kWrong)}};
+    EXPECT_EQ(recording.dataset->repairs(), expected) << name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, WritableFormats,
                          ::testing::ValuesIn(writable_formats().begin(), writable_formats().end()),
                          [](const auto& test) { return std::string(test.param.name); });

@@ -31,10 +31,12 @@ CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>
     for (const char* key : keys) out.push_back(values.at(key).number());
     return out;
   };
-  if (type != "pinhole" && type != "kb4")
-    node.at("camera_type").fail("camera type " + type + " is not supported; pinhole and kb4 are");
+  if (type != "pinhole" && type != "kb4" && type != "pinhole-radtan8")
+    node.at("camera_type").fail("camera type " + type + " is not supported; pinhole, pinhole-radtan8 and kb4 are");
   Intrinsics in{size[0], size[1], numbers({"fx", "fy", "cx", "cy"}), "none", {}};
   if (type == "kb4") in.distortion = "equidistant", in.coefficients = numbers({"k1", "k2", "k3", "k4"});
+  if (type == "pinhole-radtan8")
+    in.distortion = "radtan", in.coefficients = numbers({"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"});
   return make_model(values, in);
 }
 

@@ -4,12 +4,13 @@
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/dataset_folders.hpp"
+#include "edged/io/distortion.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
-constexpr std::size_t kShortCalib = 4, kLongCalib = 9;
+constexpr std::size_t kProjection = 4, kMostNumbers = kProjection + 14;
 
 std::vector<double> read_row_of_numbers(const SourcePath& file) {
   std::vector<double> v;
@@ -21,11 +22,12 @@ std::vector<double> read_row_of_numbers(const SourcePath& file) {
       if (!number) throw InputError::format("{}:{}: \"{}\" is not a finite number", file.string(), line->number, field);
       v.push_back(*number);
     }
-    if (v.size() > kLongCalib) break;
+    if (v.size() > kMostNumbers) break;
   }
-  if (v.size() != kShortCalib && v.size() != kLongCalib)
+  const bool coefficients = v.size() >= 2 * kProjection && v.size() <= kMostNumbers;
+  if (v.size() != kProjection && !coefficients)
     throw InputError::format("{}: has {}{} numbers; `fx fy cx cy [k1 k2 p1 p2 k3]` has 4 or 9", file.string(),
-                             v.size() > kLongCalib ? "more than " : "", std::min(v.size(), kLongCalib));
+                             v.size() > kMostNumbers ? "more than " : "", std::min(v.size(), kMostNumbers));
   return v;
 }
 
@@ -34,13 +36,12 @@ std::vector<double> read_row_of_numbers(const SourcePath& file) {
 CalibrationFile read_ecd_calib(const SourcePath& file) {
   const std::vector<double> v = read_row_of_numbers(file);
   const auto size = ecd_image_size(file.parent_path()).value_or(cv::Size(kEcdWidth, kEcdHeight));
-  std::array<double, 5> k{};
-  std::copy(v.begin() + kShortCalib, v.end(), k.begin());
   Lens lens;
   lens.name = "davis", lens.sees = Sees::Both;
   try {
-    lens.model = CameraModel(size.width, size.height, v[0], v[1], v[2], v[3],
-                             v.size() == kLongCalib ? DistortionModel::RadTan : DistortionModel::None, k);
+    const Distortion lens_distortion =
+        v.size() == kProjection ? Distortion() : make_distortion("radtan", {v.begin() + kProjection, v.end()});
+    lens.model = CameraModel(size.width, size.height, v[0], v[1], v[2], v[3], lens_distortion.model, lens_distortion.k);
   } catch (const InputError& e) {
     throw InputError::format("{}: {}", file.string(), e.what());
   }

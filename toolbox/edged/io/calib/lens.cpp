@@ -7,41 +7,13 @@
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/distortion.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
 constexpr double kMaxPixels = 65535;
-
-struct Distortion {
-  DistortionModel model = DistortionModel::None;
-  std::array<double, 5> k{};
-};
-
-bool only_zeros(const std::vector<double>& k, std::size_t from) {
-  return std::all_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(from, k.size())), k.end(),
-                     [](double x) { return x == 0.0; });
-}
-
-Distortion make_distortion(const YamlReader& place, const Intrinsics& in) {
-  const std::string name = in.distortion.empty() ? "none" : lower_case(in.distortion);
-  const bool rational = name == "rational_polynomial" || name == "rational";  // radtan, but for k4 to k6
-  const LensModel* lens = rational ? &lens_model(DistortionModel::RadTan) : find_lens_model(name);
-  if (!lens) place.fail("distortion " + name + " is not supported; these are: " + lens_model_names());
-  const std::size_t count = in.coefficients.size();
-  if (rational && count < lens->most) place.fail("a rational polynomial takes 8 numbers: k1 k2 p1 p2 k3 k4 k5 k6");
-  if (rational && !only_zeros(in.coefficients, lens->most))
-    place.fail("a rational polynomial with k4 to k6 is not supported: calibrate with plumb_bob or equidistant");
-  if (count < lens->fewest)
-    place.fail(fmt::format("{} takes {}{} numbers: {}", lens->name, lens->fewest,
-                           lens->most > lens->fewest ? fmt::format(" or {}", lens->most) : "", lens->coefficients));
-  if (!only_zeros(in.coefficients, lens->most))
-    place.fail(fmt::format("distortion {} has {} coefficients, here are {}", name, lens->most, count));
-  Distortion out{lens->model};
-  std::copy_n(in.coefficients.begin(), std::min(lens->most, count), out.k.begin());
-  return out;
-}
 
 bool has_any(const std::string& text, std::initializer_list<std::string_view> words) {
   return std::any_of(words.begin(), words.end(), [&text](auto w) { return text.find(w) != std::string::npos; });
@@ -90,8 +62,8 @@ CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
       !(in.height <= kMaxPixels) || !(in.width >= 1) || !(in.height >= 1))
     place.fail(fmt::format("image size {} x {}: must be whole pixels, from 1 to {}", in.width, in.height, kMaxPixels));
   if (in.projection.size() != 4) place.fail("intrinsics must be [fx, fy, cx, cy]");
-  const Distortion distortion = make_distortion(place, in);
   try {
+    const Distortion distortion = make_distortion(in.distortion, in.coefficients);
     const auto& f = in.projection;
     return CameraModel(static_cast<int>(in.width), static_cast<int>(in.height), f[0], f[1], f[2], f[3],
                        distortion.model, distortion.k);
@@ -109,8 +81,9 @@ CameraModel read_model(const YamlReader& camera, const std::string& distortion_k
   const std::vector<double> size = resolution.numbers();
   if (size.size() != 2) resolution.fail("must be [width, height]");
   const std::string distortion = camera.text_or(distortion_key, "none");
+  const auto coefficients = distortion == "none" ? camera.find(coefficients_key) : camera.at(coefficients_key);
   return make_model(intrinsics, {size[0], size[1], intrinsics.numbers(), distortion,
-                                 distortion == "none" ? std::vector<double>{} : camera.at(coefficients_key).numbers()});
+                                 coefficients ? coefficients->numbers() : std::vector<double>{}});
 }
 
 std::optional<Sees> parse_sees(std::string_view text) {

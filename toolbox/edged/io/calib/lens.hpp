@@ -38,10 +38,11 @@ struct Intrinsics {
   double width, height;              ///< [px]
   std::vector<double> projection;    ///< fx, fy, cx, cy [px]
   std::string distortion = "none";   ///< any of the formats' names
-  std::vector<double> coefficients;  ///< as many as the model has; trailing zeros do no harm
+  std::vector<double> coefficients;  ///< those that the model has not must be zero
 };
 
-/// `place` is where complaints point to. InputError for models that are not supported, by name.
+/// The model of the projection with the coefficients of the distortion. `place` is where complaints point to.
+/// InputError for models and coefficients that are not supported, by name.
 CameraModel make_model(const YamlReader& place, const Intrinsics& intrinsics);
 
 /// The model of a camera in the keys that ours, Kalibr and EuRoC share (camera_model, resolution, intrinsics) and

@@ -48,7 +48,13 @@ CameraModel read_camodocal(const YamlReader& root) {
     in.coefficients = numbers(projection, {"k2", "k3", "k4", "k5"});
   } else {
     in.projection = numbers(projection, {"fx", "fy", "cx", "cy"});
-    in.coefficients = numbers(root.at("distortion_parameters"), {"k1", "k2", "p1", "p2"});
+    const YamlReader distortion = root.at("distortion_parameters");
+    in.coefficients = numbers(distortion, {"k1", "k2", "p1", "p2"});
+    for (const char* key : {"k3", "k4", "k5", "k6"})
+      if (const auto value = distortion.find(key)) {
+        in.coefficients.resize(4 + static_cast<std::size_t>(key[1] - '3'));
+        in.coefficients.push_back(value->number());
+      }
   }
   return make_model(projection, in);
 }

@@ -360,7 +360,7 @@ Recording open_hdf5(const fs::path& path, const Rig* rig, const RecordingOptions
   for (const Hdf5Layout& layout : hdf5_layouts()) {
     auto events = H5Events::find(file, layout);
     if (!events) continue;
-    SideFiles side = find_side_files(path, layout.name);
+    SideFiles side = find_side_files(path, layout.name, options.own_imu);
     std::optional<cv::Size> said = options.geometry ? options.geometry : stated_sensor(file, layout);
     if (!said) said = side.sensor;
     if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);

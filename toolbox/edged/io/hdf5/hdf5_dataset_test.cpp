@@ -247,7 +247,8 @@ TEST(Hdf5, EdsFoldersHaveImagesImuAndTruth) {
   EXPECT_EQ(c.frames.size(), 2u);
   ASSERT_EQ(c.imu.size(), 1u);
   EXPECT_EQ(c.imu[0].accel_B, Eigen::Vector3d(4, 5, 6));
-  EXPECT_TRUE(recording.dataset->ground_truth());
+  ASSERT_TRUE(recording.dataset->ground_truth());
+  EXPECT_EQ(recording.dataset->ground_truth()->frame, "events");
   EXPECT_TRUE(recording.dataset->repairs().empty());
 }
 

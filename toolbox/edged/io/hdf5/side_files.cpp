@@ -5,17 +5,15 @@
 #include "edged/io/hdf5/side_files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <vector>
 
+#include "edged/io/imu_lines.hpp"
 #include "edged/io/trajectory_io.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
 namespace {
-
-using ParseStamp = std::optional<Timestamp> (*)(std::string_view);
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;
@@ -56,8 +54,21 @@ StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::strin
   return {stamps, "frames", std::move(layout), LastLine::MayLackEnd, parse_entry};
 }
 
-std::optional<Timestamp> single_microseconds(std::string_view line) {
-  return parse_microseconds(FieldReader(line).next());
+/// The stamp of a line, in microseconds unless the heading says otherwise.
+std::function<std::optional<Timestamp>(std::string_view)> microseconds_in(const fs::path& file) {
+  static const ColumnRoles roles{
+      {"timestamp"},
+      [](const ColumnName& name) { return names_time(name) ? std::optional<std::size_t>(0) : std::nullopt; },
+      "timestamp [us]"};
+  const auto named = named_columns(file, roles);
+  const std::size_t column = named ? named->at[0] : 0;
+  const TimeUnit unit =
+      named ? time_unit_of(named->name_of(0)).value_or(TimeUnit::Microseconds) : TimeUnit::Microseconds;
+  return [column, unit](std::string_view line) {
+    FieldReader fields(line);
+    for (std::size_t i = 0; i < column; ++i) fields.next();
+    return parse_stamp(fields.next(), unit);
+  };
 }
 
 /// Start and end of the exposure in seconds.
@@ -68,16 +79,9 @@ std::optional<Timestamp> middle_of_exposure(std::string_view line) {
   return *start + (*end - *start) / 2;
 }
 
-/// `t gx gy gz ax ay az ...`: angular velocity first, as all these sets have it.
-StampedLines<ImuSample>::Spec imu_lines(const fs::path& file, ParseStamp parse) {
-  const auto parse_sample = [parse](std::string_view line) -> std::optional<ImuSample> {
-    FieldReader fields(line);
-    const auto t = parse(fields.next());
-    std::array<double, 6> v;
-    if (!t || !read_numbers(fields, v)) return std::nullopt;
-    return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-  };
-  return {file, "imu", "t gx gy gz ax ay az", LastLine::MustEnd, parse_sample};
+/// Angular velocity first, as all these sets have it, unless the heading says otherwise.
+StampedLines<ImuSample>::Spec imu_of(const fs::path& file, TimeUnit unit) {
+  return documented_imu_lines(file, gyro_first(unit));
 }
 
 using ReadTrajectory = Trajectory (*)(const SourcePath&, const DamageHandler&);
@@ -105,7 +109,7 @@ SideFiles dsec_files(const fs::path& events) {
                              root / "images_left/distorted", root / "images_left/rectified"});
     if (images.empty()) continue;
     files.set = "dsec";
-    files.frames = images_by_line(*stamps, "t [us]", std::move(images), single_microseconds);
+    files.frames = images_by_line(*stamps, "t [us]", std::move(images), microseconds_in(*stamps));
     break;
   }
   if (is_file(folder / "rectify_map.h5")) files.set = "dsec";
@@ -114,14 +118,14 @@ SideFiles dsec_files(const fs::path& events) {
 }
 
 /// NAME.synced.left_event.hdf5 beside NAME.synced.imu.txt, NAME.synced.left_camera and NAME.synced.gt.txt.
-SideFiles vector_files(const fs::path& events, const std::string& prefix) {
+SideFiles vector_files(const fs::path& events, const std::string& prefix, bool own_imu) {
   SideFiles files{.set = "vector", .sensor = cv::Size(640, 480)};
   const fs::path folder = fs::absolute(events).parent_path();
   const fs::path camera = folder / (prefix + "left_camera");
   if (is_file(camera / "timestamp.txt"))
     files.frames = images_by_line(camera / "timestamp.txt", "start end [s]", images_in({camera}), middle_of_exposure);
-  if (const auto imu = first_file({folder / (prefix + "imu.txt"), folder / (prefix + "imu.csv")}))
-    files.imu = imu_lines(*imu, parse_seconds);
+  if (const auto imu = first_file({folder / (prefix + "imu.txt"), folder / (prefix + "imu.csv")}); own_imu && imu)
+    files.imu = imu_of(*imu, TimeUnit::Seconds);
   if (const fs::path truth = folder / (prefix + "gt.txt"); is_file(truth))
     files.truth = truth_lines(truth, read_tum, "body");
   return files;
@@ -129,21 +133,21 @@ SideFiles vector_files(const fs::path& events, const std::string& prefix) {
 
 /// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images
 /// are those of the start of the exposure, whose length [us] is in a list of its own.
-SideFiles tum_vie_files(const fs::path& events, const std::string& prefix) {
+SideFiles tum_vie_files(const fs::path& events, const std::string& prefix, bool own_imu) {
   SideFiles files{.set = "tum-vie", .sensor = cv::Size(1280, 720)};
   const fs::path folder = fs::absolute(events).parent_path();
   for (const fs::path& root : {folder, folder / (prefix + "-vi_gt_data"), folder / "data"}) {
     const fs::path imu = root / "imu_data.txt", truth = root / "mocap_data.txt";
-    if (!files.imu && is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
+    if (own_imu && !files.imu && is_file(imu)) files.imu = imu_of(imu, TimeUnit::Microseconds);
     if (!files.truth.read && is_file(truth)) files.truth = truth_lines(truth, read_tum_microseconds, "body");
     for (const fs::path& list : {root / "left_images", root}) {
       const fs::path stamps = list / "image_timestamps_left.txt", lengths = list / "image_exposures_left.txt";
       if (files.frames || !is_file(stamps)) continue;
       const auto exposures = is_file(lengths) ? std::make_shared<LineReader>(lengths) : nullptr;
-      const auto middle = [exposures](std::string_view line) {
+      const auto middle = [exposures, parse = microseconds_in(stamps)](std::string_view line) {
         const auto exposure = exposures ? exposures->next() : std::nullopt;
-        const auto length = exposure ? single_microseconds(exposure->text) : std::nullopt;
-        auto t = single_microseconds(line);
+        const auto length = exposure ? parse_microseconds(FieldReader(exposure->text).next()) : std::nullopt;
+        auto t = parse(line);
         if (t && length) *t += length->time_since_epoch() / 2;
         return t;
       };
@@ -154,14 +158,14 @@ SideFiles tum_vie_files(const fs::path& events, const std::string& prefix) {
 }
 
 /// events.h5 beside images_timestamps.txt, images, imu.csv and stamped_groundtruth.txt.
-SideFiles eds_files(const fs::path& events) {
+SideFiles eds_files(const fs::path& events, bool own_imu) {
   SideFiles files;
   const fs::path folder = fs::absolute(events).parent_path();
   if (const fs::path stamps = folder / "images_timestamps.txt"; is_file(stamps))
-    files.frames = images_by_line(stamps, "t [us]", images_in({folder / "images"}), single_microseconds);
-  if (const fs::path imu = folder / "imu.csv"; is_file(imu)) files.imu = imu_lines(imu, parse_microseconds);
+    files.frames = images_by_line(stamps, "t [us]", images_in({folder / "images"}), microseconds_in(stamps));
+  if (const fs::path imu = folder / "imu.csv"; own_imu && is_file(imu)) files.imu = imu_of(imu, TimeUnit::Microseconds);
   if (const fs::path truth = folder / "stamped_groundtruth.txt"; is_file(truth))
-    files.truth = truth_lines(truth, read_tum, "frames");
+    files.truth = truth_lines(truth, read_tum, "events");
   if (files.frames || files.imu || files.truth.read) {
     files.set = "eds";
     files.sensor = cv::Size(640, 480);
@@ -179,13 +183,13 @@ std::optional<std::string> name_before(const fs::path& file, std::initializer_li
 
 }  // namespace
 
-SideFiles find_side_files(const fs::path& events_file, std::string_view layout) {
-  if (layout == "eds") return eds_files(events_file);
+SideFiles find_side_files(const fs::path& events_file, std::string_view layout, bool own_imu) {
+  if (layout == "eds") return eds_files(events_file, own_imu);
   if (layout != "dsec") return {};
   if (const auto prefix = name_before(events_file, {"left_event.", "right_event."}))
-    return vector_files(events_file, *prefix);
+    return vector_files(events_file, *prefix, own_imu);
   if (const auto prefix = name_before(events_file, {"-events_left.", "-events_right."}))
-    return tum_vie_files(events_file, *prefix);
+    return tum_vie_files(events_file, *prefix, own_imu);
   return dsec_files(events_file);
 }
 

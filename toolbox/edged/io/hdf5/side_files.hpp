@@ -23,6 +23,7 @@ struct SideFiles {
 };
 
 /// Of a file whose events are laid out as those of DSEC ("dsec") or EDS ("eds"), by the names of what lies around it.
-SideFiles find_side_files(const std::filesystem::path& events_file, std::string_view layout);
+/// own_imu: false leaves the IMU file closed.
+SideFiles find_side_files(const std::filesystem::path& events_file, std::string_view layout, bool own_imu = true);
 
 }  // namespace edged

@@ -260,7 +260,9 @@ TEST(BagFolder, GivesItsFilesInTheOrderOfTheirNumbers) {
         write_bag(file, writer, parts[p]);
       }
     }
-    folder.write("metadata.yaml", "rosbag2_bagfile_information:\n  version: 5\n");
+    std::string list = "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n";
+    for (const fs::path& name : names) list += fmt::format("    - {}{}\n", name.string(), extension);
+    folder.write("metadata.yaml", list);
     const Recording r = open_recording(folder.path());
     EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
     EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 40u);
@@ -296,6 +298,55 @@ TEST(BagFolder, UnpacksFilesThatTheRecorderCompressedAndLeavesNothingBehind) {
   });
   EXPECT_TRUE(repairs.contains("bag: cut") || !refusal.empty());
   ::unsetenv("TMPDIR");
+}
+
+/// name_0.bag to name_2.bag, as `rosbag record --split` writes them.
+void write_split_bag(const fs::path& folder, const std::vector<std::vector<TestTopic>>& parts) {
+  fs::create_directories(folder);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const fs::path file = folder / fmt::format("name_{}.bag", p);
+    BagWriter writer(file, ChunkOptions{"lz4", kSmallChunk});
+    write_bag(file, writer, parts[p]);
+  }
+}
+
+TEST(SplitBag, IsOneRecordingByItsFolderAndByItsFirstPart) {
+  const SmallBag bag(Wire::Ros1);
+  TempFolder folder;
+  write_split_bag(folder.path() / "rec", three_parts(bag));
+  for (const char* name : {"rec", "rec/name_0.bag"}) {
+    const Recording r = open_recording(folder.path() / name);
+    EXPECT_TRUE(read_all(*r.dataset).events == bag.events) << name;
+    EXPECT_EQ(r.dataset->ground_truth()->trajectory.size(), 40u);
+    EXPECT_TRUE(r.dataset->repairs().empty());
+  }
+  EXPECT_LT(read_all(*open_recording(folder.path() / "rec/name_1.bag").dataset).events.size(), bag.events.size());
+}
+
+TEST(SplitBag, AMissingPartIsCountedAndTheOthersAreRead) {
+  const SmallBag bag(Wire::Ros1);
+  for (const char* gone : {"rec/name_0.bag", "rec/name_1.bag"}) {
+    TempFolder folder;
+    write_split_bag(folder.path() / "rec", three_parts(bag));
+    fs::remove(folder.path() / gone);
+    const Recording r = open_recording(folder.path() / "rec");
+    const std::size_t events = read_all(*r.dataset).events.size();
+    EXPECT_GT(events, bag.events.size() / 2);
+    EXPECT_LT(events, bag.events.size());
+    EXPECT_EQ(r.dataset->repairs().at("bag: part missing"), 1u);
+  }
+}
+
+TEST(SplitBag, BagsOfOtherTimesAreRecordingsOfTheirOwn) {
+  const SmallBag bag(Wire::Ros1);
+  TempFolder folder;
+  auto parts = three_parts(bag);
+  for (TestTopic& topic : parts[1])
+    for (auto& message : topic.messages) message.first += std::chrono::minutes(5);
+  write_split_bag(folder.path() / "rec", parts);
+  const std::size_t events = read_all(*open_recording(folder.path() / "rec/name_0.bag").dataset).events.size();
+  EXPECT_GT(events, 0u);
+  EXPECT_LT(events, bag.events.size() / 2);
 }
 
 TEST(BagFolder, ACompressedFileThatIsNoBagIsRefused) {

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// ROS 2 bags as recorders leave them: a folder with one file or several that follow each other.
+// Bags in several files that follow each other: folders of ROS 2, and the parts of `rosbag record --split`.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "edged/io/ros/message_source.hpp"
 
@@ -14,6 +16,14 @@ namespace edged {
 /// none. metadata.yaml, which crashed recorders do not write, says nothing that the files do not.
 std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder);
 
+/// The files that make one bag with the first of them, NAME_0.bag, NAME_1.bag and so on, in this order; that file alone
+/// where it is no first part.
+std::vector<std::filesystem::path> split_bag_parts(const std::filesystem::path& first);
+
+/// Names of the files that a bag in these parts lacks: as the metadata.yaml beside them lists them,
+/// else by their numbers.
+std::vector<std::string> missing_parts(const std::vector<std::filesystem::path>& parts);
+
 /// The messages of one file after those of the other.
 class BagFolder final : public MessageSource {
  public:
@@ -22,6 +32,7 @@ class BagFolder final : public MessageSource {
   Wire wire() const override { return parts_.front().source->wire(); }
   const std::vector<Topic>& topics() const override { return topics_; }
   Duration length() const override;
+  std::optional<Timestamp> begin_stamp() const override { return parts_.front().source->begin_stamp(); }
   std::optional<Message> next() override;
   std::optional<Message> next_of(std::size_t topic) override;
 

@@ -30,6 +30,8 @@ class MessageSource {
   virtual const std::vector<Topic>& topics() const = 0;
   /// From the first to the last message, by the recorder's clock.
   virtual Duration length() const = 0;
+  /// Of the first message, by the recorder's clock, where the container tells it.
+  virtual std::optional<Timestamp> begin_stamp() const { return std::nullopt; }
   virtual std::optional<Message> next() = 0;
   /// The next of that topic alone. What lies before it is not read, as far as an index tells that.
   virtual std::optional<Message> next_of(std::size_t topic);

@@ -13,6 +13,7 @@
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/io/distortion.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -173,20 +174,13 @@ CameraModel read_camera_info(WireReader message) try {
   const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
   if (width > kLargestSide || height > kLargestSide) throw Damage("no size of an image");
   const std::string name(message.text());
-  const bool radial = name == "rational_polynomial" || name.empty();
-  const LensModel* lens = radial ? &lens_model(DistortionModel::RadTan) : find_lens_model(name);
-  std::array<double, 5> coefficients{};
-  for (std::size_t i = 0, count = message.list(sizeof(double)); i < count; ++i) {
-    const auto k = message.number<double>();
-    if (lens && i < lens->most)
-      coefficients[i] = k;
-    else if (k != 0.0)
-      throw Damage("distortion `" + name + "` with such coefficients is not supported");
-  }
+  std::vector<double> coefficients(message.list(sizeof(double)));
+  for (double& k : coefficients) k = message.number<double>();
   const Eigen::Matrix<double, 9, 1> K = message.vector<9>();
   if (K[0] == 0.0) throw Damage("not calibrated");
-  return CameraModel(static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5],
-                     lens ? lens->model : DistortionModel::None, coefficients);
+  const Distortion distortion = make_distortion(name.empty() ? "plumb_bob" : name, coefficients);
+  return CameraModel(static_cast<int>(width), static_cast<int>(height), K[0], K[4], K[2], K[5], distortion.model,
+                     distortion.k);
 } catch (const InputError& e) {
   throw Damage(e.what());
 }

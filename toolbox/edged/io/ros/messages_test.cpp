@@ -238,6 +238,25 @@ TEST_P(Messages, CameraInfoGivesTheIntrinsicsOfTheCameraBesideIt) {
   EXPECT_EQ(open(topics).calibration->rig.camera("events").model, model);
 }
 
+TEST_P(Messages, IntrinsicsMayBePaddedWithZeros) {
+  for (const double k5 : {0.0, 0.1}) {
+    std::vector<TestTopic> topics = SmallBag(wire()).topics;
+    WireWriter out(wire());
+    out.header(kStart, "c");
+    out.number(std::uint32_t{260});
+    out.number(std::uint32_t{346});
+    out.text("rational_polynomial");
+    out.number(std::uint32_t{14});
+    std::vector<double> k(14, 0.0);
+    k[0] = -0.3, k[6] = k5;
+    out.numbers(k);
+    out.numbers(std::vector<double>{200, 0, 170, 0, 200, 130, 0, 0, 1});
+    out.numbers(std::vector<double>(9 + 12, 0.0));
+    topics.push_back({"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, out.message()}}});
+    EXPECT_EQ(open(topics).calibration.has_value(), k5 == 0.0);
+  }
+}
+
 TEST_P(Messages, IntrinsicsThatAreNotOursOrNotSetAreLeftOut) {
   std::vector<TestTopic> topics = SmallBag(wire()).topics;
   WireWriter out(wire());

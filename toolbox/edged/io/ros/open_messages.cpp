@@ -3,6 +3,9 @@
 // Which container a file is.
 #include "edged/io/ros/open_messages.hpp"
 
+#include <spdlog/fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
 #include "edged/core/check.hpp"
 #include "edged/io/mcap_format.hpp"
 #include "edged/io/ros/bag.hpp"
@@ -47,6 +50,14 @@ std::unique_ptr<MessageSource> open_container(const std::filesystem::path& file,
   throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.string());
 }
 
+/// Files whose names only look like parts were recorded at other times.
+bool follows(const MessageSource& part, const MessageSource& before) {
+  constexpr Duration kOverlap = std::chrono::seconds(5), kGap = std::chrono::seconds(10);
+  if (!part.begin_stamp() || !before.begin_stamp()) return true;
+  const Duration gap = *part.begin_stamp() - (*before.begin_stamp() + before.length());
+  return gap > -kOverlap && gap < kGap;
+}
+
 }  // namespace
 
 bool is_bag(ByteSpan head) { return container_of(head) != Container::None; }
@@ -54,9 +65,22 @@ bool is_bag(ByteSpan head) { return container_of(head) != Container::None; }
 bool is_bag_folder(const std::filesystem::path& folder) { return !bag_parts(folder).empty(); }
 
 std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs) {
-  if (!std::filesystem::is_directory(path)) return open_container(path, repairs);
+  const bool folder = std::filesystem::is_directory(path);
+  const std::vector<std::filesystem::path> files = folder ? bag_parts(path) : split_bag_parts(path);
+  if (!folder && files.size() == 1) return open_container(path, repairs);
   std::vector<std::unique_ptr<MessageSource>> parts;
-  for (const std::filesystem::path& file : bag_parts(path)) parts.push_back(open_container(file, repairs));
+  const std::vector<std::string> missing = missing_parts(files);
+  for (const std::filesystem::path& file : files) {
+    parts.push_back(open_container(file, repairs));
+    if (folder || parts.size() == 1 || !missing.empty() || follows(*parts.back(), *parts[parts.size() - 2])) continue;
+    if (repairs)
+      spdlog::warn(
+          fmt::format("{}: does not follow the part before it: {} is read alone", file.string(), path.string()));
+    return open_container(path, repairs);
+  }
+  if (!missing.empty() && repairs)
+    repairs->add("bag: part missing",
+                 fmt::format("{}: lacks {}; the others are read", path.string(), fmt::join(missing, ", ")));
   return std::make_unique<BagFolder>(std::move(parts));
 }
 

@@ -17,6 +17,7 @@ class RecordSource : public MessageSource {
  public:
   const std::vector<Topic>& topics() const final { return topics_; }
   Duration length() const final { return last_ > first_ ? last_ - first_ : Duration(0); }
+  std::optional<Timestamp> begin_stamp() const final { return last_ >= first_ ? std::optional(first_) : std::nullopt; }
   std::optional<Message> next() final;
   std::optional<Message> next_of(std::size_t topic) final;
 

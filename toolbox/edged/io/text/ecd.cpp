@@ -3,25 +3,27 @@
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
 #include "edged/io/text/ecd.hpp"
 
-#include <array>
-
 #include "edged/core/check.hpp"
 #include "edged/io/calibration_source.hpp"
 #include "edged/io/dataset_folders.hpp"
 #include "edged/io/geometry.hpp"
+#include "edged/io/imu_lines.hpp"
+#include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 
 namespace edged {
 namespace {
 
-/// `t ax ay az gx gy gz`: acceleration first.
-std::optional<ImuSample> parse_ecd_imu(std::string_view line) {
-  FieldReader fields(line);
-  const auto t = parse_seconds(fields.next());
-  std::array<double, 6> v;
-  if (!t || !read_numbers(fields, v) || !fields.rest().empty()) return std::nullopt;
-  return ImuSample{*t, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
+/// UZH-FPV (Delmerico et al., ICRA 2019) has the layout with a column `id` in front, and ground truth of the IMU.
+bool is_uzh_fpv(const SourcePath& folder) {
+  for (const char* name : {"groundtruth.txt", "imu.txt"}) {
+    const SourcePath file = folder / name;
+    if (!file.is_file()) continue;
+    const std::vector<ColumnName> names = last_heading(file);
+    if (!names.empty() && has_word(names.front(), {"id"})) return true;
+  }
+  return false;
 }
 
 std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const std::string& camera, Repairs& repairs) {
@@ -41,7 +43,7 @@ cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::option
 
 }  // namespace
 
-Recording open_ecd(const SourcePath& folder, const Rig* rig) {
+Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
   Recording recording;
   if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = read_calibration(own);
   // The lens of a sequence can differ from that of the rig: the data set used several.
@@ -52,18 +54,17 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig) {
   TextLayout layout;
   layout.info.name = folder.name();
   layout.info.format = "ecd";
-  layout.parse_stamp = parse_seconds;
   if (const SourcePath events = folder / "events.txt"; events.is_file()) {
     const cv::Size size = sensor_size(folder, rig, recording.calibration);
     layout.info.event_sensor = size;
-    layout.events = EventFile{events, "events", size.width, size.height};
+    layout.events = EventFile{events, "events", size.width, size.height, named_event_columns(events)};
   }
-  if ((folder / "images.txt").is_file()) layout.frames = {{"frames", ecd_images(folder)}};
-  if (const SourcePath imu = folder / "imu.txt"; imu.is_file())
-    layout.imu = {imu, "imu", "t ax ay az gx gy gz", LastLine::MustEnd, parse_ecd_imu};
+  if (find_ecd_image_list(folder)) layout.frames = {{"frames", ecd_images(folder)}};
+  if (const SourcePath imu = folder / "imu.txt"; options.own_imu && imu.is_file())
+    layout.imu = documented_imu_lines(imu, accel_first(TimeUnit::Seconds), true);
   if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file()) {
     const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
-    layout.info.pose_frame = no_event_camera ? "frames" : "events";
+    layout.info.pose_frame = is_uzh_fpv(folder) ? "body" : no_event_camera ? "frames" : "events";
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
       return read_ground_truth(truth, camera, repairs);
     };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The text folders of the Event-Camera Dataset.
+// The text folders of the Event-Camera Dataset and of UZH-FPV.
 #pragma once
 
 #include "edged/io/recording.hpp"
@@ -9,6 +9,6 @@
 namespace edged {
 
 /// A folder that is_ecd_folder() recognises.
-Recording open_ecd(const SourcePath& folder, const Rig* rig);
+Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

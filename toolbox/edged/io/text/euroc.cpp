@@ -7,13 +7,14 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/calibration_source.hpp"
+#include "edged/io/dataset_folders.hpp"
+#include "edged/io/imu_lines.hpp"
 #include "edged/io/text/text_dataset.hpp"
 #include "edged/io/trajectory_io.hpp"
 
@@ -24,25 +25,6 @@ namespace {
 constexpr const char* kTruthFolders[] = {"state_groundtruth_estimate0", "mocap0"};
 /// Folders of what EuRoC's truth was made from: positions alone, poses of a marker.
 constexpr const char* kRawTruthFolders[] = {"leica0", "vicon0"};
-
-/// `ns, wx, wy, wz, ax, ay, az`: angular velocity first.
-std::optional<ImuSample> parse_euroc_imu(std::string_view line) {
-  FieldReader fields(line);
-  const auto t = parse_nanoseconds(fields.next());
-  std::array<double, 6> v;
-  if (!t || !read_numbers(fields, v)) return std::nullopt;
-  return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-}
-
-StampedLines<FrameEntry>::Spec euroc_images(const SourcePath& cam0) {
-  return {cam0 / "data.csv", "frames", "ns, file name", LastLine::MayLackEnd,
-          [cam0](std::string_view line) -> std::optional<FrameEntry> {
-            FieldReader fields(line);
-            const auto t = parse_nanoseconds(fields.next());
-            if (!t || fields.rest().empty()) return std::nullopt;
-            return FrameEntry{*t, cam0 / "data" / fields.rest()};
-          }};
-}
 
 std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& repairs) {
   LineDamage damage(file.string(), "groundtruth", repairs);
@@ -99,16 +81,17 @@ Calibration calibration_of(const SourcePath& mav0, const std::set<std::string>& 
 
 }  // namespace
 
-Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras) {
+Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options) {
   TextLayout layout;
   layout.info.name = (mav0.name() == "mav0" ? mav0.parent_path() : mav0).name();
   layout.info.format = "euroc";
   layout.info.pose_frame = "body";
-  layout.parse_stamp = parse_nanoseconds;
-  const std::set<std::string> read = cameras_to_read(mav0, cameras);
-  for (const std::string& camera : read) layout.frames.push_back({camera, euroc_images(mav0 / camera)});
-  if (const SourcePath imu = mav0 / "imu0" / "data.csv"; imu.is_file())
-    layout.imu = {imu, "imu", "ns, wx, wy, wz, ax, ay, az", LastLine::MustEnd, parse_euroc_imu};
+  const std::set<std::string> read = cameras_to_read(mav0, options.cameras);
+  for (const std::string& camera : read)
+    layout.frames.push_back(
+        {camera, image_lines(mav0 / camera / "data.csv", mav0 / camera / "data", TimeUnit::Nanoseconds)});
+  if (const SourcePath imu = mav0 / "imu0" / "data.csv"; options.own_imu && imu.is_file())
+    layout.imu = documented_imu_lines(imu, gyro_first(TimeUnit::Nanoseconds));
   if (const auto truth = find_truth(mav0))
     layout.ground_truth = [file = *truth](Repairs& repairs) { return read_ground_truth(file, repairs); };
 

@@ -3,15 +3,12 @@
 // The ASL folders of EuRoC and TUM-VI.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "edged/io/recording.hpp"
 #include "edged/io/source_path.hpp"
 
 namespace edged {
 
 /// A folder that find_mav0() found.
-Recording open_euroc(const SourcePath& mav0, const std::vector<std::string>& cameras);
+Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options);
 
 }  // namespace edged

@@ -4,6 +4,7 @@
 #include "edged/io/text/event_csv.hpp"
 
 #include <spdlog/fmt/compile.h>
+#include <spdlog/spdlog.h>
 
 #include <iterator>
 
@@ -52,6 +53,7 @@ class CsvWriter final : public RecordingWriter {
 
 Recording open_event_csv(const SourcePath& file, const EventTextForm& form, const Rig* rig,
                          const RecordingOptions& options) {
+  if (!form.complaint.empty()) spdlog::warn(form.complaint + " (columns found from the content)");
   const cv::Size size = event_sensor_size(file.string(), options.geometry ? options.geometry : form.geometry, rig);
   TextLayout layout;
   layout.info.name = std::filesystem::path(file.name()).stem().string();

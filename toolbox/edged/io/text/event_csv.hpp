@@ -32,6 +32,7 @@ struct EventTextForm {
   bool unit_known = false;
   std::optional<cv::Size> geometry;  ///< "# geometry WxH", or a first line `W H`
   StampSample stamps;
+  std::string complaint = {};  ///< of a heading with names that are not known: the columns are those of the content
 };
 
 /// Nothing where the file holds no lines of events: numbers `t x y p` or in another order that only fits as events, or

@@ -8,6 +8,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "edged/io/text_columns.hpp"
 
 namespace edged {
 namespace {
@@ -17,46 +18,32 @@ constexpr std::size_t kMostHeaderLines = 100;
 
 using Row = std::array<double, 4>;
 
-struct ColumnName {
-  std::string name;  ///< in small letters, without its unit
-  std::optional<TimeUnit> unit;
-};
-
-/// Of "timestamp [us]", "t(s)", "\"ts_ns\"" or "x".
-ColumnName column_name(std::string_view text) {
-  ColumnName out;
-  for (const char c : lower_case(text))
-    if (c != '"' && c != '\'' && c != ' ' && c != '\t') out.name += c;
-  const std::size_t cut = out.name.find_first_of("[(_");
-  if (cut == std::string::npos || cut == 0) return out;
-  std::string unit = out.name.substr(cut + 1);
-  if (!unit.empty() && (unit.back() == ']' || unit.back() == ')')) unit.pop_back();
-  out.unit = parse_time_unit(unit);
-  out.name.resize(cut);
-  return out;
+/// 0: time, 1: x, 2: y, 3: polarity.
+std::optional<std::size_t> event_role(const ColumnName& column) {
+  if (has_word(column, {"p", "pol", "polarity", "polarities", "on"})) return 3;
+  if (names_time(column)) return 0;
+  std::vector<std::string> words = column.words;
+  std::erase_if(words, [](const std::string& word) {
+    return is_one_of(word, {"event", "pixel", "px", "coord", "coordinate", "addr", "address", "pos"});
+  });
+  if (words.size() != 1) return std::nullopt;
+  if (is_one_of(words[0], {"x", "col", "column"})) return 1;
+  return is_one_of(words[0], {"y", "row"}) ? std::optional<std::size_t>(2) : std::nullopt;
 }
 
-/// The columns that a line names; nothing where it does not name all four once.
-std::optional<EventTextForm> named_columns(std::string_view line) {
-  line.remove_prefix(std::min(line.size(), line.find_first_not_of("#%/ \t")));
-  const std::vector<std::string> fields = heading_fields(line.substr(0, line.find_last_not_of(" \t\r") + 1));
-  if (fields.size() < 4 || fields.size() > EventColumns::kMost) return std::nullopt;
-  constexpr std::string_view kNames[4] = {" t ts time timestamp timestamps stamp ", " x col column ", " y row ",
-                                          " p pol polarity polarities on "};
+/// Nothing where no line names all columns.
+std::optional<EventTextForm> form_by_heading(const SourcePath& file) {
+  static const ColumnRoles roles{{"t", "x", "y", "p"}, event_role, "t[s],x,y,p"};
+  const auto columns = named_columns(file, roles);
+  if (!columns || columns->count > EventColumns::kMost) return std::nullopt;
+  const NamedColumns& named = *columns;
   EventTextForm form;
-  std::size_t* const places[4] = {&form.columns.t, &form.columns.x, &form.columns.y, &form.columns.p};
-  std::array<int, 4> found{};
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const ColumnName column = column_name(fields[i]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (column.name.empty() || kNames[k].find(" " + column.name + " ") == std::string_view::npos) continue;
-      ++found[k];
-      *places[k] = i;
-      if (k == 0 && column.unit) form.columns.unit = *column.unit, form.unit_known = true;
-    }
-  }
-  form.columns.count = fields.size();
-  return found == std::array<int, 4>{1, 1, 1, 1} ? std::optional(form) : std::nullopt;
+  form.columns = {.t = named.at[0], .x = named.at[1], .y = named.at[2], .p = named.at[3], .count = named.count};
+  form.columns.header_lines = named.line;
+  const auto unit = time_unit_of(named.name_of(0));
+  form.columns.unit = unit.value_or(TimeUnit::Seconds);
+  form.unit_known = unit.has_value();
+  return form;
 }
 
 /// The numbers of a line; nothing where it holds anything else.
@@ -107,17 +94,15 @@ std::optional<cv::Size> geometry_in_comment(std::string_view line) {
 /// Reads lines until the form is known and the rows are enough.
 class FormFinder {
  public:
+  explicit FormFinder(const std::optional<EventTextForm>& named)
+      : form_(named.value_or(EventTextForm())), named_(named.has_value()) {}
+
   /// False once no further line is wanted, or the file is none of events.
   bool take(std::string_view line) {
     ++line_;
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) return true;
     if (const auto numbers = numbers_of(line)) return take_row(line, *numbers);
     if (!raw_.empty()) return true;  // a damaged line
-    if (const auto named = named_columns(line)) {
-      const auto geometry = form_.geometry;
-      form_ = *named, form_.geometry = geometry;
-      named_ = true;
-    }
     if (const auto size = geometry_in_comment(line)) form_.geometry = size;
     form_.columns.header_lines = line_;
     return line_ < kMostHeaderLines;
@@ -171,7 +156,7 @@ class FormFinder {
   }
 
   EventTextForm form_;
-  bool named_ = false;
+  bool named_;
   std::size_t line_ = 0;
   std::vector<std::string> raw_;
   std::vector<Row> rows_;
@@ -211,17 +196,31 @@ std::optional<TimeUnit> guess_time_unit(const StampSample& stamps) {
   return only;
 }
 
+EventColumns named_event_columns(const SourcePath& file) {
+  const auto form = form_by_heading(file);
+  return form ? form->columns : EventColumns();
+}
+
 std::optional<EventTextForm> find_event_form(const SourcePath& file) try {
   BlockReader blocks(file);
   std::string_view block = blocks.next();
   if (!is_text(block)) return std::nullopt;
-  FormFinder finder;
+  std::optional<EventTextForm> named;
+  std::string complaint;
+  try {
+    named = form_by_heading(file);
+  } catch (const InputError& e) {
+    complaint = e.what();
+  }
+  FormFinder finder(named);
   while (!block.empty()) {
     const std::size_t end = block.find('\n');
     if (!finder.take(block.substr(0, end))) break;
     block.remove_prefix(end + 1);
   }
-  return finder.finish(file);
+  auto form = finder.finish(file);
+  if (form) form->complaint = std::move(complaint);
+  return form;
 } catch (const InputError&) {
   return std::nullopt;  // no text
 }

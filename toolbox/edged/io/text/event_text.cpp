@@ -130,6 +130,7 @@ bool EventTextStream::refill() {
   const std::string_view block = blocks_.next();
   at_end_ = block.empty();
   parse_block(block);
+  if (at_end_) gate_.finish([this](const Event& passed) { place(passed); });
   ready_ = events_.size();
   if (at_end_ && !blocks_.damage().empty()) damage_.mended(line_, "file cut by damage", blocks_.damage());
   if (at_end_) return true;
@@ -159,13 +160,25 @@ void EventTextStream::parse_block(std::string_view block) {
       damage_.bad(line_, "pixel outside the sensor",
                   fmt::format("pixel ({}, {}) outside the {} x {} sensor: is this its calibration?", event.x, event.y,
                               width_, height_));
-    } else if (event.t >= newest_) [[likely]] {
-      newest_ = event.t;
-      events_.push_back(event);
+    } else if (gate_.goes_on(event.t)) [[likely]] {
+      place(event);
     } else {
-      place_late(event);
+      gate_.push(
+          event, [this](const Event& passed) { place(passed); },
+          [this](const Event& wrong, Timestamp following) {
+            damage_.bad(
+                line_, "stamp far ahead, dropped",
+                fmt::format("stamp {} s is followed by {} s", format_seconds(wrong.t), format_seconds(following)));
+          });
     }
   }
+}
+
+void EventTextStream::place(const Event& event) {
+  if (event.t < newest_) [[unlikely]]
+    return place_late(event);
+  newest_ = event.t;
+  events_.push_back(event);
 }
 
 void EventTextStream::place_late(const Event& event) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "edged/io/ahead_gate.hpp"
 #include "edged/io/repairs.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/measurement.hpp"
@@ -23,6 +24,10 @@ struct EventColumns {
   bool operator==(const EventColumns&) const = default;
 };
 
+/// The columns and the unit that the heading of a file names; the default where it has none. Throws InputError as
+/// named_columns() does.
+EventColumns named_event_columns(const SourcePath& file);
+
 /// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1, separated
 /// by blanks, commas or semicolons. There must be a '\n' at or after p. Returns the start of the next line, or null
 /// when the line is not of that form.
@@ -36,8 +41,8 @@ bool parse_event_fields(std::string_view line, const EventColumns& columns, Even
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns);
 
 /// The events of a file in time order. Memory stays bounded: a block of text and the events in it.
-/// Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines are left out. All
-/// counted.
+/// Stamps far ahead pass an AheadGate. Events up to 1 ms late are sorted in; later ones, those outside the sensor and
+/// unreadable lines are left out. All counted.
 class EventTextStream {
  public:
   EventTextStream(const SourcePath& file, const EventColumns& columns, int width, int height, Repairs& repairs);
@@ -51,6 +56,7 @@ class EventTextStream {
  private:
   bool refill();
   void parse_block(std::string_view block);
+  void place(const Event& event);
   void place_late(const Event& event);
   void reject_line(std::string_view line, bool terminated);
 
@@ -66,6 +72,7 @@ class EventTextStream {
   Timestamp taken_ = Timestamp::min();  ///< stamp of the last event taken
   Timestamp newest_ = Timestamp::min();
   bool at_end_ = false;
+  AheadGate<Event> gate_;
 };
 
 }  // namespace edged

@@ -149,7 +149,7 @@ TEST(EventStream, DropsOneWrongStampAheadInsteadOfTheRest) {
   const Stream s = read_stream(folder.write("events.txt", "0.1 1 1 1\n0.2 2 2 1\n500.0 3 3 1\n0.3 4 4 1\n0.4 5 5 1\n"));
   ASSERT_EQ(s.events.size(), 4u);
   EXPECT_EQ(s.events[2].x, 4);
-  EXPECT_EQ(s.repairs.at("events: out of order, dropped"), 1u);
+  EXPECT_EQ(s.repairs.at("events: stamp far ahead, dropped"), 1u);
 }
 
 TEST(EventStream, KeepsBitsOfDuplicatedLines) {

@@ -3,28 +3,12 @@
 // IMU samples from a text file of any tool, beside a recording that has none.
 #pragma once
 
-#include <array>
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "edged/dataset.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/imu_lines.hpp"
 
 namespace edged {
-
-/// Where the numbers of an IMU file stand and what they are.
-struct ImuTextForm {
-  std::size_t t = 0;
-  std::array<std::size_t, 3> gyro{}, accel{};
-  TimeUnit unit = TimeUnit::Seconds;
-  double gyro_scale = 1.0;   ///< to rad/s
-  double accel_scale = 1.0;  ///< to m/s^2
-  bool named = false;        ///< the columns, by the first line; else gravity tells which they are
-  bool guessed = false;      ///< something of all this is not named, but found from the content
-  std::string said;          ///< for the user: columns, units, and what of it is a guess
-};
 
 /// Columns by the names in the first line; where there is none, seven columns `t gx gy gz ax ay az` or `t ax ay az gx
 /// gy gz`, whichever has gravity in the accelerometer. Units by the names, else by the content: gravity, turns faster

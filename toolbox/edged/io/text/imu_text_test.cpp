@@ -88,7 +88,8 @@ TEST(ImuText, WhatIsNotCertainIsRefusedWithALineToWrite) {
   EXPECT_THAT(refusal_of(folder, imu_lines("", 1, 0.8, 1)), HasSubstr("gravity does not identify"));
   EXPECT_THAT(refusal_of(folder, imu_lines("t,gx,gy,gz,ax,ay,az", 1, 1, 42)),
               HasSubstr("accelerometer is not certain"));
-  EXPECT_THAT(refusal_of(folder, imu_lines("t,gx,gy,gz,ax,ay,temperature", 1, 1, 9.8)), HasSubstr("each axis"));
+  EXPECT_THAT(refusal_of(folder, imu_lines("t,gx,gy,gz,ax,ay,temperature", 1, 1, 9.8)),
+              HasSubstr("no column is called az; not known: `temperature`"));
   EXPECT_THAT(refusal_of(folder, "hello\n"), HasSubstr("t[s],gx[rad/s]"));
 }
 

@@ -64,11 +64,16 @@ void TextDataset::find_ends() {
   const auto extend = [&info](std::optional<Timestamp> t) {
     if (t) info.end = std::max(info.end.value_or(*t), *t);
   };
-  const auto first_field = [this](std::string_view line) { return layout_.parse_stamp(FieldReader(line).next()); };
+  const auto stamp_of = [](const auto& spec) {
+    return [&spec](std::string_view line) -> std::optional<Timestamp> {
+      const auto item = spec.parse(line);
+      return item ? std::optional(item->t) : std::nullopt;
+    };
+  };
   const auto event_stamp = [this](std::string_view line) { return parse_event_stamp(line, layout_.events->columns); };
   if (events_) extend(last_stamp(layout_.events->file, event_stamp));
-  for (const FrameFile& f : layout_.frames) extend(last_stamp(f.lines.file, first_field));
-  if (imu_) extend(last_stamp(layout_.imu->file, first_field));
+  for (const FrameFile& f : layout_.frames) extend(last_stamp(f.lines.file, stamp_of(f.lines)));
+  if (imu_) extend(last_stamp(layout_.imu->file, stamp_of(*layout_.imu)));
 }
 
 std::optional<Measurement> TextDataset::next() {

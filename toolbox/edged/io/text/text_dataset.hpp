@@ -34,8 +34,7 @@ struct TextLayout {
   std::optional<EventFile> events;
   std::vector<FrameFile> frames;  ///< one a camera, each with a name of its own
   std::optional<StampedLines<ImuSample>::Spec> imu;
-  std::optional<Timestamp> (*parse_stamp)(std::string_view) = nullptr;  ///< of the first field of imu and frames
-  std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;     ///< may be empty
+  std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;  ///< may be empty
 };
 
 class TextDataset final : public Dataset {

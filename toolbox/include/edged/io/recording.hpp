@@ -33,6 +33,8 @@ struct RecordingOptions {
   std::map<std::string, std::string> topics = {};
   /// Of EuRoC folders: names of the cameras to read ("cam0", "cam1"); where none is there, "cam0".
   std::vector<std::string> cameras = {};
+  /// False: the IMU file of the recording is not opened, as the user gives another one.
+  bool own_imu = true;
 };
 
 }  // namespace edged

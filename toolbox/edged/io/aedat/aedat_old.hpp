@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// AEDAT 2.0 files of jAER and AEDAT 3.1 files of cAER: events, frames and IMU of DAVIS cameras.
+#pragma once
+
+#include <optional>
+
+#include "edged/io/bytes.hpp"
+#include "edged/io/recording.hpp"
+
+namespace edged {
+
+/// From the first bytes of a file: any AEDAT before version 4.
+bool is_old_aedat(ByteSpan head);
+
+/// Cameras "events" and "frames"; stamps are those of the camera. Of options: geometry of the event sensor. Throws
+/// InputError for other versions and cameras.
+Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
+
+/// What the lines of `#` at the begin of a file say.
+struct OldAedatHeader {
+  std::uint64_t bytes = 0;
+  std::string version;             ///< "2.0"
+  std::string chip;                ///< "DAVIS240C"; "" where nothing says it
+  std::optional<cv::Size> sensor;  ///< of that chip [px]
+  double gyro_lsb_per_dps = 32.8;  ///< +-1000 deg/s, as of the MPU-6150 of these cameras
+  double accel_lsb_per_g = 4096;   ///< +-8 g
+};
+
+/// head: the front of a file. Throws Damage where no line ends.
+OldAedatHeader parse_old_aedat_header(ByteSpan head);
+
+Recording open_aedat2(const std::filesystem::path& file, const OldAedatHeader& header, cv::Size sensor);
+Recording open_aedat3(const std::filesystem::path& file, const OldAedatHeader& header, cv::Size sensor);
+
+}  // namespace edged

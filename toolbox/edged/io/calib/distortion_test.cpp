@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Coefficients that OpenCV pads with zeros, alike in every format.
+#include "edged/io/distortion.hpp"
+
+#include <gmock/gmock.h>
+#include <spdlog/fmt/ranges.h>
+
+#include "edged/io/calibration.hpp"
+#include "edged/io/test_support.hpp"
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A calibration with these coefficients in each of the formats that list them.
+std::vector<std::pair<std::string, std::string>> files_with(const std::vector<double>& k) {
+  const std::string list = fmt::format("[{}]", fmt::join(k, ", "));
+  const std::string T = "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]";
+  return {
+      {"own.yaml",
+       "edged_rig: 1\nname: a\ncameras:\n  - name: events\n    modality: events\n    resolution: [240, 180]\n"
+       "    intrinsics: [200, 200, 120, 90]\n    distortion: radtan\n    coefficients: " +
+           list + "\n    T_B_C: " + T + "\n"},
+      {"camchain.yaml",
+       "cam0:\n  camera_model: pinhole\n  rostopic: /dvs/events\n  resolution: [240, 180]\n"
+       "  intrinsics: [200, 200, 120, 90]\n  distortion_model: radtan\n  distortion_coeffs: " +
+           list + "\n  T_cam_imu: " + T + "\n"},
+      {"info.yaml",
+       "image_width: 240\nimage_height: 180\ncamera_name: dvs\ncamera_matrix: {rows: 3, cols: 3, data: [200, 0, "
+       "120, 0, 200, 90, 0, 0, 1]}\ndistortion_model: rational_polynomial\ndistortion_coefficients: {rows: 1, "
+       "cols: " +
+           std::to_string(k.size()) + ", data: " + list + "}\n"},
+      {"mav0/cam0/sensor.yaml",
+       "sensor_type: camera\nT_BS: {rows: 4, cols: 4, data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, "
+       "0, 0, 1]}\nresolution: [240, 180]\ncamera_model: pinhole\nintrinsics: [200, 200, 120, 90]\n"
+       "distortion_model: radial-tangential\ndistortion_coefficients: " +
+           list + "\n"},
+      {"calib.txt", fmt::format("200 200 120 90 {}\n", fmt::join(k, " "))},
+  };
+}
+
+TEST(Distortion, ZerosBehindTheCoefficientsOfTheModelAreAcceptedInEveryFormat) {
+  const TempFolder folder;
+  for (const std::size_t count : {4U, 5U, 8U, 12U, 14U}) {
+    std::vector<double> k(count, 0.0);
+    k[0] = -0.3, k[1] = 0.1;
+    for (const auto& [name, text] : files_with(k)) {
+      const Calibration calibration = load_calibration(folder.write(name, text), {.otherwise = Sees::Events});
+      const CameraModel& model = calibration.rig.cameras.front().model;
+      EXPECT_EQ(model.distortion(), DistortionModel::RadTan) << name << count;
+      EXPECT_EQ(model.coefficients()[0], -0.3) << name << count;
+    }
+  }
+}
+
+TEST(Distortion, ACoefficientThatIsNotSupportedIsNamedInEveryFormat) {
+  const TempFolder folder;
+  std::vector<double> k(8, 0.0);
+  k[0] = -0.3, k[6] = 0.02;
+  for (const auto& [name, text] : files_with(k)) {
+    const auto file = folder.write(name, text);
+    const std::string refusal = input_error([&] { load_calibration(file, {.otherwise = Sees::Events}); });
+    EXPECT_THAT(refusal, HasSubstr("k5 = 0.02 is not supported")) << name;
+  }
+}
+
+TEST(Distortion, EquidistantAndNoneArePaddedToo) {
+  EXPECT_EQ(make_distortion("equidistant", {0.1, 0.2, 0.3, 0.4, 0, 0, 0, 0}).k[3], 0.4);
+  EXPECT_EQ(make_distortion("none", {0, 0, 0, 0, 0}).model, DistortionModel::None);
+  EXPECT_EQ(make_distortion("fov", {0}).model, DistortionModel::None);
+  EXPECT_THAT(input_error([] { make_distortion("fisheye", {0.1, 0, 0, 0, 0.5}); }), HasSubstr("number 5 = 0.5"));
+  EXPECT_THAT(input_error([] { make_distortion("none", {0.1}); }), HasSubstr("distortion none"));
+  EXPECT_THAT(input_error([] { make_distortion("fov", {0.9}); }), HasSubstr("distortion fov is not supported"));
+  EXPECT_THAT(input_error([] { make_distortion("radtan", {0.1, 0.2}); }), HasSubstr("takes 4 or 5"));
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/io/distortion.hpp"
+
+#include <algorithm>
+
+#include "edged/camera/lens_table.hpp"
+#include "edged/core/check.hpp"
+#include "edged/io/text_parsing.hpp"
+
+namespace edged {
+namespace {
+
+/// OpenCV's order, of which radtan has the first five.
+constexpr std::array<std::string_view, 14> kRadialNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5",
+                                                           "k6", "s1", "s2", "s3", "s4", "tx", "ty"};
+
+/// Models of OpenCV that are radtan as long as their further coefficients are zero.
+bool extends_radtan(std::string_view name) {
+  return name == "rational_polynomial" || name == "rational" || name == "thin_prism";
+}
+
+/// Throws if a coefficient that the model lacks is not zero.
+void refuse_others(const LensModel& lens, const std::vector<double>& k) {
+  const auto from = k.begin() + static_cast<std::ptrdiff_t>(std::min(lens.most, k.size()));
+  const auto first = std::find_if(from, k.end(), [](double x) { return x != 0.0; });
+  if (first == k.end()) return;
+  const auto place = static_cast<std::size_t>(first - k.begin());
+  const bool radial = lens.model == DistortionModel::RadTan && place < kRadialNames.size();
+  throw InputError::format(
+      "distortion {} has {} coefficients, here are {}, and {} = {} is not supported: calibrate with one of {}",
+      lens.name, lens.most, k.size(), radial ? std::string(kRadialNames[place]) : fmt::format("number {}", place + 1),
+      *first, lens_model_names());
+}
+
+}  // namespace
+
+Distortion make_distortion(std::string_view given, const std::vector<double>& k) {
+  const std::string name = given.empty() ? "none" : lower_case(given);
+  const LensModel* lens = extends_radtan(name) ? &lens_model(DistortionModel::RadTan) : find_lens_model(name);
+  if (!lens) {
+    const bool zeros = std::all_of(k.begin(), k.end(), [](double x) { return x == 0.0; });
+    if (zeros && !k.empty()) return {};
+    throw InputError::format("distortion {} is not supported; these are: {}", name, lens_model_names());
+  }
+  if (!k.empty() && k.size() < lens->fewest)
+    throw InputError::format("{} takes {}{} numbers ({}), here are {}", lens->name, lens->fewest,
+                             lens->most > lens->fewest ? fmt::format(" or {}", lens->most) : "", lens->coefficients,
+                             k.size());
+  refuse_others(*lens, k);
+  Distortion out{lens->model, {}};
+  std::copy_n(k.begin(), std::min(lens->most, k.size()), out.k.begin());
+  return out;
+}
+
+}  // namespace edged
