@@ -35,6 +35,7 @@ std::string doctor_command(const SourceOptions& source) {
   add("--rig", source.rig);
   add("--calib", source.calib.string());
   add("--imu", source.imu.string());
+  if (source.imu_clock_rate != 1.0) add("--imu-clock-rate", fmt::format("{}", source.imu_clock_rate));
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);
   for (const std::string& topic : source.topics) add("--topic", topic);
@@ -175,11 +176,12 @@ Verdict judge_run(std::vector<Finding> findings, const RunStatistics& statistics
                   const std::vector<CalibrationFound>& calibration, const SourceOptions& source) {
   Verdict verdict;
   verdict.findings = std::move(findings);
-  for (const CalibrationFound& found : calibration) judge_calibration(found, verdict.findings);
+  if (!imu_unusable(verdict.findings))
+    for (const CalibrationFound& found : calibration) judge_calibration(found, verdict.findings);
   const bool ever_good = statistics.first_good_s().has_value();
   if (ever_good) {
     judge_losses(statistics, verdict.findings);
-    judge_biases(statistics, verdict.findings);
+    if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);
   }
   verdict.contradicted = std::ranges::count(verdict.findings, Severity::Error, &Finding::severity) > 0;
   verdict.trusted = ever_good && !verdict.contradicted;

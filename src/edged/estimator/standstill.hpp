@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,17 @@ class StandstillDetector {
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
   /// Takes one packet: its IMU, its features, and whether the event camera is quiet (nothing moves in its view).
-  void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet);
+  /// bias_gyro: as far as it is known; a mean rate beyond it may be a steady turn.
+  void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet,
+           const Eigen::Vector3d& bias_gyro = Eigen::Vector3d::Zero());
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
   /// True when the IMU alone is sure of it, whatever the cameras see and the estimate says.
   bool still_by_imu() const { return quiet_; }
+  /// True when the picture has stood for a while although the IMU is not calm: rest on something that shakes, or motion
+  /// too slow to see.
+  bool picture_still() const { return picture_still_; }
   /// What keeps it from being called rest, with numbers; empty when still.
   const std::string& reason() const { return reason_; }
   /// Means over the window; meaningful when still.
@@ -47,6 +53,8 @@ class StandstillDetector {
   bool imu_quiet(double window_s);
   bool image_still();
   bool image_glides() const;
+  bool image_turns(const Eigen::Vector3d& rate) const;
+  bool only_shakes(const Spread& spread) const;
   std::vector<Eigen::Vector2d> travels() const;
 
   struct View {
@@ -58,7 +66,8 @@ class StandstillDetector {
   StandstillConfig config_;
   std::deque<ImuSample> imu_;
   std::deque<View> views_;
-  bool still_ = false, quiet_ = false;
+  bool still_ = false, quiet_ = false, picture_still_ = false;
+  std::optional<Timestamp> shakes_since_;
   std::string reason_;
   Eigen::Vector3d mean_gyro_ = Eigen::Vector3d::Zero(), mean_accel_ = Eigen::Vector3d::Zero();
 };

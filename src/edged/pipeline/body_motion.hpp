@@ -19,10 +19,11 @@ class BodyMotion {
 
   /// Moves `now` to the end of `imu` and gives that motion, integrated. started: the estimator knows speed and tilt;
   /// else attitude by gyro only.
-  Preintegration predict(const std::vector<ImuSample>& imu, bool started);
+  Preintegration predict(std::vector<ImuSample> imu, bool started);
 
   /// `now` as estimated: the history moves along. Returns from the old odometry frame to the new one, T_new_old.
-  SE3 correct(const OdomState& estimate);
+  /// new_frame: that is another one, so that the two say nothing of how the body turned.
+  SE3 correct(const OdomState& estimate, bool new_frame = false);
 
   const OdomState& now() const { return now_; }
   /// Whether speed and tilt of `now` mean anything.
@@ -33,10 +34,13 @@ class BodyMotion {
   const std::vector<StampedPose>& poses() const { return T_O_B_; }
 
  private:
+  void bridge(std::vector<ImuSample>& imu) const;
+
   ImuNoise noise_;
   Duration history_;
   OdomState now_;
   bool started_ = false;
+  double bridged_s_ = 0.0;                             ///< length of the last prediction where it is across a gap
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;
 };

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace edged {
 
@@ -18,6 +20,27 @@ struct Finding {
   Severity severity = Severity::Good;
   std::string text;    ///< one line with numbers
   std::string remedy;  ///< what to do; empty where nothing is
+  /// The IMU itself is wrong: until that is mended nothing can be said of a calibration.
+  bool imu_unusable = false;
+};
+
+/// Those of one diagnosis, in their order.
+class Findings {
+ public:
+  void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }
+  void note(std::string text, std::string remedy = "") { add(Severity::Note, std::move(text), std::move(remedy)); }
+  void warn(std::string text, std::string remedy) { add(Severity::Warning, std::move(text), std::move(remedy)); }
+  void error(std::string text, std::string remedy) { add(Severity::Error, std::move(text), std::move(remedy)); }
+  void imu_unusable(std::string text, std::string remedy) {
+    list.push_back({Severity::Error, std::move(text), std::move(remedy), true});
+  }
+
+  std::vector<Finding> list;
+
+ private:
+  void add(Severity severity, std::string text, std::string remedy) {
+    list.push_back({severity, std::move(text), std::move(remedy)});
+  }
 };
 
 }  // namespace edged
