@@ -69,6 +69,34 @@ class Verdict(WithFlight):
     def test_an_accelerometer_in_g(self):
         self.assert_not_trusted("accelerometer in g", "accelerometer in g", "9.80665")
 
+    def test_an_imu_that_itself_is_wrong_and_no_calibration_is_blamed(self):
+        """A dead sensor, another clock, a gap: `doctor` and `run` say the same, and no camera is blamed for it."""
+        begin = float((self.flight / "imu.txt").read_text().split()[0])
+        dead = [0.0, 0.0, 0.0]
+        cases = {"gyro is constant zero": with_imu(lambda t, a, g: (t, a, dead)),
+                 "accelerometer does not change": with_imu(lambda t, a, g: (t, [0.0, 0.0, G], g)),
+                 "gyro: its y axis does not change": with_imu(lambda t, a, g: (t, a, [g[0], 0.0, g[2]])),
+                 r"the IMU covers \d+\.\d s, the other sensors \d+\.\d s: its clock runs at 2\.0":
+                     with_imu(lambda t, a, g: (begin + 2 * (t - begin), a, g)),
+                 r"1 IMU gaps of 0\.8": lambda text: "".join(
+                     line + "\n" for line in text.splitlines() if not 1.2 < float(line.split()[0]) - begin < 2.0)}
+        for text, change in cases.items():
+            with self.subTest(text=text):
+                recording = self.changed("imu.txt", change)
+                self.assertRegex(edged("doctor", recording).stdout, rf"error +{text}")
+                result, metrics = self.run_it(recording, "frames")
+                errors = [f["text"] for f in metrics["findings"] if f["severity"] == "error"]
+                self.assertTrue(any(re.search(text, error) for error in errors), errors)
+                self.assertNotIn("camera frames:", "".join(errors))
+                self.assertFalse(metrics["trusted"])
+                self.assertIn(result.returncode, (4, 5))
+
+    def test_an_imu_clock_that_is_corrected(self):
+        begin = float((self.flight / "imu.txt").read_text().split()[0])
+        fast = self.changed("imu.txt", with_imu(lambda t, a, g: (begin + 2 * (t - begin), a, g)))
+        result, metrics = self.run_it(fast, "frames", "--imu-clock-rate", "2")
+        self.assertEqual((result.returncode, metrics["findings"]), (0, []), result.stdout)
+
     def test_imu_axes_that_are_negated(self):
         for fault in ("all axes negated", "one axis negated"):
             self.assert_not_trusted(fault, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")

@@ -19,6 +19,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/geometry.hpp"
+#include "edged/io/imu_on_other_clock.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
@@ -81,6 +82,16 @@ Recording open_whole(const SourceOptions& options) {
   return recording;
 }
 
+/// With the files of sensors beside it.
+Recording open_with_files(const SourceOptions& options) {
+  Recording recording = open_whole(options);
+  if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  for (const auto& [name, file] : options.external)
+    if (!file.empty())
+      recording.dataset = with_external_file(std::move(recording.dataset), *find_external_sensor(name), file);
+  return recording;
+}
+
 }  // namespace
 
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
@@ -99,6 +110,12 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
                      "Size of the event sensor, WIDTHxHEIGHT [px], for files that do not contain it");
   command.add_option("--time-unit", options.time_unit, "Unit of the timestamps in a plain event file [detected]")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
+  command
+      .add_option(
+          "--imu-clock-rate", options.imu_clock_rate,
+          "How many times as fast as the other sensors' the IMU's clock runs, as `edged doctor` says: its stamps "
+          "are corrected from the first one on")
+      ->check(CLI::Range(0.1, 10.0));
   command
       .add_option("--topic", options.topics,
                   "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height or "
@@ -139,11 +156,12 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
 }
 
 Recording open_uncalibrated(const SourceOptions& options) {
-  Recording recording = open_whole(options);
-  if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
-  for (const auto& [name, file] : options.external)
-    if (!file.empty())
-      recording.dataset = with_external_file(std::move(recording.dataset), *find_external_sensor(name), file);
+  Recording recording = open_with_files(options);
+  if (options.imu_clock_rate != 1.0) {
+    if (is_live(options)) throw InputError("--imu-clock-rate: a live source can be read once only");
+    recording.dataset = std::make_unique<ImuOnOtherClock>(std::move(recording.dataset),
+                                                          open_with_files(options).dataset, options.imu_clock_rate);
+  }
   PieceBounds piece = options.piece;
   if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;
   if (piece.from_s > 0.0 || piece.to_s)
@@ -205,6 +223,7 @@ std::string command_line(const std::string& command, const SourceOptions& source
   add("--rig", source.rig);
   add("--calib", source.calib.string());
   add("--imu", source.imu.string());
+  if (source.imu_clock_rate != 1.0) add("--imu-clock-rate", fmt::format("{}", source.imu_clock_rate));
   for (const auto& [name, file] : source.external) add("--" + name, file.string());
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);

@@ -22,9 +22,10 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;                                             ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;                                 ///< calibration file; "" where not given
-  std::filesystem::path imu;                                   ///< file with IMU samples; "" where not given
+  std::string rig;              ///< name of a shipped rig; "" where not given
+  std::filesystem::path calib;  ///< calibration file; "" where not given
+  std::filesystem::path imu;    ///< file with IMU samples; "" where not given
+  double imu_clock_rate = 1.0;  ///< seconds of the IMU's stamps to a second of the other sensors
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                   ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
@@ -51,7 +52,8 @@ struct Source {
 /// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for an unknown preset.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
-/// Adds --rig, --calib, --geometry, --time-unit, --topic, --from (also --start), --to, --duration and --dim-frames.
+/// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --topic, --from (also --start), --to, --duration and
+/// --dim-frames.
 void add_reading_options(CLI::App& command, SourceOptions& options);
 
 /// Adds RECORDING, --imu, a flag for each external sensor, and these.

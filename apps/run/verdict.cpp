@@ -262,10 +262,11 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
   Verdict& verdict = s.verdict;
   const RunStatistics& statistics = s.statistics;
   const bool ever_good = statistics.first_good_s().has_value();
-  for (const CalibrationFound& found : s.calibration) judge_calibration(found, verdict.findings);
+  if (!imu_unusable(verdict.findings))
+    for (const CalibrationFound& found : s.calibration) judge_calibration(found, verdict.findings);
   if (ever_good) {
     judge_losses(statistics, verdict.findings);
-    judge_biases(statistics, verdict.findings);
+    if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);
   }
   if (s.live) judge_live(*s.live, statistics, verdict.findings);
   judge_against_truth(s, verdict.findings);

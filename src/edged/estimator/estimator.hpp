@@ -68,6 +68,7 @@ class Estimator {
   bool start(const EstimatorInput& input, EstimatorResult& result);
   void update_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
+  bool rests_by_picture() const;
   void append(const EstimatorInput& input);
   bool take_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
@@ -81,8 +82,9 @@ class Estimator {
   ExternalFactors external_;
   Initializer initializer_;
   bool initialized_ = false;
-  double scale_sigma_ = kFree;  ///< of ln scale
-  bool agreed_ = false;         ///< two initializations agree, or nothing has contradicted one until agreed_by_itself_
+  double scale_sigma_ = kFree;   ///< of ln scale
+  bool sees_landmarks_ = false;  ///< the newest state
+  bool agreed_ = false;          ///< two initializations agree, or nothing has contradicted one until agreed_by_itself_
   Timestamp agreed_by_itself_;
   LogScale depth_scale_;
 };

@@ -17,11 +17,34 @@ constexpr std::size_t kBlocks = 8;  // the samples are averaged in blocks, which
 constexpr std::size_t kMinCorners = 8;  // fewer common features do not determine the image motion
 constexpr double kGlideStretch = 3.0;   // of the quiet window, where the whole image moves
 constexpr double kGlideShare = 0.7;     // of the features, those that move as their median does
+// A mean rate is a turn, not a bias, if features move by this share of it or more. A turn about the optical axis hardly
+// moves those in the middle. Rates that move them by less than kLeastTurn times max_image_motion are ignored.
+constexpr double kTurnShare = 0.2, kLeastTurn = 4.0;
+constexpr double kShaking = 6.0;  // times the spreads of a calm IMU: engines, a table that is knocked
+constexpr Duration kLeastShaking =
+    std::chrono::milliseconds(500);  // a body that starts to move has moved the image then
 
 Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
   std::vector<double> x, y;
   for (const Eigen::Vector2d& v : vectors) x.push_back(v.x()), y.push_back(v.y());
   return {median(std::move(x)), median(std::move(y))};
+}
+
+/// Whether nothing was measured for a while since then; what is interpolated repeats itself like a body at rest.
+bool has_gap(const std::deque<ImuSample>& samples, Timestamp since) {
+  constexpr Duration kLongest = std::chrono::milliseconds(100);
+  Timestamp measured = since = std::max(since, samples.front().t);
+  for (const ImuSample& sample : samples) {
+    if (sample.t - std::max(since, measured) > kLongest) return true;
+    if (!sample.made_up) measured = sample.t;
+  }
+  return false;
+}
+
+std::vector<double> lengths_of(const std::vector<Eigen::Vector2d>& vectors) {
+  std::vector<double> lengths;
+  for (const Eigen::Vector2d& v : vectors) lengths.push_back(v.norm());
+  return lengths;
 }
 
 }  // namespace
@@ -41,7 +64,7 @@ void StandstillConfig::visit(ConfigFields& fields) {
 }
 
 void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
-                             bool events_quiet) {
+                             bool events_quiet, const Eigen::Vector3d& bias_gyro) {
   if (imu.empty()) return;
   for (const ImuSample& sample : imu) {
     if (imu_.empty() || sample.t > imu_.back().t) imu_.push_back(sample);
@@ -58,8 +81,21 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
   while (imu_.size() > 1 && imu_[1].t <= now - duration_from_seconds(longest_s)) imu_.pop_front();
   while (views_.size() > 1 && views_[1].t <= now - duration_from_seconds(config_.window_s)) views_.pop_front();
   const Spread spread = spread_over(config_.window_s);
-  still_ = quiet_ = false;
-  if (!imu_calm(spread)) return;
+  still_ = quiet_ = picture_still_ = false;
+  const bool gap = has_gap(imu_, now - duration_from_seconds(config_.quiet_window_s));
+  if (gap || !imu_calm(spread)) {
+    const bool stands = gap ? image_still() : only_shakes(spread);
+    if (gap) reason_ = "IMU samples are missing";
+    if (!stands) return shakes_since_.reset();
+    if (!shakes_since_) shakes_since_ = now;
+    picture_still_ = now - *shakes_since_ >= kLeastShaking;
+    return;
+  }
+  shakes_since_.reset();
+  if (image_turns(mean_gyro_ - bias_gyro)) {
+    reason_ = fmt::format("turning steadily: {:.3f} rad/s", (mean_gyro_ - bias_gyro).norm());
+    return;
+  }
   quiet_ = imu_quiet(config_.quiet_window_s * (image_glides() ? kGlideStretch : 1.0));
   still_ = image_still() || quiet_;
   if (still_) reason_.clear();
@@ -146,9 +182,23 @@ bool StandstillDetector::image_glides() const {
   return static_cast<double>(alike) > kGlideShare * static_cast<double>(all.size());
 }
 
+/// Whether the picture moves as it does where the rate is a turn that an IMU cannot tell from a bias.
+bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) const {
+  const double turned = rate.norm() * config_.window_s;
+  if (turned < kLeastTurn * config_.max_image_motion) return false;
+  std::vector<double> lengths = lengths_of(travels());
+  return lengths.size() >= kMinCorners && median(std::move(lengths)) > kTurnShare * turned;
+}
+
+bool StandstillDetector::only_shakes(const Spread& spread) const {
+  std::vector<double> lengths = lengths_of(travels());
+  return spread.covered_s >= 0.98 * config_.window_s && spread.gyro < kShaking * config_.max_gyro &&
+         spread.mean_gyro.norm() < config_.max_gyro_mean && spread.accel < kShaking * config_.max_accel &&
+         lengths.size() >= kMinCorners && median(std::move(lengths)) <= config_.max_image_motion;
+}
+
 bool StandstillDetector::image_still() {
-  std::vector<double> lengths;
-  for (const Eigen::Vector2d& travel : travels()) lengths.push_back(travel.norm());
+  std::vector<double> lengths = lengths_of(travels());
   if (lengths.size() < kMinCorners) {
     const bool quiet = std::all_of(views_.begin(), views_.end(), [](const View& v) { return v.events_quiet; });
     reason_ = fmt::format("{} of {} features to distinguish rest from uniform motion", lengths.size(), kMinCorners);

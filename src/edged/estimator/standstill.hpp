@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +23,18 @@ class StandstillDetector {
  public:
   explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
 
-  /// Takes one packet: its IMU, its features, and whether the event camera is quiet (static view).
-  void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet);
+  /// Takes one packet: its IMU, its features, and whether the event camera is quiet (static view). bias_gyro: its
+  /// estimate; a mean rate beyond it may be a steady turn.
+  void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet,
+           const Eigen::Vector3d& bias_gyro = Eigen::Vector3d::Zero());
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
   /// True when the IMU alone detects it, independent of cameras and estimate.
   bool still_by_imu() const { return quiet_; }
+  /// True if the image has been static for a while although the IMU is not calm: rest on something that shakes, or
+  /// motion too slow to see.
+  bool picture_still() const { return picture_still_; }
   /// Why it is no standstill, with numbers; empty at standstill.
   const std::string& reason() const { return reason_; }
   /// Means over the window; meaningful when still.
@@ -47,6 +53,8 @@ class StandstillDetector {
   bool imu_quiet(double window_s);
   bool image_still();
   bool image_glides() const;
+  bool image_turns(const Eigen::Vector3d& rate) const;
+  bool only_shakes(const Spread& spread) const;
   std::vector<Eigen::Vector2d> travels() const;
 
   struct View {
@@ -58,7 +66,8 @@ class StandstillDetector {
   StandstillConfig config_;
   std::deque<ImuSample> imu_;
   std::deque<View> views_;
-  bool still_ = false, quiet_ = false;
+  bool still_ = false, quiet_ = false, picture_still_ = false;
+  std::optional<Timestamp> shakes_since_;
   std::string reason_;
   Eigen::Vector3d mean_gyro_ = Eigen::Vector3d::Zero(), mean_accel_ = Eigen::Vector3d::Zero();
 };

@@ -107,6 +107,31 @@ TEST(StandstillDetector, SeesTurningBySpreadAndByMean) {
   EXPECT_THAT(steady.detector.reason(), HasSubstr("mean 0.300 of 0.150"));
 }
 
+TEST(StandstillDetector, TakesASlowPanForNoBias) {
+  // 6 deg/s for long: nothing in the IMU tells it from a bias, but the picture moves as much.
+  const Readings pan{.gyro = [](double) { return Vector3d(0, 0.105, 0); }, .corner_speed = 0.105};
+  Bench bench;
+  for (int i = 0; i < 10; ++i) {
+    bench.run(0.5, pan);
+    EXPECT_FALSE(bench.detector.still());
+  }
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("turning steadily"));
+  Bench biased;
+  biased.run(1.0, {.gyro = pan.gyro});
+  EXPECT_TRUE(biased.detector.still()) << biased.detector.reason();
+}
+
+TEST(StandstillDetector, SeesAPictureThatStandsWhileTheImuShakes) {
+  const auto engines = [](double t) { return Vector3d(0.3 * std::sin(30.0 * t), 0, 9.81); };
+  Bench bench;
+  bench.run(0.6, {.accel = engines});
+  EXPECT_FALSE(bench.detector.still() || bench.detector.picture_still()) << "who starts to move looks alike";
+  bench.run(0.5, {.accel = engines});
+  EXPECT_TRUE(bench.detector.picture_still()) << bench.detector.reason();
+  bench.run(0.5, {.accel = engines, .corner_speed = 0.05});
+  EXPECT_FALSE(bench.detector.picture_still());
+}
+
 TEST(StandstillDetector, SeesAPush) {
   Bench bench;
   bench.run(1.0, {});

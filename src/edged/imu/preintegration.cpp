@@ -38,6 +38,14 @@ double sigma_of_jump(const Vector3d& a, const Vector3d& b, double usual) {
 }
 constexpr double kUsualGyroJump = 1.0, kUsualAccelJump = 4.0;  // [rad/s], [m/s^2]
 
+/// What a body does in a gap that nothing measured, against going on as it did: rates of 1.5 rad/s and accelerations of
+/// 5 m/s^2 that last for 0.1 s, as densities. [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
+constexpr double kGapGyroNoise = 0.7, kGapAccelNoise = 2.2;
+
+double density(double noise, bool gap, double gap_noise, bool clipped, double inflation) {
+  return gap ? std::max(noise, gap_noise) : noise * (clipped ? inflation : 1.0);
+}
+
 /// One step linearised: errors at its start and of its two measurements to errors at its end.
 struct StepJacobians {
   double dt = 0.0;        // [s]
@@ -134,15 +142,16 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
   const bool gap = in_gap(a, b);
-  const bool gyro_clipped = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation), gyro_out = gap || gyro_clipped;
-  const bool accel_out = gap || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
-  const double gyro_sigma = noise_.gyro_noise * (gyro_out ? noise_.saturation_inflation : 1.0);
-  const double accel_sigma = noise_.accel_noise * (accel_out ? noise_.saturation_inflation : 1.0);
-  saturated_ = saturated_ || gyro_out || accel_out;
+  const bool gyro_clipped = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
+  const bool accel_clipped = out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
+  const double inflation = noise_.saturation_inflation;
+  const double gyro_sigma = density(noise_.gyro_noise, gap, kGapGyroNoise, gyro_clipped, inflation);
+  const double accel_sigma = density(noise_.accel_noise, gap, kGapAccelNoise, accel_clipped, inflation);
+  saturated_ = saturated_ || gap || gyro_clipped || accel_clipped;
   gyro_clipped_ = gyro_clipped_ || gyro_clipped;
   gapped_ = gapped_ || gap;
-  const double gyro_jump = gyro_out ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kUsualGyroJump);
-  const double accel_jump = accel_out ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kUsualAccelJump);
+  const double gyro_jump = gap || gyro_clipped ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kUsualGyroJump);
+  const double accel_jump = gap || accel_clipped ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kUsualAccelJump);
   covariance_ = next_covariance(covariance_, step, gyro_sigma * gyro_sigma / dt + gyro_jump * gyro_jump,
                                 accel_sigma * accel_sigma / dt + accel_jump * accel_jump);
 }

@@ -2,12 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/body_motion.hpp"
 
+#include <algorithm>
+
 namespace edged {
 
-Preintegration BodyMotion::predict(const std::vector<ImuSample>& imu, bool started) {
+/// Where all samples are missing the body goes on as it does: at its rate, by gravity alone without acceleration. What
+/// is interpolated between the ends of a long gap knows less, and nothing of where up is.
+void BodyMotion::bridge(std::vector<ImuSample>& imu) const {
+  for (ImuSample& sample : imu) {
+    const Eigen::Quaterniond R_O_B = now_.T_O_B.rotation() * so3::exp(omega_B_ * to_seconds(sample.t - imu.front().t));
+    sample.gyro_B = now_.bias_gyro + omega_B_;
+    sample.accel_B = now_.bias_accel - R_O_B.conjugate() * kGravity_W;
+  }
+}
+
+Preintegration BodyMotion::predict(std::vector<ImuSample> imu, bool started) {
+  const bool bridged = started && std::ranges::all_of(imu, &ImuSample::made_up);
+  if (bridged) bridge(imu);
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
   const Timestamp t = motion.end();
   started_ = started;
+  bridged_s_ = bridged ? motion.dt() : 0.0;
   std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
     for (const OdomState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_O_B});
@@ -33,8 +48,10 @@ SE3 BodyMotion::moved_on(Duration time) const {
   return {now_.T_O_B.rotation() * so3::exp(omega_B_ * s), now_.T_O_B.translation() + now_.v_O * s};
 }
 
-SE3 BodyMotion::correct(const OdomState& estimate) {
+SE3 BodyMotion::correct(const OdomState& estimate, bool new_frame) {
   SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
+  if (bridged_s_ > 0.0 && !new_frame)  // only the cameras know the rate
+    omega_B_ += so3::log(now_.T_O_B.rotation().conjugate() * estimate.T_O_B.rotation()) / bridged_s_;
   now_ = estimate;
   for (StampedPose& pose : T_O_B_) pose.T = correction * pose.T;
   return correction;

@@ -19,11 +19,11 @@ class BodyMotion {
 
   /// Propagates `now` to the end of `imu` and returns the preintegrated motion. started: speed and tilt are estimated;
   /// else attitude by gyro only.
-  Preintegration predict(const std::vector<ImuSample>& imu, bool started);
+  Preintegration predict(std::vector<ImuSample> imu, bool started);
 
   /// Sets `now` to the estimate and transforms the history. Returns T_new_old, from the old odometry frame to the new
-  /// one.
-  SE3 correct(const OdomState& estimate);
+  /// one. new_frame: the frames are unrelated, so the two estimates do not measure a rotation.
+  SE3 correct(const OdomState& estimate, bool new_frame = false);
 
   const OdomState& now() const { return now_; }
   /// Whether speed and tilt of `now` are estimated.
@@ -34,10 +34,13 @@ class BodyMotion {
   const std::vector<StampedPose>& poses() const { return T_O_B_; }
 
  private:
+  void bridge(std::vector<ImuSample>& imu) const;
+
   ImuNoise noise_;
   Duration history_;
   OdomState now_;
   bool started_ = false;
+  double bridged_s_ = 0.0;                             ///< length of the last prediction where it is across a gap
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;
 };

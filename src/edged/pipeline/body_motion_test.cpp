@@ -63,5 +63,26 @@ TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
   for (std::size_t i = 1; i < body.poses().size(); ++i) EXPECT_LT(body.poses()[i - 1].t, body.poses()[i].t);
 }
 
+/// Where samples are missing: at the rate that the cameras have found, without acceleration.
+TEST(BodyMotion, GoesOnAsItDoesInAGapOfTheImu) {
+  BodyMotion body({}, duration_from_seconds(0.1));
+  body.predict(samples(0.0, 0.05), false);
+  body.correct(moving(0.05, 2.0));
+  body.predict(samples(0.05, 0.1), true);
+  const auto gap = [](double from_s, double to_s) {
+    return std::vector<ImuSample>{{seconds_in(from_s), {9, 9, 9}, {1, 1, 1}, true},
+                                  {seconds_in(to_s), {9, 9, 9}, {1, 1, 1}, true}};
+  };
+  body.predict(gap(0.1, 0.15), true);
+  EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.1 * kTurnRate, 1e-9);
+  EXPECT_NEAR(body.now().T_O_B.translation().x(), 0.2, 1e-9);
+  OdomState estimate = body.now();  // in truth it has stopped to turn
+  estimate.T_O_B = SE3(so3::exp({0, 0, 0.05 * kTurnRate}), estimate.T_O_B.translation());
+  body.correct(estimate);
+  body.predict(gap(0.15, 0.2), true);
+  EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
+  EXPECT_NEAR(body.now().v_O.x(), 2.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace edged

@@ -124,7 +124,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   EstimatorResult result = estimator_.add(input);
   correction.outliers = result.outliers;
   if (!estimator_.initialized()) return result;
-  const SE3 T_new_old = body_.correct(estimator_.newest());
+  const SE3 T_new_old = body_.correct(estimator_.newest(), result.new_frame);
   if (result.new_frame) correction.T_new_old = T_new_old;
   for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera)
     rig_.cameras[camera] = estimator_.window().calibrated(camera);

@@ -13,36 +13,14 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/survey/external_diagnosis.hpp"
+#include "edged/survey/imu_diagnosis.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kShortest_s = 1.0;  // a run needs this much to initialize
-constexpr double kSigmas = 6.0;      // errors of corners are correlated, so sigmas are too small
-
-class Findings {
- public:
-  void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }
-  void note(std::string text, std::string remedy = "") { add(Severity::Note, std::move(text), std::move(remedy)); }
-  void warn(std::string text, std::string remedy) { add(Severity::Warning, std::move(text), std::move(remedy)); }
-  void error(std::string text, std::string remedy) { add(Severity::Error, std::move(text), std::move(remedy)); }
-
-  std::vector<Finding> list;
-
- private:
-  void add(Severity severity, std::string text, std::string remedy) {
-    list.push_back({severity, std::move(text), std::move(remedy)});
-  }
-};
-
-bool sure(const GyroAgreement& found) { return found.unexplained < 0.5; }
-
-/// Corners on images of events underestimate rotation by a third, and no other unit is within a factor of two.
-bool in_degrees(const CameraCheck& check) {
-  const double ratio =
-      check.agreement && sure(*check.agreement) ? check.agreement->gyro_scale / kDegreesPerRadian : 0.0;
-  return ratio > 0.5 && ratio < 2.0;
-}
+constexpr double kShortest_s = 1.0;     // a run needs this much to initialize
+constexpr double kMostLeftOut_s = 0.5;  // at an end that not all sensors reach
+constexpr double kSigmas = 6.0;         // errors of corners are correlated, so sigmas are too small
 
 std::string interval(const char* name, const StreamSurvey& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
@@ -65,7 +43,7 @@ void judge_overlap(const Survey& s, Findings& out) {
   if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
               "stamp all sensors on one clock when recording: no run can mend whole seconds");
-  else if (common < 0.9 * least)
+  else if (common < std::max(0.9 * least, least - kMostLeftOut_s))
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "the time that only some of them cover is not used; check that all were recorded");
   else if (common < kShortest_s)
@@ -83,66 +61,6 @@ void judge_sensors(const Survey& s, Findings& out) {
   if (s.events.count == 0 && s.frames.count == 0)
     out.error("neither events nor frames", "record one of them, or name the topic with --topic events=NAME");
   judge_overlap(s, out);
-}
-
-void judge_imu_rate(const Survey& s, Findings& out) {
-  if (s.imu.count == 0) return;
-  const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
-  if (rate < 100.0)
-    out.warn(fmt::format("IMU at {:.0f} Hz", rate),
-             "record it at 200 Hz or more: between samples the motion is interpolated");
-  else
-    out.good(fmt::format("IMU at {:.0f} Hz", rate));
-  if (s.imu.gaps == 0) return;
-  const Gap& longest = s.imu.longest.front();
-  const std::string text =
-      fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", s.imu.gaps,
-                  to_seconds(s.imu.missing), to_seconds(longest.length), to_seconds(longest.after));
-  const std::string remedy =
-      "gaps are bridged by interpolation and trusted less; look for an overloaded USB bus or a full disk";
-  to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
-}
-
-/// Gravity, constant in magnitude, is in the columns of the gyro and not in those of the accelerometer.
-bool columns_swapped(const ImuSurvey& imu) {
-  const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
-  return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&
-         imu.mean_accel < 0.6 * imu.mean_gyro;
-}
-
-void judge_imu_units(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
-  if (s.imu.count == 0) return;
-  const ImuSurvey& imu = s.imu_details;
-  if (columns_swapped(imu))
-    return out.error(
-        fmt::format("gyro and accelerometer are swapped: the gyro has gravity (mean {:.2f}), the accelerometer a mean "
-                    "of {:.2f}",
-                    imu.mean_gyro, imu.mean_accel),
-        "exchange the columns: an imu.txt has t ax ay az gx gy gz, EuRoC's data.csv t gx gy gz ax ay az");
-  const double g = imu.mean_accel;
-  const double calm = imu.calm ? imu.calm->accel.norm() : g;  // a mean, so that motion does not count
-  if (g > 0.7 && g < 2.5 && calm > 0.8 && calm < 1.25)
-    out.error(fmt::format("accelerometer in g: its mean is {:.2f}, not about 9.8 m/s^2", g), "multiply it by 9.80665");
-  else if (g > 8000 && g < 12000)
-    out.error(fmt::format("accelerometer in mm/s^2: its mean is {:.0f}", g), "divide it by 1000");
-  else if (g < 2.5)
-    out.error(fmt::format("accelerometer without gravity: its mean is {:.2f} m/s^2", g),
-              "record the raw specific force, not the linear acceleration");
-  else if (g < 8.0 || g > 13.0)
-    out.warn(fmt::format("accelerometer with a mean of {:.2f} m/s^2, not about 9.8", g), "check its scale and unit");
-  else
-    out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
-
-  constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
-  const bool compared =
-      std::ranges::any_of(cameras, [](const CameraCheck& c) { return c.agreement && sure(*c.agreement); });
-  if (std::ranges::any_of(cameras, in_degrees))
-    out.error("gyro in deg/s: it turns 57 times as fast as the camera", "multiply it by pi / 180");
-  else if (!compared && imu.mean_gyro > kFastest)
-    out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
-  else
-    out.good(fmt::format("gyro with a mean of {:.2f}, highest {:.2f} rad/s{}", imu.mean_gyro, imu.max_gyro,
-                         compared ? "" : " (its unit is not checked against a camera)"));
 }
 
 void judge_events(const Survey& s, Findings& out) {
@@ -288,7 +206,7 @@ void tell_rotation(const CameraCheck& check, Findings& out) {
 
 void judge_scale(const CameraCheck& check, Findings& out) {
   const double ratio = check.agreement->gyro_scale;
-  if (ratio > 0.7 && (ratio < 1.4 || in_degrees(check))) return;
+  if (ratio > 0.7 && (ratio < 1.4 || check.in_degrees())) return;
   out.warn(fmt::format("camera {}: the gyro turns {:.2f} times as fast as its image", check.camera.name, ratio),
            "check the focal length, and the unit of the gyro");
 }
@@ -351,13 +269,12 @@ bool judge_size(const CameraCheck& check, const Survey& s, Findings& out) {
   return fits || seen.empty();
 }
 
-void judge_camera(const CameraCheck& check, const Survey& s, Findings& out) {
+void judge_camera(const CameraCheck& check, Findings& out) {
   const std::string& name = check.camera.name;
-  if (!judge_size(check, s, out)) return;
   if (!check.agreement)
     return out.note(
         fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
-  if (!sure(*check.agreement))
+  if (!check.sure())
     return out.note(fmt::format(
         "camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % of "
         "its turning unexplained)",
@@ -384,16 +301,21 @@ void judge_truth(const Survey& s, Findings& out) {
 
 }  // namespace
 
+bool imu_unusable(const std::vector<Finding>& findings) {
+  return std::ranges::any_of(findings, &Finding::imu_unusable);
+}
+
 std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras) {
   Findings out;
   judge_sensors(survey, out);
-  judge_imu_rate(survey, out);
-  judge_imu_units(survey, cameras, out);
+  judge_imu(survey, cameras, out);
   judge_events(survey, out);
   judge_frames(survey, out);
   judge_external(survey.external, survey.imu, out.list);
-  for (const CameraCheck& check : cameras) judge_camera(check, survey, out);
-  judge_accel(cameras, out);
+  const bool comparable = !imu_unusable(out.list);
+  for (const CameraCheck& check : cameras)
+    if (judge_size(check, survey, out) && comparable) judge_camera(check, out);
+  if (comparable) judge_accel(cameras, out);
   if (!calibrated)
     out.note("no calibration, so none is checked", "give --rig NAME or --calib FILE");
   else if (cameras.empty())

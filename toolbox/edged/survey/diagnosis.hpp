@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/rig.hpp"
+#include "edged/survey/camera_check.hpp"
 #include "edged/survey/finding.hpp"
-#include "edged/survey/gyro_agreement.hpp"
 #include "edged/survey/survey.hpp"
 
 namespace edged {
@@ -18,12 +17,8 @@ inline constexpr const char* kTurnRound =
     "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B "
     "(`edged calib` shows both directions)";
 
-/// The comparison of a camera with the gyro.
-struct CameraCheck {
-  RigCamera camera;  ///< as calibrated
-  bool has_extrinsics = true;
-  std::optional<GyroAgreement> agreement;  ///< nothing with too little data
-};
+/// True if a finding says that the IMU itself is wrong.
+bool imu_unusable(const std::vector<Finding>& findings);
 
 /// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs.
 /// calibrated: there is a calibration, though maybe of no camera that is recorded.

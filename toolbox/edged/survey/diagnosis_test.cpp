@@ -82,6 +82,52 @@ TEST(Diagnosis, NamesAMissingSlowOrHolyImu) {
   EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
 }
 
+TEST(Diagnosis, NamesAnImuWhoseClockRunsAtAnotherRateAndNoCalibration) {
+  CameraCheck check = agreeing();
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  check.clock = ClockRate{2.0, 0.99};
+  Survey s = healthy();
+  s.imu = stream(2000, 0, 20);
+  const std::vector<Finding> findings = diagnose(s, true, {check});
+  EXPECT_THAT(remedy_of(findings, Severity::Error,
+                        "the IMU covers 20.0 s, the other sensors 10.0 s: its clock runs at 2.00 times"),
+              HasSubstr("--imu-clock-rate 2.000"));
+  EXPECT_EQ(std::ranges::count(findings, Severity::Error, &Finding::severity), 1) << "no camera is blamed beside it";
+  check.clock = ClockRate{1.02, 0.99};
+  s.imu = stream(2000, 0, 10.2);
+  EXPECT_THAT(remedy_of(diagnose(s, true, {check}), Severity::Error, "the IMU's clock runs at 1.020 times"),
+              HasSubstr("--imu-clock-rate 1.020"));
+}
+
+TEST(Diagnosis, NamesAnotherClockOrUnitByTheLengthsWhereNoCameraTells) {
+  Survey s = healthy();
+  s.imu = stream(2000, 0, 5);
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "its clock runs at 0.5 times theirs"),
+              HasSubstr("--imu-clock-rate 0.5"));
+  s.imu = stream(2000, 0, 10'000);
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Error, "its stamps are in another unit"), HasSubstr("unit"));
+  s.imu = stream(2000, 5, 25);
+  EXPECT_EQ(remedy_of(diagnose(s, false, {}), Severity::Error, "clock"), "NO SUCH FINDING") << "it began later";
+}
+
+TEST(Diagnosis, NamesADeadGyroAndNoCamera) {
+  Survey s = healthy();
+  CameraCheck check = agreeing();
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  FrozenReadings& gyro = s.imu_details.gyro_frozen;
+  gyro.covered = gyro.longest = std::chrono::seconds(10);
+  gyro.axes.fill(gyro.covered);
+  EXPECT_THAT(remedy_of(diagnose(s, true, {check}), Severity::Error, "gyro is constant zero"), HasSubstr("topic"));
+  EXPECT_EQ(remedy_of(diagnose(s, true, {check}), Severity::Error, "camera"), "NO SUCH FINDING");
+  gyro.value = {0.1, 0, 0};
+  EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro does not change: it reads (0.1, 0, 0) rad/s"),
+              HasSubstr("driver"));
+  gyro.longest = std::chrono::seconds(3), gyro.axes = {Duration(3), Duration(3), gyro.covered};
+  EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro: its z axis does not change"),
+              HasSubstr("columns"));
+  EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro does not change for 3.0 s"), HasSubstr("gap"));
+}
+
 TEST(Diagnosis, NamesWrongUnits) {
   Survey s = healthy();
   s.imu_details.mean_accel = 1.0;

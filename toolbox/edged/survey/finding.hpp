@@ -4,6 +4,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace edged {
 
@@ -17,7 +19,28 @@ enum class Severity {
 struct Finding {
   Severity severity = Severity::Good;
   std::string text;    ///< one line with numbers
-  std::string remedy;  ///< remedy; may be empty
+  std::string remedy;  ///< may be empty
+  /// The IMU itself is wrong: no verdict on a calibration is possible until that is corrected.
+  bool imu_unusable = false;
+};
+
+/// Of one diagnosis, in order.
+class Findings {
+ public:
+  void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }
+  void note(std::string text, std::string remedy = "") { add(Severity::Note, std::move(text), std::move(remedy)); }
+  void warn(std::string text, std::string remedy) { add(Severity::Warning, std::move(text), std::move(remedy)); }
+  void error(std::string text, std::string remedy) { add(Severity::Error, std::move(text), std::move(remedy)); }
+  void imu_unusable(std::string text, std::string remedy) {
+    list.push_back({Severity::Error, std::move(text), std::move(remedy), true});
+  }
+
+  std::vector<Finding> list;
+
+ private:
+  void add(Severity severity, std::string text, std::string remedy) {
+    list.push_back({severity, std::move(text), std::move(remedy)});
+  }
 };
 
 }  // namespace edged

@@ -15,8 +15,10 @@ constexpr std::size_t kFewestSamples = 2;  // of a part
 // Deviations of the parts at rest. The noisiest IMUs of phones reach 0.002 rad/s and 0.03 m/s^2, a hand that holds
 // still is three times as unsteady or more.
 constexpr double kRestGyro = 0.006, kRestAccel = 0.06;
-constexpr double kMostBias = 0.35;  // of a gyro, as data sheets have it [rad/s]: more is a steady turn
-constexpr double kSameRest = 3.0;   // means of stretches of one rest differ by so many of the limits at most
+// Mean rates that may be a gyro's bias [rad/s], as a run takes them: more is a steady turn, and far less where the
+// picture moves.
+constexpr double kMostBias = 0.15, kMostBiasInMotion = 0.04;
+constexpr double kSameRest = 3.0;  // means of stretches of one rest differ by so many of the limits at most
 
 /// Standard deviation of one axis, of three that are summed.
 double deviation(double squares, const Eigen::Vector3d& sum, std::size_t count) {
@@ -47,6 +49,8 @@ void ImuSurveyor::add(const ImuSample& sample) {
   }
   if (count_ == 0) part_begin_ = sample.t;
   part_.add(sample.gyro_B, sample.accel_B);
+  gyro_frozen_.add(sample.t, sample.gyro_B);
+  accel_frozen_.add(sample.t, sample.accel_B);
   ++count_;
   accel_sum_ += sample.accel_B.norm();
   gyro_sum_ += sample.gyro_B.norm();
@@ -64,7 +68,7 @@ void ImuSurveyor::end_part() {
   if (current_)
     current_->differences.add(gyro - last_gyro_, accel - last_accel_);
   else
-    current_ = Stretch{part_begin_, part_begin_, {}, {}};
+    current_ = Stretch{part_begin_, part_begin_, {}, {}, false};
   current_->means.add(gyro, accel);
   last_gyro_ = gyro, last_accel_ = accel;
   current_->end = part_begin_ + kPart;
@@ -75,11 +79,12 @@ bool ImuSurveyor::at_rest(const Stretch& stretch) {
   const Sums& s = stretch.means;
   return deviation(s.gyro_squares, s.gyro, s.count) < kRestGyro &&
          deviation(s.accel_squares, s.accel, s.count) < kRestAccel &&
-         s.gyro.norm() / static_cast<double>(s.count) < kMostBias;
+         s.gyro.norm() / static_cast<double>(s.count) < (stretch.picture_moves ? kMostBiasInMotion : kMostBias);
 }
 
 void ImuSurveyor::end_stretch() {
-  const Stretch ended = *std::exchange(current_, std::nullopt);
+  Stretch ended = *std::exchange(current_, std::nullopt);
+  ended.picture_moves = std::exchange(picture_moves_, false);
   const auto spread = [](const Stretch& s) { return deviation(s.means.gyro_squares, s.means.gyro, s.means.count); };
   if (!calmest_ || spread(ended) < spread(*calmest_)) calmest_ = ended;
   if (!at_rest(ended)) {
@@ -106,6 +111,8 @@ ImuSurvey ImuSurveyor::result() const {
   survey.mean_accel = accel_sum_ / static_cast<double>(count_);
   survey.mean_gyro = gyro_sum_ / static_cast<double>(count_);
   survey.max_gyro = max_gyro_;
+  survey.gyro_frozen = gyro_frozen_.result();
+  survey.accel_frozen = accel_frozen_.result();
   if (calmest_) {
     const auto n = static_cast<double>(calmest_->means.count);
     survey.calm = {calmest_->begin, calmest_->means.gyro / n, calmest_->means.accel / n};

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "edged/measurement.hpp"
+#include "edged/survey/frozen_readings.hpp"
 
 namespace edged {
 
@@ -34,12 +35,15 @@ struct ImuSurvey {
   std::optional<ImuRest> rest;             ///< nothing if it was never at rest: then motion hides the noise
   double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
   double mean_gyro = 0.0, max_gyro = 0.0;  ///< angular speed [rad/s]
+  FrozenReadings gyro_frozen, accel_frozen;
 };
 
 /// Takes samples in time order. Memory is bounded.
 class ImuSurveyor {
  public:
   void add(const ImuSample& sample);
+  /// The picture of a camera moves at present: a steady rate is a turn, then, not a bias.
+  void picture_moves() { picture_moves_ = true; }
   ImuSurvey result() const;
 
  private:
@@ -55,17 +59,20 @@ class ImuSurveyor {
   /// Means over 50 ms that follow each other without a hole.
   struct Stretch {
     Timestamp begin, end;
-    Sums means, differences;  ///< differences: of successive means
+    Sums means, differences;     ///< differences: of successive means
+    bool picture_moves = false;  ///< at some time in it
   };
 
   void end_part();
   void end_stretch();
   static bool at_rest(const Stretch& stretch);
 
+  bool picture_moves_ = false;  ///< since the last stretch
   Timestamp part_begin_;
   Sums part_;
   std::optional<Stretch> current_, calmest_, rest_, longest_rest_;
   Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero(), last_accel_ = Eigen::Vector3d::Zero();  ///< of the last part
+  FrozenDetector gyro_frozen_, accel_frozen_;
   std::size_t count_ = 0;
   double accel_sum_ = 0.0, gyro_sum_ = 0.0, max_gyro_ = 0.0;
 };

@@ -128,7 +128,10 @@ void RunCheck::add(const Measurement& measurement) {
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
     note(first_imu_, imu_);
     accel_axes_.add(*sample);
-    if (std::ranges::all_of(cameras_, [](const Camera& camera) { return camera.done || camera.waits; })) return;
+    const bool all_told = std::ranges::all_of(cameras_, [](const Camera& camera) {
+      return camera.waits || (camera.done && agrees(camera.agreement));  // an IMU of another clock lags behind
+    });
+    if (all_told) return;
     gyro_.add(*sample);
     rate_ += kNewest * (sample->gyro_B.norm() - rate_);
   } else if (name) {
@@ -166,12 +169,13 @@ void RunCheck::compare(Camera& camera) {
   camera.done = camera.turning >= kEnough || (camera.agreement && confirms(*camera.agreement, camera.given));
 }
 
-std::vector<Finding> RunCheck::judge(Survey survey) const {
-  // A gap is bridged, counted among the repairs, and known to the estimate's covariance.
-  survey.imu.gaps = 0;
+std::vector<Finding> RunCheck::judge(const Survey& survey) const {
   std::vector<CameraCheck> checks;
   for (const Camera& camera : cameras_)
-    if (!camera.waits) checks.push_back({camera.given, has_extrinsics_, camera.done ? camera.agreement : std::nullopt});
+    if (!camera.waits)
+      checks.push_back(
+          {camera.given, has_extrinsics_, camera.done ? camera.agreement : std::nullopt,
+           other_clock_rate(camera.visual.turns(), gyro_, camera.given.time_offset, survey.imu_span_ratio())});
   for (CameraCheck& check : checks)
     if (check.agreement) check.agreement = less_sure(*check.agreement, check.camera);
   std::vector<Finding> out = diagnose(survey, true, checks);
@@ -182,7 +186,7 @@ std::vector<Finding> RunCheck::judge(Survey survey) const {
       out.push_back(
           {Severity::Error, fmt::format("no {}: the mode needs them, and the recording has none", kind),
            fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind)});
-    if (camera.done && camera.contradiction_deg > 0.0)
+    if (camera.done && camera.contradiction_deg > 0.0 && !imu_unusable(out))
       out.push_back({Severity::Error,
                      fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
                                  camera.given.name, camera.contradiction_deg),
@@ -191,7 +195,7 @@ std::vector<Finding> RunCheck::judge(Survey survey) const {
   }
   const bool gyro_agrees = std::ranges::any_of(
       cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
-  if (const auto better = accel_axes_.better(); better && gyro_agrees)
+  if (const auto better = accel_axes_.better(); better && gyro_agrees && !imu_unusable(out))
     out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as measured by the gyro",
                    fmt::format("give it the axes of the gyro: {} would fit", *better)});
   std::erase_if(out, [](const Finding& f) { return f.severity == Severity::Good || f.severity == Severity::Note; });

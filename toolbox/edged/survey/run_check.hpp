@@ -49,7 +49,7 @@ class RunCheck {
 
   void follow(Camera& camera, const Measurement& measurement);
   void compare(Camera& camera);
-  std::vector<Finding> judge(Survey survey) const;
+  std::vector<Finding> judge(const Survey& survey) const;
 
   bool has_extrinsics_;
   Surveyor surveyor_;

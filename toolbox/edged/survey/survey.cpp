@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "edged/core/path_length.hpp"
 
@@ -34,25 +35,70 @@ Duration Survey::overlap() const {
   return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
 
+std::optional<std::pair<Timestamp, Timestamp>> Survey::cameras() const {
+  std::optional<std::pair<Timestamp, Timestamp>> span;
+  for (const StreamSurvey* stream : {&events, &frames}) {
+    if (stream->count == 0) continue;
+    if (!span) span = {*stream->begin, *stream->end};
+    span = {std::min(span->first, *stream->begin), std::max(span->second, *stream->end)};
+  }
+  return span;
+}
+
+double Survey::imu_span_ratio() const {
+  const auto span = cameras();
+  return span && span->second > span->first ? to_seconds(imu.length()) / to_seconds(span->second - span->first) : 0.0;
+}
+
 Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
 
 void Surveyor::add(const Measurement& measurement, Detail detail) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
     if (batch->events.empty()) return;
     events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
-    if (detail == Detail::All) event_details_.add(batch->events);
+    if (detail != Detail::All) return;
+    event_details_.add(batch->events);
+    watch_picture(*batch);
   } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
     frames_.add(frame->t, frame->t);
     if (image_size_.empty()) image_size_ = frame->image.size();
     if (detail != Detail::All) return;
     brightness_sum_ += cv::mean(frame->image)[0];
     ++measured_frames_;
+    watch_picture(*frame);
   } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
     imu_.add(sample->t, sample->t);
     imu_details_.add(*sample);
   } else if (const auto* external = std::get_if<ExternalSample>(&measurement)) {
     external_[std::string(sensor_of(*external).name)].add(*external);
   }
+}
+
+/// Against a frame some time ago: a turn of a few degrees changes more of it than noise and flicker do.
+void Surveyor::watch_picture(const Frame& frame) {
+  constexpr Duration kApart = std::chrono::milliseconds(300);
+  constexpr double kNoise = 4.0, kOfContrast = 0.15;  // grey levels; share of their standard deviation
+  if (compared_.size() == frame.image.size()) {
+    if (frame.t - compared_at_ < kApart) return;
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(frame.image, mean, deviation);
+    const double changed = cv::norm(frame.image, compared_, cv::NORM_L1) / static_cast<double>(frame.image.total());
+    if (changed > kNoise + kOfContrast * deviation[0]) imu_details_.picture_moves();
+  }
+  compared_ = frame.image;
+  compared_at_ = frame.t;
+}
+
+/// Noise, flicker and walkers send fewer events than a turn does.
+void Surveyor::watch_picture(const EventBatch& batch) {
+  constexpr Duration kCounted = std::chrono::milliseconds(100);
+  constexpr double kQuiet = 1.0;  // events a pixel and second
+  const Timestamp now = batch.events.back().t;
+  counted_ += batch.events.size();
+  if (now - counted_from_ < kCounted) return;
+  const double rate = static_cast<double>(std::exchange(counted_, 0)) / to_seconds(now - counted_from_);
+  if (!info_.event_sensor.empty() && rate > kQuiet * info_.event_sensor.area()) imu_details_.picture_moves();
+  counted_from_ = now;
 }
 
 Survey Surveyor::so_far() const {

@@ -5,8 +5,10 @@
 
 #include <functional>
 #include <map>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "edged/dataset.hpp"
 #include "edged/survey/event_survey.hpp"
@@ -35,6 +37,10 @@ struct Survey {
 
   /// Time that all present sensors cover; below zero: minus the gap between them.
   Duration overlap() const;
+  /// From the first to the last stamp of events and frames.
+  std::optional<std::pair<Timestamp, Timestamp>> cameras() const;
+  /// How many times as long as these the IMU lasts; 0 where there are none.
+  double imu_span_ratio() const;
 };
 
 /// Takes a recording as it comes, in bounded memory.
@@ -53,6 +59,9 @@ class Surveyor {
   Survey result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
 
  private:
+  void watch_picture(const Frame& frame);
+  void watch_picture(const EventBatch& batch);
+
   DatasetInfo info_;
   StreamSurveyor events_, frames_, imu_;
   EventSurveyor event_details_;
@@ -61,6 +70,9 @@ class Surveyor {
   cv::Size image_size_;
   double brightness_sum_ = 0.0;
   std::size_t measured_frames_ = 0;  ///< in that sum
+  cv::Mat compared_;                 ///< the frame that later ones are compared with
+  Timestamp compared_at_, counted_from_;
+  std::size_t counted_ = 0;  ///< events since then
 };
 
 }  // namespace edged

@@ -109,6 +109,31 @@ TEST(ImuSurveyor, TakesNoHandAndNoSteadyTurnForRest) {
   }
 }
 
+TEST(ImuSurveyor, TakesASteadyRateForABiasOnlyWhereThePictureStands) {
+  for (const bool moves : {false, true}) {
+    ImuSurveyor surveyor;
+    for (int i = 0; i < 2000; ++i) {
+      if (moves && i % 100 == 0) surveyor.picture_moves();
+      surveyor.add({at(i / 500.0), {0, 0, 0.105}, {0, 0, 9.81}});
+    }
+    EXPECT_EQ(surveyor.result().rest.has_value(), !moves);
+  }
+}
+
+TEST(ImuSurveyor, NoticesSensorsAndAxesThatRepeatThemselves) {
+  ImuSurveyor surveyor;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = std::sin(i), held = i < 400 ? x : 0.5;
+    surveyor.add({at(i / 500.0), {0, 0, 0}, {held, held, 9.81}});
+  }
+  const ImuSurvey survey = surveyor.result();
+  EXPECT_TRUE(survey.gyro_frozen.dead());
+  EXPECT_FALSE(survey.accel_frozen.dead() || survey.accel_frozen.dead(0));
+  EXPECT_TRUE(survey.accel_frozen.dead(2));
+  EXPECT_NEAR(to_seconds(survey.accel_frozen.longest), 1.198, 1e-9);
+  EXPECT_EQ(survey.accel_frozen.since, at(0.8));
+}
+
 TEST(ImuSurveyor, SaysNothingOfNoiseFromTooFewSamples) {
   ImuSurveyor surveyor;
   EXPECT_FALSE(surveyor.result().calm);

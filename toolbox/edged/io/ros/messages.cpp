@@ -159,14 +159,24 @@ EventPacket read_event_packet(WireReader message) {
   return packet;
 }
 
-ImuSample read_imu(WireReader message) {
-  const Timestamp t = message.header();
+ImuMessage read_imu_message(WireReader message) {
+  ImuMessage imu;
+  imu.t = message.header();
   message.vector<4 + 9>();  // orientation and its covariance: not measured
-  const Eigen::Vector3d gyro = message.vector<3>();
-  message.vector<9>();
-  const Eigen::Vector3d accel = message.vector<3>();
-  if (!gyro.allFinite() || !accel.allFinite()) throw Damage("not finite");
-  return {t, gyro, accel};
+  const auto is_measured = [](const Eigen::Vector3d& v, double covariance) {
+    return covariance != -1.0 && v.allFinite() && !v.isZero(0.0);
+  };
+  imu.gyro = message.vector<3>();
+  imu.has_gyro = is_measured(imu.gyro, message.vector<9>()[0]);
+  imu.accel = message.vector<3>();
+  imu.has_accel = is_measured(imu.accel, message.vector<9>()[0]);
+  return imu;
+}
+
+ImuSample read_imu(WireReader message) {
+  const ImuMessage imu = read_imu_message(message);
+  if (!imu.gyro.allFinite() || !imu.accel.allFinite()) throw Damage("not finite");
+  return {imu.t, imu.gyro, imu.accel};
 }
 
 CameraModel read_camera_info(WireReader message) try {

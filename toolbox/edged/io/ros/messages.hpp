@@ -61,6 +61,14 @@ struct EventPacket {
 };
 EventPacket read_event_packet(WireReader message);
 
+/// sensor_msgs/Imu, whose driver may leave out what it does not measure.
+struct ImuMessage {
+  Timestamp t;
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
+  /// Neither marked as not measured (a covariance of -1), nor all zero, nor without a number.
+  bool has_gyro = false, has_accel = false;
+};
+ImuMessage read_imu_message(WireReader message);
 ImuSample read_imu(WireReader message);
 
 /// sensor_msgs/CameraInfo. Damage also where the camera is not calibrated or its distortion is none of ours.

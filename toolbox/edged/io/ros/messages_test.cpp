@@ -219,6 +219,30 @@ TEST_P(Messages, SeveralTopicsForOneRoleAreAskedForWithTheList) {
   EXPECT_THAT(input_error([&] { open({topics[3]}); }), HasSubstr("/chatter (std_msgs/String)"));
 }
 
+TEST_P(Messages, AGyroAndAnAccelerometerOnTopicsOfTheirOwnAreMerged) {
+  TestTopic gyro{"/gyro/sample", "sensor_msgs/Imu", {}}, accel{"/accel/sample", "sensor_msgs/Imu", {}};
+  TestTopic both{"/imu", "sensor_msgs/Imu", {}};
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 30; ++i) {
+    const Timestamp t = kStart + std::chrono::milliseconds(5 * i), later = t + std::chrono::milliseconds(2);
+    gyro.messages.emplace_back(t, imu_message(wire(), {t, {0.1 * i, 0, 1}, none}));
+    accel.messages.emplace_back(later, imu_message(wire(), {later, none, {5.0 * i + 2, 0, 9.81}}));
+    both.messages.emplace_back(t, imu_message(wire(), {t, {0.1 * i, 0, 1}, {1, 0, 9.81}}));
+  }
+  const Recording merged = open({accel, gyro});
+  const std::vector<ImuSample> imu = read_all(*merged.dataset).imu;
+  ASSERT_EQ(imu.size(), 29u) << "the first has no accelerometer before it";
+  EXPECT_EQ(imu[3].t, kStart + std::chrono::milliseconds(20));
+  EXPECT_NEAR(imu[3].gyro_B.x(), 0.4, 1e-12);
+  EXPECT_NEAR(imu[3].accel_B.x(), 20.0, 1e-9);
+  EXPECT_EQ(merged.dataset->info().streams[0].role, "imu");
+  EXPECT_EQ(merged.dataset->info().streams[1].role, "imu");
+  EXPECT_EQ(read_all(*open({accel, both, gyro}).dataset).imu.size(), 30u) << "the only one that has both";
+  TestTopic other = both;
+  other.name = "/other";
+  EXPECT_THAT(input_error([&] { open({both, other}); }), HasSubstr("imu: /imu, /other"));
+}
+
 TEST_P(Messages, CameraInfoGivesTheIntrinsicsOfTheCameraBesideIt) {
   const CameraModel model(346, 260, 250.5, 251.5, 170, 130, DistortionModel::RadTan, {-0.3, 0.1, 1e-3, 2e-3, 0});
   const CameraModel other(30, 20, 40, 41, 15, 10, DistortionModel::Equidistant, {0.01, 0.02, 0.03, 0.04});

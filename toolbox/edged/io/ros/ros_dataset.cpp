@@ -21,13 +21,15 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
                        std::optional<cv::Size> geometry)
     : StreamedDataset(path, "ros"),
       source_(open_messages(path, &repairs_)),
-      choice_(choose_topics(source_->topics(), wanted, name_)),
+      imu_topics_(choose_imu_topics(path, source_->topics(), wanted)),
+      choice_(choose_topics(source_->topics(), with_imu_topic(wanted, source_->topics(), imu_topics_), name_)),
       geometry_(geometry) {
   if (rig) rig_ = *rig;
   info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
   for (const Topic& topic : source_->topics()) info_.streams.push_back({topic.name, topic.type, topic.count, ""});
   for (std::size_t role = 0; role < kRoleNames.size(); ++role)
     if (const auto topic = choice_.topics[role]) info_.streams[*topic].role = kRoleNames[role];
+  if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
   begin(
       {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
   info_.end = *info_.begin + source_->length();
@@ -60,7 +62,8 @@ bool RosDataset::read_on() {
 }
 
 void RosDataset::feed(const Message& message) {
-  const auto role = std::ranges::find(choice_.topics, std::optional(message.topic));
+  const bool accel = message.topic == imu_topics_.accel;
+  const auto role = std::ranges::find(choice_.topics, accel ? choice_.of(Role::Imu) : std::optional(message.topic));
   if (role == choice_.topics.end()) return;
   const auto index = static_cast<std::size_t>(role - choice_.topics.begin());
   if (!wants(modality_of(static_cast<Role>(index)))) return;
@@ -75,7 +78,7 @@ void RosDataset::feed(const Message& message) {
         feed_frame(type, reader);
         break;
       case Role::Imu:
-        push_imu(read_imu(reader));
+        feed_imu(message.topic, reader);
         break;
       case Role::Truth:
         break;  // in a pass of its own
@@ -111,6 +114,15 @@ void RosDataset::feed_events(const std::string& type, WireReader message) {
     set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));
   }
   push_events(array.events);
+}
+
+void RosDataset::feed_imu(std::size_t topic, WireReader message) {
+  if (!imu_topics_.accel) return push_imu(read_imu(message));
+  const ImuMessage imu = read_imu_message(message);
+  const bool accel = topic == *imu_topics_.accel;
+  if (!(accel ? imu.accel : imu.gyro).allFinite()) throw Damage("not finite");
+  const auto samples = accel ? imu_join_.add_accel(imu.t, imu.accel) : imu_join_.add_gyro(imu.t, imu.gyro);
+  for (const ImuSample& sample : samples) push_imu(sample);
 }
 
 void RosDataset::feed_frame(const std::string& type, WireReader message) {

@@ -5,7 +5,9 @@
 
 #include <array>
 
+#include "edged/io/imu_join.hpp"
 #include "edged/io/recording.hpp"
+#include "edged/io/ros/imu_topics.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/sensor_messages.hpp"
 #include "edged/io/streamed_dataset.hpp"
@@ -30,11 +32,14 @@ class RosDataset final : public StreamedDataset {
   bool read_on() override;
   void feed(const Message& message);
   void feed_events(const std::string& type, WireReader message);
+  void feed_imu(std::size_t topic, WireReader message);
   void feed_frame(const std::string& type, WireReader message);
   std::string truth_frame() const;
   void judge(std::size_t role, const std::string& reason);
 
   std::unique_ptr<MessageSource> source_;
+  ImuTopics imu_topics_;
+  ImuJoin imu_join_;
   TopicChoice choice_;
   std::optional<Rig> rig_;
   std::optional<cv::Size> geometry_;

@@ -3,7 +3,6 @@
 // A recording with the samples of a text file among its own measurements. Internal to io.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/stamped_lines.hpp"
+#include "edged/io/take_before.hpp"
 
 namespace edged {
 
@@ -40,15 +40,9 @@ class DatasetWithLines final : public Dataset {
   std::optional<Measurement> next() override {
     if (!held_) held_ = next_of_recording();
     const T* sample = samples_.peek();
-    if (sample && (!held_ || time_of(*sample) <= *first_stamp(*held_))) return samples_.pop();
-    auto* batch = held_ ? std::get_if<EventBatch>(&*held_) : nullptr;
-    if (batch && sample && batch->events.back().t >= time_of(*sample)) {
-      const auto cut = std::ranges::lower_bound(batch->events, time_of(*sample), {}, &Event::t);
-      EventBatch front{batch->camera, {batch->events.begin(), cut}};
-      batch->events.erase(batch->events.begin(), cut);
-      return front;
-    }
-    return std::exchange(held_, std::nullopt);
+    if (!sample) return std::exchange(held_, std::nullopt);
+    if (auto before = take_before(held_, time_of(*sample))) return before;
+    return samples_.pop();
   }
 
   std::map<std::string, std::size_t> repairs() const override {

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with an IMU: rate, gaps, clock, sensors that are dead, units.
+#pragma once
+
+#include <vector>
+
+#include "edged/survey/camera_check.hpp"
+#include "edged/survey/finding.hpp"
+#include "edged/survey/survey.hpp"
+
+namespace edged {
+
+void judge_imu(const Survey& survey, const std::vector<CameraCheck>& cameras, Findings& out);
+
+}  // namespace edged
