@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/core/dataset.hpp"
+#include "edged/dataset.hpp"
 
 namespace edged {
 

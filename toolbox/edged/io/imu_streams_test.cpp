@@ -3,6 +3,7 @@
 // IMU samples that are brought together, or brought to another clock.
 #include <gtest/gtest.h>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/io/imu_join.hpp"
 #include "edged/io/imu_on_other_clock.hpp"
 #include "edged/io/test_support.hpp"
@@ -10,7 +11,7 @@
 namespace edged {
 namespace {
 
-Timestamp ms(double t) { return timestamp_from_seconds(1e-3 * t); }
+Timestamp in_ms(double t) { return timestamp_from_seconds(1e-3 * t); }
 
 TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
   ImuJoin join;
@@ -18,11 +19,11 @@ TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
   const auto take = [&](const std::vector<ImuSample>& more) {
     samples.insert(samples.end(), more.begin(), more.end());
   };
-  for (int i = 0; i < 20; ++i) take(join.add_gyro(ms(5 * i), {1.0 * i, 0, 0}));  // that one comes late
-  for (const double t : {12.0, 28.0, 44.0, 60.0, 300.0, 310.0}) take(join.add_accel(ms(t), {0, t, 9.81}));
-  take(join.add_gyro(ms(305), {7, 0, 0}));
+  for (int i = 0; i < 20; ++i) take(join.add_gyro(in_ms(5 * i), {1.0 * i, 0, 0}));  // that one comes late
+  for (const double t : {12.0, 28.0, 44.0, 60.0, 300.0, 310.0}) take(join.add_accel(in_ms(t), {0, t, 9.81}));
+  take(join.add_gyro(in_ms(305), {7, 0, 0}));
   ASSERT_EQ(samples.size(), 11u) << "from 15 to 60 ms, nothing in the gap, and the last";
-  EXPECT_EQ(samples[0].t, ms(15));
+  EXPECT_EQ(samples[0].t, in_ms(15));
   EXPECT_EQ(samples[0].gyro_B.x(), 3.0);
   EXPECT_NEAR(samples[0].accel_B.y(), 15.0, 1e-9);
   EXPECT_NEAR(samples[9].accel_B.y(), 60.0, 1e-9);
@@ -33,10 +34,10 @@ TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
 std::unique_ptr<Dataset> twice_as_fast() {
   auto dataset = std::make_unique<ListedDataset>();
   for (int i = 0; i < 10; ++i) {
-    dataset->measurements.push_back(ImuSample{.t = ms(20 * i), .accel_B = {0, 0, static_cast<double>(i)}});
+    dataset->measurements.push_back(ImuSample{.t = in_ms(20 * i), .accel_B = {0, 0, static_cast<double>(i)}});
     if (i < 5)
       dataset->measurements.push_back(
-          EventBatch{"events", {{ms(20 * i + 2), 1, 1, true}, {ms(20 * i + 14), 1, 1, true}}});
+          EventBatch{"events", {{in_ms(20 * i + 2), 1, 1, true}, {in_ms(20 * i + 14), 1, 1, true}}});
   }
   return dataset;
 }
@@ -50,7 +51,7 @@ TEST(ImuOnOtherClock, BringsTheStampsBackAndKeepsAllInOrder) {
     last = *last_stamp(*measurement);
     if (const auto* batch = std::get_if<EventBatch>(&*measurement)) events += batch->events.size();
     if (const auto* sample = std::get_if<ImuSample>(&*measurement)) {
-      EXPECT_EQ(sample->t, ms(10 * sample->accel_B.z()));
+      EXPECT_EQ(sample->t, in_ms(10 * sample->accel_B.z()));
       ++samples;
     }
   }

@@ -11,12 +11,12 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kFewestTurns = 30, kMostTurns = 200;
+constexpr std::size_t kFewestClockTurns = 30, kMostTurns = 200;
 constexpr double kLeastCorrelation = 0.9;
 constexpr double kFarBetter = 0.4;   // of what the clock as it is leaves unexplained
 constexpr double kLeastOff = 0.004;  // of the rate: less is within what turns can tell
 constexpr double kDriftSearched = 0.06, kDriftStep = 0.003;
-constexpr Duration kShiftStep = std::chrono::milliseconds(10);
+constexpr Duration kClockShiftStep = std::chrono::milliseconds(10);
 
 /// Pearson's correlation of the angular speeds of camera and gyro at a rate and a shift; 0 where too few turns are
 /// covered by both.
@@ -34,7 +34,7 @@ double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, dou
     const double b = phi->norm() / to_seconds(end - begin);
     n += 1, x += a, y += b, xx += a * a, yy += b * b, xy += a * b;
   }
-  if (n < kFewestTurns) return 0.0;
+  if (n < kFewestClockTurns) return 0.0;
   const double variance = (xx - x * x / n) * (yy - y * y / n);
   return variance > 0.0 ? (xy - x * y / n) / std::sqrt(variance) : 0.0;
 }
@@ -43,7 +43,7 @@ double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, dou
 double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, double rate, Duration expected,
                       Duration most) {
   double best = 0.0;
-  for (Duration shift = expected - most; shift <= expected + most; shift += kShiftStep)
+  for (Duration shift = expected - most; shift <= expected + most; shift += kClockShiftStep)
     best = std::max(best, correlation_at(turns, gyro, rate, shift));
   return best;
 }
@@ -54,14 +54,14 @@ double unexplained(double correlation) { return 1.0 - correlation * correlation;
 
 std::optional<ClockRate> other_clock_rate(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected,
                                           double spans) {
-  if (turns.size() < kFewestTurns || gyro.empty()) return std::nullopt;
+  if (turns.size() < kFewestClockTurns || gyro.empty()) return std::nullopt;
   std::vector<double> rates;
   for (const double about : {1.0, 2.0, 0.5, spans})
     for (double off = -kDriftSearched; off < kDriftSearched + kDriftStep / 2; off += kDriftStep)
       if (about > 0.1 && about < 10.0) rates.push_back(about * (1.0 + off));
   ClockRate best;
   for (const double rate : rates) {
-    const double found = correlation_at(turns, gyro, rate, expected, 2 * kShiftStep);
+    const double found = correlation_at(turns, gyro, rate, expected, 2 * kClockShiftStep);
     if (found > best.correlation) best = {rate, found};
   }
   const double given = correlation_at(turns, gyro, 1.0, expected, kMostShift);

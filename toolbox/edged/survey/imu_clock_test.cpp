@@ -29,7 +29,9 @@ TEST(ImuClock, FindsTheRateOfAnotherClockAndNothingWhereItIsRight) {
       gyro.add({timestamp_from_seconds(rate * t), swaying(t), {0, 0, 9.81}});
     const auto found = other_clock_rate(turns, gyro, Duration(0), rate);
     EXPECT_EQ(found.has_value(), rate != 1.0) << rate;
-    if (found) EXPECT_NEAR(found->rate / rate, 1.0, 0.005);
+    if (found) {
+      EXPECT_NEAR(found->rate / rate, 1.0, 0.005);
+    }
   }
 }
 

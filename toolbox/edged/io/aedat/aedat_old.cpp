@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kOldAedatMagic = "#!AER-DAT";
 constexpr std::string_view kHeaderEnd = "#!END-HEADER";
-constexpr std::size_t kMostHeaderBytes = std::size_t{8} << 20U;  // jAER puts all its preferences there
+constexpr std::size_t kMostOldHeaderBytes = std::size_t{8} << 20U;  // jAER puts all its preferences there
 
 struct ChipSize {
   std::string_view name;  ///< begin of the name, in small letters
@@ -84,7 +84,7 @@ OldAedatHeader parse_old_aedat_header(ByteSpan head) {
 }
 
 Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) try {
-  const OldAedatHeader header = parse_old_aedat_header(BinaryFile(file).read(0, kMostHeaderBytes));
+  const OldAedatHeader header = parse_old_aedat_header(BinaryFile(file).read(0, kMostOldHeaderBytes));
   const bool two = header.version == "2.0", three = header.version == "3.1";
   if (!two && !three)
     throw InputError::format("{}: AEDAT {} is not read; 2.0, 3.1 and 4 are: convert it with DV", file.string(),
