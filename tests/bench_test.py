@@ -66,7 +66,7 @@ class Bench(unittest.TestCase):
                 "--duration", 3]
         first = bench(*args)
         self.assertEqual(first.returncode, 0, first.stderr)
-        self.assertRegex(first.stdout, r"\| both, outliers \| +\d+ \|")
+        self.assertRegex(first.stdout, r"\| both, outliers \| +\d+ +\|")
         self.assertRegex(first.stdout, r"\| hover \| fused \| none +\|")
         runs = {file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}
         self.assertEqual(len(runs), 3)

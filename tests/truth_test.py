@@ -19,6 +19,15 @@ def shifted(seconds):
                                 (line.split(" ", 1) for line in lines_of(text)))
 
 
+def rounded(value):
+    """Numbers to nine digits: sums are rounded differently where poses were written in between."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [rounded(item) for item in value]
+    return float(f"{value:.9g}") if isinstance(value, float) else value
+
+
 class Truth(WithFlight):
     SIMULATION = ("--duration", 8, "--seed", 3)
 
@@ -44,7 +53,7 @@ class Truth(WithFlight):
     def test_page_metrics_and_eval_have_the_same_numbers_where_the_truth_is_longer_than_the_run(self):
         shown = self.data_of(self.out / "report.html")
         self.assertEqual(shown["metrics"], self.metrics)
-        self.assertEqual(shown["evaluation"], self.metrics["evaluation"])
+        self.assertEqual(rounded(shown["evaluation"]), rounded(self.metrics["evaluation"]))
         evaluated = json.loads(edged("eval", self.truth, self.out / "trajectory.tum", "--protocol", "P3", "--json").stdout)
         for key in ("ate_rmse_m", "scale", "path_length_m", "mpe_percent", "duration_s"):
             self.assertAlmostEqual(evaluated[key], self.metrics["evaluation"][key], 7, key)

@@ -127,8 +127,9 @@ int exit_code_of(Fit fit) {
 std::string next_line(const CalibCheckOptions& options, Fit fit) {
   SourceOptions whole = options.source;
   whole.duration_s.reset();
-  return fmt::format("{:<11} {}\n", "next",
-                     fit == Fit::Fits ? command_line("run", whole) : command_line("doctor", whole));
+  if (!options.out.empty()) whole.calib = options.out;
+  const bool usable = fit == Fit::Fits || !options.out.empty();
+  return fmt::format("{:<11} {}\n", "next", command_line(usable ? "run" : "doctor", whole));
 }
 
 }  // namespace

@@ -57,6 +57,8 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
 Protocol chosen_protocol(const EvaluationOptions& options) {
   if (!options.protocol_name.empty()) return protocol(options.protocol_name);
   Protocol result{"custom", kAlignments.at(options.align), {}};
+  if (result.alignment == AlignmentKind::SE3 && options.window.empty() && !(options.first_s > 0.0))
+    return protocol("P3");
   if (options.window.size() == 2) result.window = {options.window[0], options.window[1]};
   if (options.first_s > 0.0) result.window = {0.0, options.first_s};
   return result;

@@ -15,11 +15,11 @@ namespace edged {
 using ExternalCounts = std::array<std::size_t, std::variant_size_v<ExternalSample>>;
 
 /// Samples of height and velocity sensors that arrived while there was an estimate.
-struct ExternalUse {
+struct ExternalCounters {
   ExternalCounts used{};      ///< by the estimator
   ExternalCounts rejected{};  ///< because they contradicted the estimate
 
-  void add(const ExternalUse& more) {
+  void add(const ExternalCounters& more) {
     for (std::size_t i = 0; i < used.size(); ++i) used[i] += more.used[i], rejected[i] += more.rejected[i];
   }
 };
@@ -57,7 +57,7 @@ struct PacketizerCounters {
 struct OdometryCounters {
   IntakeCounters intake;
   PacketizerCounters packets;
-  ExternalUse external;
+  ExternalCounters external;
 };
 
 }  // namespace edged

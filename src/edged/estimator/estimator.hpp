@@ -60,7 +60,7 @@ class Estimator {
   std::optional<double> depth(FeatureId id, const std::string& camera) const;
   /// s of Eq. 5 as of the last depth factor; nothing without depth_factor.
   std::optional<LogScale> depth_scale() const;
-  const ExternalUse& external_use() const { return external_.use(); }
+  const ExternalCounters& external_counters() const { return external_.counters(); }
 
   const Window& window() const { return window_; }
 

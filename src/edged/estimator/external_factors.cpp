@@ -99,12 +99,12 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   if (bias && believable(window, *factor(*bias))) {
     height_refused_since_.reset();
     window.add(factor(*bias));
-    ++use_.used[kHeight];
+    ++counters_.used[kHeight];
     return;
   }
   if (bias && !height_refused_since_) height_refused_since_ = sample.t;
   if (bias && sample.t - *height_refused_since_ < kNewLevel) {
-    ++use_.rejected[kHeight];
+    ++counters_.rejected[kHeight];
     return;
   }
   // The first sample, or the first accepted one after a step of the level.
@@ -115,7 +115,7 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
                            .bias_at(state.pose.data(), state.motion.data());
   window.begin_walk(BlockKind::HeightBias, level, {kBiasSigma_m, height_.bias_walk});
   window.add(factor(*window.walking(BlockKind::HeightBias)));
-  ++use_.used[kHeight];
+  ++counters_.used[kHeight];
 }
 
 void ExternalFactors::add_sample(Window& window, StateId from, const Preintegration& imu,
@@ -128,11 +128,11 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   auto factor = std::make_shared<VelocityFactor>(from, *window.walking(BlockKind::VelocityScale), until(imu, sample.t),
                                                  velocity_.T_B_S(), known);
   if (!believable(window, *factor)) {
-    ++use_.rejected[kVelocity];
+    ++counters_.rejected[kVelocity];
     return;
   }
   window.add(std::move(factor));
-  ++use_.used[kVelocity];
+  ++counters_.used[kVelocity];
   velocity_at_ = sample.t;
 }
 

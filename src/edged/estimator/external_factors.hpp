@@ -27,7 +27,7 @@ class ExternalFactors {
   bool velocity_observed(Timestamp t) const;
 
   /// What became of the samples so far.
-  const ExternalUse& use() const { return use_; }
+  const ExternalCounters& counters() const { return counters_; }
 
  private:
   bool believable(const Window& window, const Factor& factor) const;
@@ -37,7 +37,7 @@ class ExternalFactors {
   HeightConfig height_;
   VelocityConfig velocity_;
   bool starting_ = false;
-  ExternalUse use_;
+  ExternalCounters counters_;
   std::optional<Timestamp> height_refused_since_, velocity_at_;
 };
 

@@ -50,14 +50,14 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       body_(noise, duration_from_seconds(config.packets.max_age_s)) {}
 
 void Localization::begin_estimate() {
-  use_before_.add(estimator_.external_use());
+  counters_before_.add(estimator_.external_counters());
   estimator_ = fresh_estimator();
 }
 
-ExternalUse Localization::external_use() const {
-  ExternalUse use = use_before_;
-  use.add(estimator_.external_use());
-  return use;
+ExternalCounters Localization::external_counters() const {
+  ExternalCounters counters = counters_before_;
+  counters.add(estimator_.external_counters());
+  return counters;
 }
 
 void Localization::begin_time() {

@@ -52,7 +52,7 @@ class Localization {
   FinalTrajectory final_trajectory() const;
   Rig rig() const;
   std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
-  ExternalUse external_use() const;
+  ExternalCounters external_counters() const;
 
  private:
   Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
@@ -70,7 +70,7 @@ class Localization {
   Rig rig_;        ///< the same with online calibration; with residual time offsets
   StageTimings* timings_;
   Estimator estimator_;
-  ExternalUse use_before_;  ///< by the estimators before
+  ExternalCounters counters_before_;  ///< by the estimators before
   Mapper mapper_;
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;

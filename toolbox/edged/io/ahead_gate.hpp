@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Keeps stamps that are wrong by half a second or more from making all that follows them late, alike in all formats.
+// Drops stamps that are wrong by half a second or more, so that the items after them are not late. For all formats.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 
 namespace edged {
 
-/// Items of one stream of a recording, T with a `time_of`, go through it one by one. A run of items that begins kAhead
-/// after all before waits: once it lasts for kSure, or goes on even farther, it was a gap. When an item from before it
-/// comes, its stamps were wrong, and it is dropped. The first item of all waits for the second.
+/// Items of one stream of a recording, T with a `time_of`, pass through it one by one. A run of items that begins kAhead
+/// after all items before is held. It was a gap if it lasts for kSure or is followed by another gap. It is dropped if an
+/// earlier stamp follows: its stamps were wrong. The first item of all is held until the second.
 template <typename T>
 class AheadGate {
  public:
@@ -25,7 +25,8 @@ class AheadGate {
   static constexpr Duration kSure = std::chrono::milliseconds(100);
   static constexpr std::size_t kMostWaiting = 1'000'000;
 
-  /// pass(T) is given what goes on, drop(T, Timestamp) what is dropped and the stamp that contradicts it.
+  /// Calls pass(T) for each accepted item, and drop(T, Timestamp) for each dropped one with the stamp that contradicts
+  /// it.
   template <typename Pass, typename Drop>
   void push(T item, Pass pass, Drop drop) {
     const Timestamp t = time_of(item);
@@ -39,37 +40,44 @@ class AheadGate {
     } else {
       finish(pass);
     }
-    if (goes_on(t)) return pass(std::move(item));
+    if (near(t)) return let_through(std::move(item), pass);
     begin_ = end_ = t;
     waiting_.push_back(std::move(item));
   }
 
-  /// Whether an item of this stamp passes at once; it counts as passed then.
-  bool goes_on(Timestamp t) {
-    if (!waiting_.empty() || !newest_ || t > *newest_ + kAhead) return false;
+  /// True if an item of this stamp passes unchanged: then it counts as accepted, and needs no push().
+  bool passes(Timestamp t) {
+    if (!near(t)) return false;
     newest_ = std::max(*newest_, t);
     return true;
   }
 
-  /// Many at once: how many of the first go on as they are.
+  /// Of many items, the number of leading ones that pass unchanged.
   std::size_t push_first(std::span<const T> items) {
-    const auto stop = std::ranges::find_if(items, [this](const T& item) { return !goes_on(time_of(item)); });
+    const auto stop = std::ranges::find_if(items, [this](const T& item) { return !passes(time_of(item)); });
     return static_cast<std::size_t>(stop - items.begin());
   }
 
-  /// Nothing more will come.
+  /// The end of the stream.
   template <typename Pass>
   void finish(Pass pass) {
-    for (T& item : std::exchange(waiting_, {})) {
-      newest_ = std::max(newest_.value_or(time_of(item)), time_of(item));
-      pass(std::move(item));
-    }
+    for (T& item : std::exchange(waiting_, {})) let_through(std::move(item), pass);
   }
 
-  /// Of what went on.
+  /// The newest stamp of the accepted items.
   std::optional<Timestamp> newest() const { return newest_; }
 
  private:
+  bool near(Timestamp t) const { return waiting_.empty() && newest_ && t <= *newest_ + kAhead; }
+
+  /// The newest stamp is still that of the items before while pass runs.
+  template <typename Pass>
+  void let_through(T item, Pass& pass) {
+    const Timestamp t = time_of(item);
+    pass(std::move(item));
+    newest_ = std::max(newest_.value_or(t), t);
+  }
+
   std::vector<T> waiting_;
   Timestamp begin_, end_;  ///< of what waits
   std::optional<Timestamp> newest_;

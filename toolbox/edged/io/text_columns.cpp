@@ -34,7 +34,13 @@ std::size_t count_fields(std::string_view line) {
   return count;
 }
 
-/// Data begins where a line begins with a number.
+/// A line of data begins or ends with a number: a list of images may have the stamps behind the names.
+bool holds_data(std::string_view line) {
+  const std::size_t last = line.find_last_of(" \t,;") + 1;
+  return parse_number(FieldReader(line).next()) ||
+         (line.find_first_of("#%") != 0 && last > 0 && parse_number(line.substr(last)));
+}
+
 FileHead read_head(const SourcePath& file) {
   constexpr std::size_t kMostLines = 100;
   FileHead head;
@@ -46,7 +52,7 @@ FileHead read_head(const SourcePath& file) {
     const std::string_view line = FieldReader(block.substr(0, end)).rest();
     ++number;
     if (line.empty()) continue;
-    if (parse_number(FieldReader(line).next())) {
+    if (holds_data(line)) {
       head.columns = count_fields(line);
       return head;
     }

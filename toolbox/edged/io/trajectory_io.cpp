@@ -70,11 +70,12 @@ Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const Dama
     on_damage(line, detail);
   };
   Trajectory trajectory;
-  std::size_t repeated = 0;
+  constexpr std::size_t kMostHeadings = 20;
+  std::size_t repeated = 0, headings = 0;
   LineReader lines(file);
   while (const auto line = lines.next()) {
     const ParsedLine parsed = parse(line->text, trajectory.size());
-    if (!parsed.pose && trajectory.empty() && is_heading(line->text)) continue;
+    if (!parsed.pose && trajectory.empty() && is_heading(line->text) && ++headings <= kMostHeadings) continue;
     if (!parsed.pose) {
       damaged(line->number, parsed.wrong);
     } else if (trajectory.empty() || parsed.pose->t > trajectory.back().t) {
@@ -85,6 +86,7 @@ Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const Dama
       damaged(line->number, "the stamp is not after the one above: sort the file by time");
     }
   }
+  if (trajectory.empty() && headings > kMostHeadings) throw InputError::format("{}: holds no pose", file.string());
   if (repeated > 0)
     spdlog::warn(fmt::format("{}: {} repeated stamps, the first pose of each is kept", file.string(), repeated));
   return trajectory;

@@ -120,7 +120,7 @@ TEST(Diagnosis, NamesADeadGyroAndNoCamera) {
   EXPECT_THAT(remedy_of(diagnose(s, true, {check}), Severity::Error, "gyro is constant zero"), HasSubstr("topic"));
   EXPECT_EQ(remedy_of(diagnose(s, true, {check}), Severity::Error, "camera"), "NO SUCH FINDING");
   gyro.value = {0.1, 0, 0};
-  EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro does not change: it reads (0.1, 0, 0) rad/s"),
+  EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro does not change: it is (0.1, 0, 0) rad/s"),
               HasSubstr("driver"));
   gyro.longest = std::chrono::seconds(3), gyro.axes = {Duration(3), Duration(3), gyro.covered};
   EXPECT_THAT(remedy_of(diagnose(s, true, {}), Severity::Error, "gyro: its z axis does not change"),

@@ -53,12 +53,12 @@ std::string lengths_text(const Survey& s, double cameras_s) {
   return fmt::format("the IMU covers {:.1f} s, the other sensors {:.1f} s", to_seconds(s.imu.length()), cameras_s);
 }
 
-/// Duration of the IMU over that of the cameras if it is near a power of ten or a factor of two: another unit or clock.
+/// The factor of two or a thousand, if any, by which the IMU lasts longer than the cameras: another clock or unit.
 std::optional<double> telling_ratio(const Survey& s, double cameras_s) {
   constexpr double kNear = 0.02, kLeast_s = 1.0;
   const double ratio = s.imu_span_ratio();
   for (const double known : {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9})
-    if (cameras_s > kLeast_s && std::abs(ratio / known - 1.0) < kNear) return ratio;
+    if (cameras_s > kLeast_s && std::abs(ratio / known - 1.0) < kNear) return known;
   return std::nullopt;
 }
 
@@ -67,9 +67,11 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
   const auto visual = s.cameras();
   if (!visual) return;
   const double cameras_s = to_seconds(visual->second - visual->first), ratio = s.imu_span_ratio();
+  const auto told = telling_ratio(s, cameras_s);
   const auto measured = std::ranges::find_if(cameras, [](const CameraCheck& c) { return c.clock.has_value(); });
   if (measured != cameras.end()) {
-    const double rate = measured->clock->rate;
+    const bool as_lasts = told && std::abs(measured->clock->rate / *told - 1.0) < kSameLength;
+    const double rate = as_lasts ? *told : measured->clock->rate;  // the rotation of a few seconds is known to percents
     const std::string lengths = std::abs(ratio / rate - 1.0) < kSameLength && std::abs(rate - 1.0) > 0.1
                                     ? lengths_text(s, cameras_s) + ": "
                                     : "";
@@ -81,7 +83,6 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
                     rate));
   }
   const bool compared = std::ranges::any_of(cameras, &CameraCheck::sure);
-  const auto told = telling_ratio(s, cameras_s);
   if (compared || !told || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *told))
     return;
   const bool unit = *told > 10.0 || *told < 0.1;

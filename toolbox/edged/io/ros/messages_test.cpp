@@ -272,7 +272,7 @@ TEST_P(Messages, IntrinsicsMayBePaddedWithZeros) {
     out.text("rational_polynomial");
     out.number(std::uint32_t{14});
     std::vector<double> k(14, 0.0);
-    k[0] = -0.3, k[6] = k5;
+    k[0] = -0.1, k[6] = k5;
     out.numbers(k);
     out.numbers(std::vector<double>{200, 0, 170, 0, 200, 130, 0, 0, 1});
     out.numbers(std::vector<double>(9 + 12, 0.0));

@@ -145,7 +145,7 @@ TEST(RosDataset, HeightsAndVelocitiesAreReadFromTheTopicsThatAreNamed) {
     EXPECT_NEAR(height.height_m, 39.0, 0.2);
     EXPECT_NEAR(height.sigma_m, 1.0, 0.01);
     const auto& velocity = std::get<VelocitySample>(samples[78].index() == 1 ? samples[78] : samples[79]);
-    EXPECT_EQ(velocity.v_S, Eigen::Vector3d(1.0, 3.9, 0.0));
+    EXPECT_TRUE(velocity.v_S.isApprox(Eigen::Vector3d(1.0, 3.9, 0.0), 1e-12));
     EXPECT_EQ(velocity.sigma, Eigen::Vector3d(0.2, 0.0, none));
     options.topics = {{"height", "/sonar"}};
     const Recording sonar = open_recording(bag, nullptr, options);

@@ -160,7 +160,7 @@ void EventTextStream::parse_block(std::string_view block) {
       damage_.bad(line_, "pixel outside the sensor",
                   fmt::format("pixel ({}, {}) outside the {} x {} sensor: is this its calibration?", event.x, event.y,
                               width_, height_));
-    } else if (gate_.goes_on(event.t)) [[likely]] {
+    } else if (gate_.passes(event.t)) [[likely]] {
       place(event);
     } else {
       gate_.push(

@@ -20,10 +20,10 @@ void write_uzh_fpv(const TempFolder& folder) {
   std::string truth = "# id timestamp tx ty tz qx qy qz qw\n";
   for (int i = 0; i < 100; ++i) {
     const double t = 1540821844.0 + 0.002 * i;
-    imu += fmt::format("{} {:.9f} 0.1 0.2 0.3 1 2 9.7\n", i, t);
-    events += fmt::format("{:.9f} {} 7 1\n", t + 0.0001, i);
-    truth += fmt::format("{} {:.9f} 4 5 6 0 0.6 0 0.8\n", i, t);
-    if (i % 50 == 0) images += fmt::format("{} {:.9f} img/image_0_{}.png\n", i / 50, t, i / 50);
+    imu += fmt::format("{} {:.6f} 0.1 0.2 0.3 1 2 9.7\n", i, t);
+    events += fmt::format("{:.6f} {} 7 1\n", t + 0.0001, i);
+    truth += fmt::format("{} {:.6f} 4 5 6 0 0.6 0 0.8\n", i, t);
+    if (i % 50 == 0) images += fmt::format("{} {:.6f} img/image_0_{}.png\n", i / 50, t, i / 50);
   }
   folder.write("imu.txt", imu);
   folder.write("events.txt", events);
