@@ -57,5 +57,5 @@ TOLD = {
     "accelerometer negated": ("imu.txt", with_imu(lambda t, a, g: (t, scaled(-1, a), g))),
     "gyro 1.1": ("imu.txt", with_imu(lambda t, a, g: (t, a, scaled(1.1, g)))),
     "inverse near identity": ("calibration.yaml", with_transform(inverse)),
-    "turned by 3 deg": ("calibration.yaml", turned(3)),
+    "turned by 5 deg": ("calibration.yaml", turned(5)),
 }

@@ -124,7 +124,7 @@ class Verdict(WithFlight):
         self.assert_said("inverse near identity", "warning", "the inverse fits", "T_C_B")
 
     def test_a_rotation_that_the_run_has_corrected_is_no_reason_for_distrust(self):
-        result, metrics = self.run_it(self.changed(*faults.TOLD["turned by 3 deg"]), "fused")
+        result, metrics = self.run_it(self.changed(*faults.TOLD["turned by 5 deg"]), "fused")
         self.assertEqual((result.returncode, metrics["status"]), (0, "good"), result.stdout)
         self.assertTrue(any("off the calibration" in f["text"] for f in metrics["findings"]), metrics["findings"])
         self.assertNotIn("more than a run can correct", result.stdout)

@@ -114,6 +114,7 @@ void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<F
 /// An offset between the stamps explains the other contradictions.
 void judge_against_truth(const RunSummary& s, std::vector<Finding>& out) {
   constexpr double kMostOutside = 0.5, kGrossNees = 140.0;
+  constexpr double kLeast_percent = 1.0;  // of the path: a smaller error is of use although its covariance is wrong
   if (s.truth_offset && s.truth_offset->matters()) {
     const TimeOffset& offset = *s.truth_offset;
     out.push_back(
@@ -125,8 +126,9 @@ void judge_against_truth(const RunSummary& s, std::vector<Finding>& out) {
          fmt::format("add {:.4f} s to its stamps; `edged eval` takes the file as it is", -offset.offset_s)});
   } else if (s.consistency && s.consistency->silent_s() > 0.0) {
     const Consistency& c = *s.consistency;
-    const bool gross = c.silent_s() > kMostOutside * s.evaluation->duration_s ||
-                       std::max(c.position.max_nees, c.rotation.max_nees) > kGrossNees;
+    const bool gross =
+        s.evaluation->mpe_percent > kLeast_percent && (c.silent_s() > kMostOutside * s.evaluation->duration_s ||
+                                                       std::max(c.position.max_nees, c.rotation.max_nees) > kGrossNees);
     out.push_back(
         {gross ? Severity::Error : Severity::Warning,
          fmt::format("ground truth: the estimate is outside 3 sigma of its covariance for {:.1f} s", c.silent_s()),

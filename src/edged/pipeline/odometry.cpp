@@ -94,7 +94,8 @@ std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::strin
   return impl_->packet_odometry.localization().calibration_covariance(camera);
 }
 OdometryCounters Odometry::counters() const {
-  return {impl_->intake.counters(), impl_->packetizer.counters(), impl_->packet_odometry.localization().external_counters()};
+  return {impl_->intake.counters(), impl_->packetizer.counters(),
+          impl_->packet_odometry.localization().external_counters()};
 }
 const StageTimings& Odometry::timings() const { return impl_->packet_odometry.timings(); }
 
