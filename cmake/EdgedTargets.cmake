@@ -23,6 +23,10 @@ if(EDGED_SANITIZE)
   target_compile_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
   target_link_options(edged_options INTERFACE -fsanitize=${EDGED_SANITIZE})
+  if(EDGED_SANITIZE MATCHES "undefined")
+    # A third of the compile time. The address sanitizer finds what these do (and no class here is cast without RTTI).
+    target_compile_options(edged_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
+  endif()
   # Memory that Eigen's code in libraries took is freed by ours: both must take it from malloc as it is.
   target_compile_definitions(edged_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()

@@ -10,6 +10,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+began=$(date +%s)
 presets=(release)
 left_out=(--label-exclude stress)
 tools=()
@@ -22,14 +23,14 @@ esac
 scripts/setup.sh "${tools[@]}"
 if [ "${#tools[@]}" -gt 0 ]; then scripts/tidy.sh; fi
 for preset in "${presets[@]}"; do
-  echo "== $preset"
+  echo "== $preset [$(( ($(date +%s) - began) / 60 )) min]"
   merged=()
   if [ "$preset" = release ] && [ ! -e build/release/CMakeCache.txt ]; then
     merged=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
   fi
   cmake --preset "$preset" "${merged[@]}" >/dev/null
   cmake --build --preset "$preset"
-  watch=(cat)
-  if [ "$preset" = release ]; then watch=(tools/long_tests.py); fi
+  watch=(tools/long_tests.py --since "$began")
+  if [ "$preset" != release ]; then watch+=(--no-warnings); fi
   ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}" | "${watch[@]}"
 done

@@ -4,6 +4,7 @@
 """tools/long_tests.py warns of long tests without a reason, before the summary, and changes nothing else."""
 import pathlib
 import subprocess
+import time
 import unittest
 
 TOOL = pathlib.Path(__file__).resolve().parent.parent / "tools" / "long_tests.py"
@@ -18,9 +19,9 @@ Total Test time (real) =  96.00 sec
 
 
 class LongTests(unittest.TestCase):
-    def lines_of(self, name):
+    def lines_of(self, name, *options):
         text = OUTPUT.format(name)
-        made = subprocess.run([TOOL], input=text, capture_output=True, text=True, check=True).stdout
+        made = subprocess.run([TOOL, *options], input=text, capture_output=True, text=True, check=True).stdout
         return text.splitlines(), made.splitlines()
 
     def test_a_long_test_without_a_reason_is_named_before_the_summary(self):
@@ -29,6 +30,10 @@ class LongTests(unittest.TestCase):
         self.assertEqual(len(warning), 1)
         self.assertIn("Lie.Dawdles took 21 s", warning[0])
         self.assertEqual(made, given[:-2] + warning + given[-2:])
+
+    def test_results_get_the_time_since_the_begin(self):
+        given, made = self.lines_of("Dawdles", "--since", str(time.time() - 121), "--no-warnings")
+        self.assertEqual(made, [line + "  [2 min]" if "/3 Test" in line else line for line in given])
 
 
 if __name__ == "__main__":
