@@ -15,9 +15,9 @@
 
 namespace edged {
 
-/// Items of one stream of a recording, T with a `time_of`, pass through it one by one. A run of items that begins kAhead
-/// after all items before is held. It was a gap if it lasts for kSure or is followed by another gap. It is dropped if an
-/// earlier stamp follows: its stamps were wrong. The first item of all is held until the second.
+/// Items of one stream of a recording, T with a `time_of`, pass through it one by one. A run of items that begins
+/// kAhead after all items before is held. It was a gap if it lasts for kSure or is followed by another gap. It is
+/// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second.
 template <typename T>
 class AheadGate {
  public:

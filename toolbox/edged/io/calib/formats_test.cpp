@@ -300,7 +300,8 @@ TEST_F(CalibrationFormats, CameraInfoHasIntrinsicsOnly) {
   const std::string rational = changed(kCameraInfo, "plumb_bob", "rational_polynomial");
   EXPECT_EQ(load(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0, 0, 0]")).rig.cameras[0].model.distortion(),
             DistortionModel::RadTan);
-  EXPECT_THAT(complaint(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0.1, 0, 0]")), HasSubstr("k4 = 0.1 is not supported"));
+  EXPECT_THAT(complaint(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0.1, 0, 0]")),
+              HasSubstr("k4 = 0.1 is not supported"));
   EXPECT_THAT(complaint(changed(kCameraInfo, "[327.0, 0, 305.0", "[327.0, 2, 305.0")), HasSubstr("camera_matrix"));
 }
 
