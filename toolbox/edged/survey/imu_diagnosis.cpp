@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "edged/core/angles.hpp"
+#include "edged/se3.hpp"
 
 namespace edged {
 namespace {
@@ -62,6 +63,14 @@ std::optional<double> telling_ratio(const Survey& s, double cameras_s) {
   return std::nullopt;
 }
 
+/// Two clocks of another rate seem to agree after a large rotation.
+bool turns_as_calibrated(const CameraCheck& check) {
+  constexpr double kMost_deg = 20.0;
+  if (!check.sure() || !check.has_extrinsics) return check.sure();
+  const Eigen::Quaterniond R_B_C(check.agreement->R_B_C);
+  return so3::log(check.camera.T_B_C.rotation().conjugate() * R_B_C).norm() < kMost_deg * kDegree;
+}
+
 void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
   constexpr double kTogether_s = 0.3, kSameLength = 0.05;
   const auto visual = s.cameras();
@@ -82,8 +91,8 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
         fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver",
                     rate));
   }
-  const bool compared = std::ranges::any_of(cameras, &CameraCheck::sure);
-  if (compared || !told || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *told))
+  if (std::ranges::any_of(cameras, turns_as_calibrated) || !told ||
+      std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *told))
     return;
   const bool unit = *told > 10.0 || *told < 0.1;
   out.imu_unusable(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
