@@ -9,7 +9,7 @@ preset=${1:-room}
 seed=${2:-1}
 
 scripts/setup.sh
-cmake --preset release >/dev/null
+scripts/configure.sh
 cmake --build --preset release --target edged
 
 edged=build/release/bin/edged

@@ -4,9 +4,8 @@
 # Installs what is missing, builds everything and runs the tests as released, but for the longest (label stress): 20
 # minutes on two cores. --full, which CI runs: these as well, and before them what has threads under the thread
 # sanitizer, what is not too long under those of addresses and undefined behaviour, and the public headers and the
-# pipeline through clang-tidy. Ends with ctest's summary of the tests as released. A release build that is not there yet
-# merges the sources of a module, which takes a third of the time; one that is there stays as it was configured. Before
-# the summary it warns of tests that take longer than 20 s without a reason in tests/long_tests.txt.
+# pipeline through clang-tidy. Ends with ctest's summary of the tests as released. Before the summary it warns of tests
+# that take longer than 20 s without a reason in tests/long_tests.txt.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,11 +23,7 @@ scripts/setup.sh "${tools[@]}"
 if [ "${#tools[@]}" -gt 0 ]; then scripts/tidy.sh; fi
 for preset in "${presets[@]}"; do
   echo "== $preset [$(( ($(date +%s) - began) / 60 )) min]"
-  merged=()
-  if [ "$preset" = release ] && [ ! -e build/release/CMakeCache.txt ]; then
-    merged=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
-  fi
-  cmake --preset "$preset" "${merged[@]}" >/dev/null
+  if [ "$preset" = release ]; then scripts/configure.sh; else cmake --preset "$preset" >/dev/null; fi
   cmake --build --preset "$preset"
   watch=(tools/long_tests.py --since "$began")
   if [ "$preset" != release ]; then watch+=(--no-warnings); fi
