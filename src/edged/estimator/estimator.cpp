@@ -27,7 +27,7 @@ constexpr double kStartSigmaInflation = 1.5;  // of the information since the in
 // [m/s]: a body that is faster by the estimate is not at rest, unless the IMU alone detects a standstill.
 constexpr double kMaxStandstillSpeed = 0.15;
 // [m/s]: of a body at rest by its image alone, near the estimate.
-constexpr double kPictureVelocitySigma = 0.05;
+constexpr double kImageVelocitySigma = 0.05;
 // [rad/s], where the IMU alone detects a standstill: a body at rest turns no faster, so the gyro measures its bias.
 constexpr double kRestGyroBiasSigma = 5e-4;
 // Times an observation's sigma, where the gyro is saturated: images blur, features are tracked without its prediction,
@@ -81,7 +81,7 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
   standstill_.add(input.motion.samples(), input.observations, input.events_quiet, gyro_bias());
-  result.standstill = standstill_.still() || rests_by_picture();
+  result.standstill = standstill_.still() || rests_by_image();
   if (start(input, result) || !initialized_) return result;
   append(input);
   result.velocity_observed = external_.velocity_observed(input.t);
@@ -132,10 +132,10 @@ void Estimator::update_scale(const EstimatorInput& input) {
   if (!provisional()) window_.free_calibration(config_.calibration);
 }
 
-/// Nothing in view has shown parallax, as at rest or where it is far, and nothing moves there: what the IMU feels are
+/// No feature has shown parallax, at rest or because the scene is far, and the image is static: the IMU measures
 /// vibrations.
-bool Estimator::rests_by_picture() const {
-  return initialized_ && standstill_.picture_still() && !sees_landmarks_ && newest().v_O.norm() < kMaxStandstillSpeed;
+bool Estimator::rests_by_image() const {
+  return initialized_ && standstill_.image_static() && !sees_landmarks_ && newest().v_O.norm() < kMaxStandstillSpeed;
 }
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {
@@ -184,9 +184,9 @@ void Estimator::append(const EstimatorInput& input) {
                          : window_.add_state(std::move(state), input.observations);
   external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   OdomState rest;
-  if (!rested && rests_by_picture())
+  if (!rested && rests_by_image())
     window_.add_soft_prior(
-        motion_prior({BlockKind::Motion, id}, motion_block(rest), {kPictureVelocitySigma, kFree, kFree}));
+        motion_prior({BlockKind::Motion, id}, motion_block(rest), {kImageVelocitySigma, kFree, kFree}));
   if (!rested) return;
   rest.bias_gyro = standstill_.mean_gyro_B();
   const double bias_sigma = standstill_.still_by_imu() ? kRestGyroBiasSigma : kFree;

@@ -68,7 +68,7 @@ class Estimator {
   bool start(const EstimatorInput& input, EstimatorResult& result);
   void update_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
-  bool rests_by_picture() const;
+  bool rests_by_image() const;
   void append(const EstimatorInput& input);
   bool take_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);

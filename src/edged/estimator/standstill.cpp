@@ -30,10 +30,11 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
   return {median(std::move(x)), median(std::move(y))};
 }
 
-/// Whether nothing was measured for a while since then; what is interpolated repeats itself like a body at rest.
+/// True if samples are missing since then. Interpolated samples look like those of a body at rest.
 bool has_gap(const std::deque<ImuSample>& samples, Timestamp since) {
   constexpr Duration kLongest = std::chrono::milliseconds(100);
-  Timestamp measured = since = std::max(since, samples.front().t);
+  since = std::max(since, samples.front().t);
+  Timestamp measured = since;
   for (const ImuSample& sample : samples) {
     if (sample.t - std::max(since, measured) > kLongest) return true;
     if (!sample.made_up) measured = sample.t;
@@ -81,14 +82,14 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
   while (imu_.size() > 1 && imu_[1].t <= now - duration_from_seconds(longest_s)) imu_.pop_front();
   while (views_.size() > 1 && views_[1].t <= now - duration_from_seconds(config_.window_s)) views_.pop_front();
   const Spread spread = spread_over(config_.window_s);
-  still_ = quiet_ = picture_still_ = false;
+  still_ = quiet_ = image_static_ = false;
   const bool gap = has_gap(imu_, now - duration_from_seconds(config_.quiet_window_s));
   if (gap || !imu_calm(spread)) {
     const bool stands = gap ? image_still() : only_shakes(spread);
     if (gap) reason_ = "IMU samples are missing";
     if (!stands) return shakes_since_.reset();
     if (!shakes_since_) shakes_since_ = now;
-    picture_still_ = now - *shakes_since_ >= kLeastShaking;
+    image_static_ = now - *shakes_since_ >= kLeastShaking;
     return;
   }
   shakes_since_.reset();
@@ -182,7 +183,7 @@ bool StandstillDetector::image_glides() const {
   return static_cast<double>(alike) > kGlideShare * static_cast<double>(all.size());
 }
 
-/// Whether the picture moves as it does where the rate is a turn that an IMU cannot tell from a bias.
+/// True if the image moves as in a rotation of this rate, which the IMU alone cannot distinguish from a bias.
 bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) const {
   const double turned = rate.norm() * config_.window_s;
   if (turned < kLeastTurn * config_.max_image_motion) return false;

@@ -34,7 +34,7 @@ class StandstillDetector {
   bool still_by_imu() const { return quiet_; }
   /// True if the image has been static for a while although the IMU is not calm: rest on something that shakes, or
   /// motion too slow to see.
-  bool picture_still() const { return picture_still_; }
+  bool image_static() const { return image_static_; }
   /// Why it is no standstill, with numbers; empty at standstill.
   const std::string& reason() const { return reason_; }
   /// Means over the window; meaningful when still.
@@ -66,7 +66,7 @@ class StandstillDetector {
   StandstillConfig config_;
   std::deque<ImuSample> imu_;
   std::deque<View> views_;
-  bool still_ = false, quiet_ = false, picture_still_ = false;
+  bool still_ = false, quiet_ = false, image_static_ = false;
   std::optional<Timestamp> shakes_since_;
   std::string reason_;
   Eigen::Vector3d mean_gyro_ = Eigen::Vector3d::Zero(), mean_accel_ = Eigen::Vector3d::Zero();

@@ -125,11 +125,11 @@ TEST(StandstillDetector, SeesAPictureThatStandsWhileTheImuShakes) {
   const auto engines = [](double t) { return Vector3d(0.3 * std::sin(30.0 * t), 0, 9.81); };
   Bench bench;
   bench.run(0.6, {.accel = engines});
-  EXPECT_FALSE(bench.detector.still() || bench.detector.picture_still()) << "who starts to move looks alike";
+  EXPECT_FALSE(bench.detector.still() || bench.detector.image_static()) << "who starts to move looks alike";
   bench.run(0.5, {.accel = engines});
-  EXPECT_TRUE(bench.detector.picture_still()) << bench.detector.reason();
+  EXPECT_TRUE(bench.detector.image_static()) << bench.detector.reason();
   bench.run(0.5, {.accel = engines, .corner_speed = 0.05});
-  EXPECT_FALSE(bench.detector.picture_still());
+  EXPECT_FALSE(bench.detector.image_static());
 }
 
 TEST(StandstillDetector, SeesAPush) {

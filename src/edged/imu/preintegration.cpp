@@ -38,8 +38,8 @@ double sigma_of_jump(const Vector3d& a, const Vector3d& b, double usual) {
 }
 constexpr double kUsualGyroJump = 1.0, kUsualAccelJump = 4.0;  // [rad/s], [m/s^2]
 
-/// What a body does in a gap that nothing measured, against going on as it did: rates of 1.5 rad/s and accelerations of
-/// 5 m/s^2 that last for 0.1 s, as densities. [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
+/// Process noise in a gap, where the motion is assumed to continue: rates of 1.5 rad/s and accelerations of 5 m/s^2
+/// that last for 0.1 s, as densities. [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
 constexpr double kGapGyroNoise = 0.7, kGapAccelNoise = 2.2;
 
 double density(double noise, bool gap, double gap_noise, bool clipped, double inflation) {

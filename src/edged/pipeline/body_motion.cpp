@@ -6,8 +6,8 @@
 
 namespace edged {
 
-/// Where all samples are missing the body goes on as it does: at its rate, by gravity alone without acceleration. What
-/// is interpolated between the ends of a long gap knows less, and nothing of where up is.
+/// If all samples are missing, the body keeps its angular velocity and has no acceleration. Samples interpolated
+/// between the ends of a long gap would be less accurate, and wrong about the direction of gravity.
 void BodyMotion::bridge(std::vector<ImuSample>& imu) const {
   for (ImuSample& sample : imu) {
     const Eigen::Quaterniond R_O_B = now_.T_O_B.rotation() * so3::exp(omega_B_ * to_seconds(sample.t - imu.front().t));
@@ -50,7 +50,7 @@ SE3 BodyMotion::moved_on(Duration time) const {
 
 SE3 BodyMotion::correct(const OdomState& estimate, bool new_frame) {
   SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
-  if (bridged_s_ > 0.0 && !new_frame)  // only the cameras know the rate
+  if (bridged_s_ > 0.0 && !new_frame)  // only the cameras measure the rate
     omega_B_ += so3::log(now_.T_O_B.rotation().conjugate() * estimate.T_O_B.rotation()) / bridged_s_;
   now_ = estimate;
   for (StampedPose& pose : T_O_B_) pose.T = correction * pose.T;

@@ -40,7 +40,7 @@ class BodyMotion {
   Duration history_;
   OdomState now_;
   bool started_ = false;
-  double bridged_s_ = 0.0;                             ///< length of the last prediction where it is across a gap
+  double bridged_s_ = 0.0;                             ///< duration of the last prediction if it bridged a gap, else 0
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;
 };

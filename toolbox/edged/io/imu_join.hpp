@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One stream of IMU samples from a gyro and an accelerometer that come apart. Internal to io.
+// Merges a gyro stream and an accelerometer stream into IMU samples. Internal to io.
 #pragma once
 
 #include <deque>
@@ -16,7 +16,7 @@ namespace edged {
 /// sample on both sides, or in a gap between two, are left out. Each comes in time order.
 class ImuJoin {
  public:
-  /// What has become complete.
+  /// Returns the samples that are complete now.
   std::vector<ImuSample> add_gyro(Timestamp t, const Eigen::Vector3d& gyro);
   std::vector<ImuSample> add_accel(Timestamp t, const Eigen::Vector3d& accel);
 

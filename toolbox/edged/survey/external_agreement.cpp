@@ -27,11 +27,11 @@ constexpr Duration kWindow = std::chrono::seconds(4);
 constexpr Duration kForGravity = std::chrono::seconds(4);  // before and after a window
 constexpr std::size_t kFewestSamples = 12;                 // of a window
 constexpr Duration kForRate = std::chrono::milliseconds(10);
-constexpr double kCorrelated = 2.0;    // residuals of a window hang together: sigmas are so much larger
+constexpr double kCorrelated = 2.0;    // inflation of sigmas: the residuals of a window are correlated
 constexpr double kKnown = 0.2;         // sigma of a scale, or of an entry of a rotation, that is known
 constexpr double kKnownHeight = 0.25;  // of its scale
 constexpr double kSureSigmas = 4.0;
-constexpr double kArmSigma_m = 0.3;  // of what is thought of the lever arm
+constexpr double kArmSigma_m = 0.3;  // prior of the lever arm
 
 /// Calls `use` with the samples of each window, one after the other.
 template <typename Sample, typename Use>
@@ -44,10 +44,10 @@ void for_each_window(const std::vector<Sample>& samples, const Use& use) {
   }
 }
 
-/// What is left of the columns of A when those of C have explained what they can.
+/// The columns of A without their projection on those of C.
 MatrixXd unexplained(const MatrixXd& A, const MatrixXd& C) { return A - C * C.householderQr().solve(A); }
 
-/// Normal equations of what a sensor and the IMU have in common; each window's own unknowns are eliminated.
+/// Normal equations of the shared unknowns of a sensor and the IMU; those of each window are eliminated.
 struct Equations {
   explicit Equations(Eigen::Index unknowns) : N(MatrixXd::Zero(unknowns, unknowns)), b(VectorXd::Zero(unknowns)) {}
 
@@ -119,17 +119,17 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
     y.segment<3>(3 * i) = *pushed;
   }
   equations.add(A, y, own);
-  // What noise adds to the squares of the columns would make them shorter.
+  // Noise adds to the squares of the columns, which would bias their length.
   for (int axis = 0; axis < 3; ++axis) {
     if (measured[axis] > 2.0)
       equations.N.diagonal().segment<3>(3 * axis).array() -= noise * noise * (measured[axis] - 2.0);
   }
 }
 
-/// The rotation nearest to columns by their weights, and the scale with it.
+/// The rotation nearest to weighted columns, and its scale.
 struct Turned {
   Matrix3d R;
-  double scale, misfit;  ///< the second: mean square that is left of a column
+  double scale, misfit;  ///< misfit: mean squared residual of a column
 };
 
 Turned nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
@@ -144,8 +144,7 @@ Turned nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
 
 double angle_of(const Matrix3d& R) { return so3::log(Eigen::Quaterniond(R)).norm(); }
 
-/// The axis, or all of them, that is turned round where no rotation fits. Signs that need the least rotation are the
-/// likeliest.
+/// If no rotation fits, the axis with the wrong sign, or all axes. The signs with the smallest rotation are chosen.
 void look_for_mirror(const Matrix3d& M, const Vector3d& weight, Turned& best, VelocityAgreement& agreement) {
   constexpr double kBad = 0.1, kFarBetter = 0.2;
   const double without = best.misfit;
@@ -160,7 +159,7 @@ void look_for_mirror(const Matrix3d& M, const Vector3d& weight, Turned& best, Ve
   }
 }
 
-/// Another unit that the numbers may be in, the nearest there is: its name, or nothing.
+/// Name of the unit whose factor is nearest to the scale; empty if none is near.
 std::string unit_of(double scale, bool velocity) {
   constexpr double kNear = 1.15;
   constexpr std::array<std::pair<double, const char*>, 4> lengths{
@@ -182,21 +181,22 @@ void judge_heights(const HeightAgreement& found, std::vector<Finding>& out) {
   constexpr double kOff = 0.3;
   const double sigma = found.scale_sigma;
   if (found.scale + kSureSigmas * sigma < 0.0)
-    out.push_back({Severity::Error, "height: it falls where the accelerometer says that the body climbs",
-                   "heights are positive upwards: turn their sign in the file (a depth is no height)"});
+    out.push_back({Severity::Error, "height: its sign contradicts the accelerometer",
+                   "heights are positive upwards: negate them in the file (a depth is no height)"});
   else if (std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * sigma))
     out.push_back(
         {Severity::Warning,
-         fmt::format("height: it changes by {:.2g} +- {:.2g} times what the accelerometer says", found.scale, sigma),
+         fmt::format("height: its changes are {:.2g} +- {:.2g} times those of the accelerometer", found.scale, sigma),
          unit_remedy(unit_of(found.scale, false), "height",
                      "check its scale; a frozen or slow filter in the sensor does the same")});
   else
-    out.push_back({Severity::Good,
-                   fmt::format("height: sign and scale fit the accelerometer ({:.2f} +- {:.2f})", found.scale, sigma),
-                   ""});
+    out.push_back(
+        {Severity::Good,
+         fmt::format("height: sign and scale agree with the accelerometer ({:.2f} +- {:.2f})", found.scale, sigma),
+         ""});
 }
 
-/// Roll, pitch and yaw [deg] as velocity.rotation_deg has them, right angles made exact.
+/// Roll, pitch and yaw [deg] as in velocity.rotation_deg, near multiples of 90 deg rounded to them.
 std::string rotation_text(const Matrix3d& R) {
   constexpr double kNear_deg = 12.0;
   std::array<double, 3> angles = {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
@@ -217,8 +217,8 @@ void judge_mirrored(const VelocityAgreement& found, std::vector<Finding>& out) {
     if (found.signs[axis] < 0.0)
       turned += (turned.empty() ? "" : ", ") + std::string(columns[static_cast<std::size_t>(axis)]);
   }
-  out.push_back({Severity::Error, fmt::format("velocity: the sign of {} is wrong, by the IMU", turned),
-                 "turn it in the file: axes are right-handed, and the velocity is that of the body over the ground"});
+  out.push_back({Severity::Error, fmt::format("velocity: the sign of {} contradicts the IMU", turned),
+                 "negate it in the file: axes are right-handed, and the velocity is that of the body over the ground"});
 }
 
 void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out) {
@@ -230,19 +230,20 @@ void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out)
   const bool scaled = std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * found.sigma);
   if (turned)
     out.push_back({Severity::Warning,
-                   fmt::format("velocity: its axes are turned by {:.0f} +- {:.0f} deg against those of the IMU",
+                   fmt::format("velocity: its axes are rotated by {:.0f} +- {:.0f} deg relative to those of the IMU",
                                angle_deg, sigma_deg),
                    fmt::format("run it with --set velocity.rotation_deg=\"{}\"", rotation_text(found.T_B_S.R()))});
   if (scaled)
     out.push_back(
         {Severity::Warning,
-         fmt::format("velocity: {:.2g} times what the IMU says (+- {:.0f} %)", ratio, 100.0 * found.sigma),
+         fmt::format("velocity: {:.2g} times that of the IMU (+- {:.0f} %)", ratio, 100.0 * found.sigma),
          unit_remedy(unit_of(ratio, true), "vx", "scale it in the file, or give it a larger velocity.scale_sigma")});
   if (!turned && !scaled)
-    out.push_back({Severity::Good,
-                   fmt::format("velocity: axes and scale fit the IMU (turned {:.0f} deg, scale {:.2f}, +- {:.2f})",
-                               angle_deg, ratio, found.sigma),
-                   ""});
+    out.push_back(
+        {Severity::Good,
+         fmt::format("velocity: axes and scale agree with the IMU (rotated {:.0f} deg, scale {:.2f}, +- {:.2f})",
+                     angle_deg, ratio, found.sigma),
+         ""});
 }
 
 }  // namespace
@@ -265,7 +266,7 @@ std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySa
   if (gyro.empty()) return std::nullopt;
   Equations equations(12);
   for_each_window(samples, [&](const auto& window) { add_velocities(window, gyro, noise, equations); });
-  // What is not told stays what is thought: axes as those of the IMU, and a sensor not far from it.
+  // The prior decides what the data do not: axes as those of the IMU, and a sensor not far from it.
   const double variance = std::pow(std::max(noise, kLeastNoise), 2);
   Eigen::Matrix<double, 12, 1> expected;
   expected << Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::Zero();

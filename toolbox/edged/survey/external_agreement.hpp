@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What height and velocity sensors and the IMU say of each other: signs, axes and scale, without any camera.
+// Agreement of height and velocity sensors with the IMU: signs, axes and scale, without any camera.
 #pragma once
 
 #include <optional>
@@ -15,28 +15,28 @@
 
 namespace edged {
 
-/// Of the changes of height over those that the accelerometer says.
+/// Ratio of the changes of height to those of the accelerometer.
 struct HeightAgreement {
   double scale = 1.0, scale_sigma = 0.0;
 };
 
-/// Of the velocity in the body's axes over what is measured, by column of the sensor's axes.
+/// Rotation and ratio of the velocity in the body's axes to the measured one.
 struct VelocityAgreement {
   SE3 T_B_S;  ///< the best rotation, and where the sensor is
   double scale = 1.0;
   double sigma = 0.0;                               ///< of an entry of R_B_S, of the axes that are known
-  bool left_handed = false;                         ///< no rotation fits, but one with an axis turned round does
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();  ///< of the axes, with which it does
+  bool left_handed = false;                         ///< a rotation fits only after the signs are applied
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();  ///< of the axes
 };
 
 /// Within a few seconds, a body of unknown velocity, and of unknown gravity or biases, moves as the integral of the
-/// accelerometer says (docs/math.md, Y1). Nothing where it moved too little to tell.
+/// accelerometer says (docs/math.md, Y1). Nothing if the motion does not determine it.
 std::optional<HeightAgreement> compare_heights(const std::vector<HeightSample>& samples, const GyroIntegral& gyro);
 /// noise: of a sample [m/s].
 std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySample>& samples,
                                                     const GyroIntegral& gyro, double noise);
 
-/// Collects samples, a quarter of an hour at 25 Hz at most, and says what is wrong.
+/// Collects samples, a quarter of an hour at 25 Hz at most, and adds findings about them.
 class ExternalCheck {
  public:
   void add(const ExternalSample& sample);

@@ -95,7 +95,7 @@ TEST_F(SensorsOnABody, AHeightThatIsADepthIsAnError) {
 }
 
 TEST_F(SensorsOnABody, AVelocityThatFitsIsGood) {
-  EXPECT_TRUE(says(velocities(kAsIs), "fit the IMU", Severity::Good));
+  EXPECT_TRUE(says(velocities(kAsIs), "agree with the IMU", Severity::Good));
   const auto found = compare_velocities(velocities(kAsIs), gyro_, 0.05);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->scale, 1.0, 0.05);
@@ -121,7 +121,7 @@ TEST_F(SensorsOnABody, OtherUnitsAreNamed) {
 
 TEST_F(SensorsOnABody, AForwardAxisAloneTellsItsSignAndScale) {
   const double none = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(says(velocities(kAsIs, {0.05, none, none}), "fit the IMU", Severity::Good));
+  EXPECT_TRUE(says(velocities(kAsIs, {0.05, none, none}), "agree with the IMU", Severity::Good));
   EXPECT_TRUE(says(velocities(-kAsIs, {0.05, none, none}), "rotation_deg", Severity::Warning));
 }
 

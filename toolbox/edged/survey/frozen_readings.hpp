@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether a sensor of three axes repeats its readings to the last bit, which the noise of one that works does not
-// allow.
+// Detects a sensor of three axes that repeats its readings to the last bit, which the noise of a working one prevents.
 #pragma once
 
 #include <Eigen/Core>

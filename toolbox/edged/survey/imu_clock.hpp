@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether the clock of the IMU runs as fast as that of a camera.
+// Rate of the IMU's clock relative to that of a camera.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct ClockRate {
 };
 
 /// Compares how fast camera and gyro turn, whatever the camera's mounting and the gyro's unit, with the stamps of the
-/// IMU stretched about its first one. Nothing where the clock is right as it is, or where that cannot be told.
+/// IMU stretched about its first one. Nothing if the rate is right or cannot be determined.
 /// expected: t_imu = t_cam + it. spans: how long the IMU lasts over how long the cameras do, which is tried, too.
 std::optional<ClockRate> other_clock_rate(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected,
                                           double spans);

@@ -79,12 +79,12 @@ bool ImuSurveyor::at_rest(const Stretch& stretch) {
   const Sums& s = stretch.means;
   return deviation(s.gyro_squares, s.gyro, s.count) < kRestGyro &&
          deviation(s.accel_squares, s.accel, s.count) < kRestAccel &&
-         s.gyro.norm() / static_cast<double>(s.count) < (stretch.picture_moves ? kMostBiasInMotion : kMostBias);
+         s.gyro.norm() / static_cast<double>(s.count) < (stretch.image_moves ? kMostBiasInMotion : kMostBias);
 }
 
 void ImuSurveyor::end_stretch() {
   Stretch ended = *std::exchange(current_, std::nullopt);
-  ended.picture_moves = std::exchange(picture_moves_, false);
+  ended.image_moves = std::exchange(image_moves_, false);
   const auto spread = [](const Stretch& s) { return deviation(s.means.gyro_squares, s.means.gyro, s.means.count); };
   if (!calmest_ || spread(ended) < spread(*calmest_)) calmest_ = ended;
   if (!at_rest(ended)) {

@@ -43,7 +43,7 @@ class ImuSurveyor {
  public:
   void add(const ImuSample& sample);
   /// The picture of a camera moves at present: a steady rate is a turn, then, not a bias.
-  void picture_moves() { picture_moves_ = true; }
+  void image_moves() { image_moves_ = true; }
   ImuSurvey result() const;
 
  private:
@@ -59,15 +59,15 @@ class ImuSurveyor {
   /// Means over 50 ms that follow each other without a hole.
   struct Stretch {
     Timestamp begin, end;
-    Sums means, differences;     ///< differences: of successive means
-    bool picture_moves = false;  ///< at some time in it
+    Sums means, differences;   ///< differences: of successive means
+    bool image_moves = false;  ///< at some time in it
   };
 
   void end_part();
   void end_stretch();
   static bool at_rest(const Stretch& stretch);
 
-  bool picture_moves_ = false;  ///< since the last stretch
+  bool image_moves_ = false;  ///< since the last stretch
   Timestamp part_begin_;
   Sums part_;
   std::optional<Stretch> current_, calmest_, rest_, longest_rest_;

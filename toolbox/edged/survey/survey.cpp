@@ -58,14 +58,14 @@ void Surveyor::add(const Measurement& measurement, Detail detail) {
     events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
     if (detail != Detail::All) return;
     event_details_.add(batch->events);
-    watch_picture(*batch);
+    watch_image(*batch);
   } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
     frames_.add(frame->t, frame->t);
     if (image_size_.empty()) image_size_ = frame->image.size();
     if (detail != Detail::All) return;
     brightness_sum_ += cv::mean(frame->image)[0];
     ++measured_frames_;
-    watch_picture(*frame);
+    watch_image(*frame);
   } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
     imu_.add(sample->t, sample->t);
     imu_details_.add(*sample);
@@ -75,7 +75,7 @@ void Surveyor::add(const Measurement& measurement, Detail detail) {
 }
 
 /// Against a frame some time ago: a turn of a few degrees changes more of it than noise and flicker do.
-void Surveyor::watch_picture(const Frame& frame) {
+void Surveyor::watch_image(const Frame& frame) {
   constexpr Duration kApart = std::chrono::milliseconds(300);
   constexpr double kNoise = 4.0, kOfContrast = 0.15;  // grey levels; share of their standard deviation
   if (compared_.size() == frame.image.size()) {
@@ -83,21 +83,21 @@ void Surveyor::watch_picture(const Frame& frame) {
     cv::Scalar mean, deviation;
     cv::meanStdDev(frame.image, mean, deviation);
     const double changed = cv::norm(frame.image, compared_, cv::NORM_L1) / static_cast<double>(frame.image.total());
-    if (changed > kNoise + kOfContrast * deviation[0]) imu_details_.picture_moves();
+    if (changed > kNoise + kOfContrast * deviation[0]) imu_details_.image_moves();
   }
   compared_ = frame.image;
   compared_at_ = frame.t;
 }
 
 /// Noise, flicker and walkers send fewer events than a turn does.
-void Surveyor::watch_picture(const EventBatch& batch) {
+void Surveyor::watch_image(const EventBatch& batch) {
   constexpr Duration kCounted = std::chrono::milliseconds(100);
   constexpr double kQuiet = 1.0;  // events a pixel and second
   const Timestamp now = batch.events.back().t;
   counted_ += batch.events.size();
   if (now - counted_from_ < kCounted) return;
   const double rate = static_cast<double>(std::exchange(counted_, 0)) / to_seconds(now - counted_from_);
-  if (!info_.event_sensor.empty() && rate > kQuiet * info_.event_sensor.area()) imu_details_.picture_moves();
+  if (!info_.event_sensor.empty() && rate > kQuiet * info_.event_sensor.area()) imu_details_.image_moves();
   counted_from_ = now;
 }
 

@@ -59,8 +59,8 @@ class Surveyor {
   Survey result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
 
  private:
-  void watch_picture(const Frame& frame);
-  void watch_picture(const EventBatch& batch);
+  void watch_image(const Frame& frame);
+  void watch_image(const EventBatch& batch);
 
   DatasetInfo info_;
   StreamSurveyor events_, frames_, imu_;

@@ -113,7 +113,7 @@ TEST(ImuSurveyor, TakesASteadyRateForABiasOnlyWhereThePictureStands) {
   for (const bool moves : {false, true}) {
     ImuSurveyor surveyor;
     for (int i = 0; i < 2000; ++i) {
-      if (moves && i % 100 == 0) surveyor.picture_moves();
+      if (moves && i % 100 == 0) surveyor.image_moves();
       surveyor.add({at(i / 500.0), {0, 0, 0.105}, {0, 0, 9.81}});
     }
     EXPECT_EQ(surveyor.result().rest.has_value(), !moves);

@@ -41,36 +41,36 @@ std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d>
 VisualTurns::VisualTurns(const RigCamera& camera, int corners)
     : modality_(camera.modality),
       tracker_(camera.name, camera.model, with_corners(corners)),
-      picture_(camera.model.height(), camera.model.width(), CV_8UC1, cv::Scalar(0)),
-      events_per_picture_(static_cast<std::size_t>(kEventsPerPixel * static_cast<double>(picture_.total()))) {}
+      event_image_(camera.model.height(), camera.model.width(), CV_8UC1, cv::Scalar(0)),
+      events_per_image_(static_cast<std::size_t>(kEventsPerPixel * static_cast<double>(event_image_.total()))) {}
 
 void VisualTurns::add(const Measurement& measurement) {
   if (turns_.size() >= kMostTurns) return;
   if (const auto* batch = std::get_if<EventBatch>(&measurement); batch && modality_ == Modality::Events)
     add_events(batch->events);
   if (const auto* frame = std::get_if<Frame>(&measurement); frame && modality_ == Modality::Frames)
-    if (frame->image.size() == picture_.size()) add_image(frame->image, frame->t);
+    if (frame->image.size() == event_image_.size()) add_image(frame->image, frame->t);
 }
 
 void VisualTurns::add_events(std::span<const Event> events) {
   constexpr int kGrey = 60;  // of one event; a few make white
   for (const Event& event : events) {
-    if (event.x < picture_.cols && event.y < picture_.rows && tracker_.camera().uses(event.x, event.y)) {
-      auto& pixel = picture_.at<std::uint8_t>(event.y, event.x);
+    if (event.x < event_image_.cols && event.y < event_image_.rows && tracker_.camera().uses(event.x, event.y)) {
+      auto& pixel = event_image_.at<std::uint8_t>(event.y, event.x);
       pixel = cv::saturate_cast<std::uint8_t>(pixel + kGrey);
     }
     ++events_;
   }
   if (events.empty()) return;
-  if (!picture_begin_) picture_begin_ = events.front().t;
-  if (events_ < events_per_picture_) return;
-  const Timestamp t = *picture_begin_ + (events.back().t - *picture_begin_) / 2;
+  if (!image_begin_) image_begin_ = events.front().t;
+  if (events_ < events_per_image_) return;
+  const Timestamp t = *image_begin_ + (events.back().t - *image_begin_) / 2;
   if (!views_.empty() && t - views_.back().t < kShortest) return;
   cv::Mat smooth;
-  cv::GaussianBlur(picture_, smooth, cv::Size(), 1.0);
+  cv::GaussianBlur(event_image_, smooth, cv::Size(), 1.0);
   add_image(smooth, t);
-  picture_.setTo(0);
-  picture_begin_.reset();
+  event_image_.setTo(0);
+  image_begin_.reset();
   events_ = 0;
 }
 

@@ -58,9 +58,9 @@ class VisualTurns {
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
   std::vector<Turn> turns_;
-  cv::Mat picture_;  ///< of the events since the last one; its stamp is the middle of theirs
-  std::optional<Timestamp> picture_begin_;
-  std::size_t events_ = 0, events_per_picture_;
+  cv::Mat event_image_;  ///< of the events since the last one; its stamp is the middle of theirs
+  std::optional<Timestamp> image_begin_;
+  std::size_t events_ = 0, events_per_image_;
 };
 
 }  // namespace edged
