@@ -30,7 +30,7 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
   return {median(std::move(x)), median(std::move(y))};
 }
 
-/// True if samples are missing since then. Interpolated samples look like those of a body at rest.
+/// True if samples are missing since then. Interpolated samples resemble those of a body at rest.
 bool has_gap(const std::deque<ImuSample>& samples, Timestamp since) {
   constexpr Duration kLongest = std::chrono::milliseconds(100);
   since = std::max(since, samples.front().t);
