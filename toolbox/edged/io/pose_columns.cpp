@@ -43,20 +43,6 @@ std::optional<PoseColumns> openvins_columns(const std::vector<ColumnName>& names
   return columns;
 }
 
-const char* unit_name(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::Seconds:
-      return "s";
-    case TimeUnit::Milliseconds:
-      return "ms";
-    case TimeUnit::Microseconds:
-      return "us";
-    case TimeUnit::Nanoseconds:
-      return "ns";
-  }
-  return "";
-}
-
 std::string said_of(const PoseColumns& c, const std::string& source) {
   const bool scalar_first = c.q[3] < c.q[0];
   return fmt::format("t [{}] in column {}, position in {} to {}, quaternion {} from {} on ({})", unit_name(c.unit),

@@ -170,6 +170,20 @@ std::optional<TimeUnit> parse_time_unit(std::string_view text) {
   return std::nullopt;
 }
 
+const char* unit_name(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::Seconds:
+      return "s";
+    case TimeUnit::Milliseconds:
+      return "ms";
+    case TimeUnit::Microseconds:
+      return "us";
+    case TimeUnit::Nanoseconds:
+      return "ns";
+  }
+  return "";
+}
+
 std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
   const std::optional<Decimal> d = parse_decimal(field);
   if (!d) return std::nullopt;

@@ -108,6 +108,8 @@ bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
 
 /// "s", "ms", "us" or "ns"; nothing for any other text.
 std::optional<TimeUnit> parse_time_unit(std::string_view text);
+/// The name that parse_time_unit reads.
+const char* unit_name(TimeUnit unit);
 
 /// A decimal number of that unit, with exponent if any, exact to the nanosecond (rounded half up beyond). Nothing when
 /// it is not a number or does not fit.

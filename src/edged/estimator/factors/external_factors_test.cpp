@@ -108,8 +108,8 @@ TEST(HeightFactor, MovesWithItsStateToTheStateBefore) {
   check_jacobians(*moved, {BlockKind::Pose, BlockKind::Motion, BlockKind::HeightBias},
                   shifted(motion.blocks_with(0.1, 0.4)));
   const HeightFactor at_once(0, kBias, motion.between(0.1, 0.4), height, 0.2);
-  const Blocks elsewhere = shifted(motion.blocks_with(0.1, 0.4));
-  EXPECT_NEAR(evaluate(*moved, elsewhere)[0], evaluate(at_once, elsewhere)[0], 1e-3);
+  const Blocks blocks = shifted(motion.blocks_with(0.1, 0.4));
+  EXPECT_NEAR(evaluate(*moved, blocks)[0], evaluate(at_once, blocks)[0], 1e-3);
 }
 
 TEST(HeightFactor, OfManySamplesHasTheMeanOfTheirResidualsByWeight) {

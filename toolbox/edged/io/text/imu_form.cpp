@@ -97,20 +97,6 @@ TimeUnit unit_by_rate(const SourcePath& file, const Sample& sample, std::size_t 
                            file.string(), step, kWanted);
 }
 
-const char* name_of_unit(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::Seconds:
-      return "s";
-    case TimeUnit::Milliseconds:
-      return "ms";
-    case TimeUnit::Microseconds:
-      return "us";
-    case TimeUnit::Nanoseconds:
-      return "ns";
-  }
-  return "";
-}
-
 }  // namespace
 
 ImuTextForm find_imu_form(const SourcePath& file) {
@@ -135,7 +121,7 @@ ImuTextForm find_imu_form(const SourcePath& file) {
   };
   form.guessed = !named || !found.unit || !found.gyro_scale || !found.accel_scale;
   form.said = fmt::format("columns {}: t {} [{}]{}, gyro {} [{}]{}, accelerometer {} [{}]{}",
-                          form.named ? "by name" : "by gravity (guessed)", form.t + 1, name_of_unit(form.unit),
+                          form.named ? "by name" : "by gravity (guessed)", form.t + 1, unit_name(form.unit),
                           found.unit ? "" : kGuess, place(form.gyro), form.gyro_scale == 1.0 ? "rad/s" : "deg/s",
                           found.gyro_scale ? "" : kGuess, place(form.accel), accel, found.accel_scale ? "" : kGuess);
   return form;
