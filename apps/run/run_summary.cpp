@@ -85,8 +85,9 @@ std::string live_table(const LiveSummary& live) {
 std::string calibration_line(const CalibrationFound& c) {
   const auto sigma = [](const std::optional<double>& value) { return value ? fmt::format(" +- {:.2f}", *value) : ""; };
   return line("camera calibration", fmt::format("{:.2f}{} deg", c.rotation_deg, sigma(c.rotation_sigma_deg)),
-              fmt::format("of rotation off, time offset {:.2f}{} ms, with the latency of its pixels (given {:.2f}): {}",
-                          c.time_offset_ms, sigma(c.time_sigma_ms), c.given_offset_ms, c.camera));
+              fmt::format("of rotation off, time offset {:.2f}{} ms{} (given {:.2f}): {}", c.time_offset_ms,
+                          sigma(c.time_sigma_ms), c.events ? ", with the latency of its pixels" : "", c.given_offset_ms,
+                          c.camera));
 }
 
 std::string verdict_text(const RunSummary& s) {
