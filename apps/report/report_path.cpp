@@ -34,7 +34,7 @@ void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& fr
 
 }  // namespace
 
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
+ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame_name, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how) {
   ReportPath path;

@@ -32,7 +32,7 @@ struct ReportPath {
 };
 
 /// body: T_W_B. frame: whose pose is shown without a truth, which has its own frame. samples: empty for a file.
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<PoseCovarianceSample>& samples, const Rig& rig,
+ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how);
 

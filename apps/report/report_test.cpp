@@ -102,7 +102,8 @@ class Report : public ::testing::Test {
                      .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(i % 256)),
                      .survival_rate = 0.9}};
     if (i >= 10)
-      step.covariance = PoseCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity()};
+      step.covariance = StateCovariance{1e-4 * Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity(),
+                                        1e-4 * Eigen::Matrix3d::Identity()};
     return step;
   }
 

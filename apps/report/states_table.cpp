@@ -107,10 +107,13 @@ Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows)
   return body;
 }
 
-std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states) {
+std::vector<StateCovarianceSample> covariance_samples_of(const StatesTable& states) {
   const auto covariance =
       numbers_of<12>(states, {"p_xx_m2", "p_xy_m2", "p_xz_m2", "p_yy_m2", "p_yz_m2", "p_zz_m2", "r_xx_rad2",
                               "r_xy_rad2", "r_xz_rad2", "r_yy_rad2", "r_yz_rad2", "r_zz_rad2"});
+  const auto velocity = numbers_of<3>(states, {"vx_mps", "vy_mps", "vz_mps"});
+  const auto of_velocity =  // version 0.2 did not write it
+      numbers_of<6>(states, {"v_xx_m2ps2", "v_xy_m2ps2", "v_xz_m2ps2", "v_yy_m2ps2", "v_yz_m2ps2", "v_zz_m2ps2"});
   const std::vector<double>* relocalized = states.find("relocalized");
   CovarianceSamples samples;
   for_each_pose(states, [&](std::size_t row, const SE3& T_W_B) {
@@ -119,7 +122,12 @@ std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& state
     step.status = states.status[row];
     step.state.T_W_B = T_W_B;
     step.relocalized = relocalized && (*relocalized)[row] == 1.0;
-    if (const auto P = covariance(row)) step.covariance = {symmetric(P->data()), symmetric(P->data() + 6)};
+    if (const auto v = velocity(row)) step.state.v_W = Eigen::Vector3d(v->data());
+    if (const auto P = covariance(row)) {
+      const auto V = of_velocity(row);
+      step.covariance = {symmetric(P->data()), symmetric(P->data() + 6),
+                         V ? symmetric(V->data()) : Eigen::Matrix3d(Eigen::Matrix3d::Zero())};
+    }
     samples.add(step);
   });
   return samples.all();
@@ -130,12 +138,11 @@ void CovarianceSamples::add(const Step& step) {
   // Packets after the first of a loss only skip a number.
   if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
   if (!step.covariance || !is_tracking(step.status)) return;
-  const auto& [position, rotation] = *step.covariance;
-  const auto old = [&, &position = position](const PoseCovarianceSample& last) {
-    return last.start == start_ && last.good && last.position == position;
+  const auto old = [&](const StateCovarianceSample& last) {
+    return last.start == start_ && last.good && last.covariance.position == step.covariance->position;
   };
   if (good && !samples_.empty() && old(samples_.back())) return;
-  samples_.push_back({step.t, step.state.T_W_B, position, rotation, good, start_});
+  samples_.push_back({step.t, step.state.T_W_B, step.state.v_W, *step.covariance, good, start_});
 }
 
 void read_pace(const std::filesystem::path& folder, StatesTable& states) {

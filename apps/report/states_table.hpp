@@ -33,7 +33,7 @@ StatesTable read_states(const std::filesystem::path& folder);
 Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows = nullptr);
 
 /// The poses whose covariance was computed at their step.
-std::vector<PoseCovarianceSample> covariance_samples_of(const StatesTable& states);
+std::vector<StateCovarianceSample> covariance_samples_of(const StatesTable& states);
 
 /// Collects the poses whose covariance was computed at their step, and all Degraded ones that have one; a loss ends a
 /// start, and so does relocalization.
@@ -41,10 +41,10 @@ class CovarianceSamples {
  public:
   /// Every step, in time order.
   void add(const Step& step);
-  const std::vector<PoseCovarianceSample>& all() const { return samples_; }
+  const std::vector<StateCovarianceSample>& all() const { return samples_; }
 
  private:
-  std::vector<PoseCovarianceSample> samples_;
+  std::vector<StateCovarianceSample> samples_;
   int start_ = 0;
 };
 

@@ -16,7 +16,7 @@ TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
   };
   step.status = TrackingStatus::Good, lost.status = TrackingStatus::Lost;
   add_at(1, step);
-  step.covariance = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+  step.covariance = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
   add_at(2, step);
   add_at(3, step);
   step.covariance->position *= 2.0;
@@ -27,7 +27,7 @@ TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
   add_at(7, step);
   step.relocalized = true;
   add_at(8, step);
-  const std::vector<PoseCovarianceSample>& claims = gathered.all();
+  const std::vector<StateCovarianceSample>& claims = gathered.all();
   ASSERT_EQ(claims.size(), 5u);
   const std::vector<double> stamps{2, 4, 6, 7, 8};
   for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, timestamp_from_seconds(stamps[i]));

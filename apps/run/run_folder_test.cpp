@@ -173,20 +173,21 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
       step.covariance.reset();
       Eigen::Matrix3d P;
       P << 1.0, 0.1, 0.2, 0.1, 2.0 + i, 0.3, 0.2, 0.3, 3.0 / 7.0;
-      if (i > 4 && i != 9) step.covariance = {P, 0.1 * P};
+      if (i > 4 && i != 9) step.covariance = {P, 0.1 * P, 0.2 * P};
       if (i % 3 == 0) step.ln_depth_scale = LogScale{0.1, 0.2};
       step.t = timestamp_from_seconds(i / 7.0);
       writer.add(step);
       samples.add(step);
     }
   }
-  const std::vector<PoseCovarianceSample> read = covariance_samples_of(read_states(folder));
+  const std::vector<StateCovarianceSample> read = covariance_samples_of(read_states(folder));
   ASSERT_EQ(read.size(), 14u);
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, samples.all()[i].t);
     EXPECT_EQ(read[i].start, samples.all()[i].start);
-    EXPECT_EQ(read[i].position, samples.all()[i].position);
-    EXPECT_EQ(read[i].rotation, samples.all()[i].rotation);
+    EXPECT_EQ(read[i].covariance.position, samples.all()[i].covariance.position);
+    EXPECT_EQ(read[i].covariance.rotation, samples.all()[i].covariance.rotation);
+    EXPECT_EQ(read[i].covariance.velocity, samples.all()[i].covariance.velocity);
   }
 }
 

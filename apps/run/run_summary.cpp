@@ -112,7 +112,7 @@ class SummaryFiles : public RunObserver {
 
 }  // namespace
 
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& claims,
                   const Rig& rig, const GroundTruth& truth) {
   try {
     const OutputFrame frame(rig, truth.frame);

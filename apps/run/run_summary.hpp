@@ -70,7 +70,7 @@ struct RunSummary {
 
 /// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
 /// covariances, in the body's. Leaves the summary without evaluation, and logs the reason, if that is not possible.
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<PoseCovarianceSample>& claims,
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& claims,
                   const Rig& rig, const GroundTruth& truth);
 
 /// The same of the final trajectory, which has as many poses.

@@ -21,7 +21,7 @@ constexpr const char* kStatesHeader =
     "rate,map_matches,map_"
     "reach_s,event_rate_hz,scene_depth_m,"
     "depth_scale,depth_scale_sigma_ln,p_xx_m2,p_xy_m2,p_xz_m2,p_yy_m2,p_yz_m2,p_zz_m2,r_xx_rad2,r_xy_rad2,r_xz_rad2,"
-    "r_yy_rad2,r_yz_rad2,r_zz_rad2\n";
+    "r_yy_rad2,r_yz_rad2,r_zz_rad2,v_xx_m2ps2,v_xy_m2ps2,v_xz_m2ps2,v_yy_m2ps2,v_yz_m2ps2,v_zz_m2ps2\n";
 
 void append(std::string& line, const Eigen::Vector3d& v) { line += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); }
 
@@ -58,8 +58,9 @@ std::string state_line(const Step& step) {
   if (step.covariance) {
     append(line, step.covariance->position);
     append(line, step.covariance->rotation);
+    append(line, step.covariance->velocity);
   } else {
-    line += std::string(12, ',');
+    line += std::string(18, ',');
   }
   return line + '\n';
 }

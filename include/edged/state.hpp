@@ -29,6 +29,15 @@ struct NavState {
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
+/// Covariance of a state relative to the start of the estimator (a loss begins a new one), where position and yaw are
+/// exact by definition. The parts are the diagonal blocks of the joint covariance.
+struct StateCovariance {
+  Eigen::Matrix3d position;  ///< [m^2], in W
+  Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
+  Eigen::Matrix3d velocity;  ///< [m^2/s^2], in W
+};
+using PoseCovariance = StateCovariance;  // deprecated: the name of version 0.2
+
 /// Names one feature for as long as it is tracked; never reused, unique over all cameras.
 using FeatureId = std::uint64_t;
 

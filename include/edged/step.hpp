@@ -26,13 +26,6 @@ std::string to_string(TrackingStatus status);
 /// Whether there is a pose: Good or Degraded.
 bool is_tracking(TrackingStatus status);
 
-/// Covariance of a pose relative to the start of the estimator (a loss begins a new one), where position and yaw are
-/// exact by definition.
-struct PoseCovariance {
-  Eigen::Matrix3d position;  ///< [m^2], in W
-  Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
-};
-
 /// One camera of the run, at one packet.
 struct CameraStep {
   std::string name;
@@ -58,9 +51,9 @@ struct CameraStep {
 struct Step {
   Timestamp t;  ///< the packet's instant, IMU clock
   TrackingStatus status = TrackingStatus::Initializing;
-  NavState state;                            ///< at t; meaningful unless status is Initializing
-  std::optional<PoseCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
-  bool keyframe = false;                     ///< this packet became a keyframe
+  NavState state;                             ///< at t; meaningful unless status is Initializing
+  std::optional<StateCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
+  bool keyframe = false;                      ///< this packet became a keyframe
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
   /// reference of the covariance with it.
   bool relocalized = false;

@@ -127,6 +127,9 @@ class Step(_BodyState):
     def rotation_covariance(self) -> NDArray[np.float64] | None:
         """In B [rad^2], of phi in R_true = R Exp(phi)."""
     @property
+    def velocity_covariance(self) -> NDArray[np.float64] | None:
+        """In W [m^2/s^2]."""
+    @property
     def keyframe(self) -> bool: ...
     @property
     def relocalized(self) -> bool:

@@ -120,9 +120,11 @@ void bind_step(py::module_& module) {
       .def_readonly("status", &Step::status)
       .def_property_readonly("is_tracking", [](const Step& s) { return is_tracking(s.status); })
       .def_property_readonly("position_covariance",
-                             [](const Step& s) { return covariance(s, &PoseCovariance::position); })
+                             [](const Step& s) { return covariance(s, &StateCovariance::position); })
       .def_property_readonly("rotation_covariance",
-                             [](const Step& s) { return covariance(s, &PoseCovariance::rotation); })
+                             [](const Step& s) { return covariance(s, &StateCovariance::rotation); })
+      .def_property_readonly("velocity_covariance",
+                             [](const Step& s) { return covariance(s, &StateCovariance::velocity); })
       .def_readonly("keyframe", &Step::keyframe)
       .def_readonly("relocalized", &Step::relocalized)
       .def_readonly("waiting_for", &Step::waiting_for)

@@ -80,7 +80,7 @@ def test_a_step_says_what_it_is():
     assert np.allclose(step.T_W_B[:3, 3], step.position)
     x, y, z, w = step.quaternion
     assert np.isclose(step.T_W_B[2, 1], 2 * (y * z + x * w))  # the order of the quaternion
-    assert step.position_covariance.shape == step.rotation_covariance.shape == (3, 3)
+    assert step.position_covariance.shape == step.rotation_covariance.shape == step.velocity_covariance.shape == (3, 3)
     assert step.event_frame.shape == (180, 240)
     assert step.event_tracks["pixel"].shape == (len(step.event_tracks), 2)
     assert set(step.landmarks["id"]) & set(step.frame_tracks["id"])

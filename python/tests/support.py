@@ -51,6 +51,8 @@ def assert_same_states(steps, rows):
         if step.position_covariance is not None:
             assert [*step.position_covariance[np.triu_indices(3)]] == numbers(
                 row, "p_xx_m2", "p_xy_m2", "p_xz_m2", "p_yy_m2", "p_yz_m2", "p_zz_m2")
+            assert [*step.velocity_covariance[np.triu_indices(3)]] == numbers(
+                row, "v_xx_m2ps2", "v_xy_m2ps2", "v_xz_m2ps2", "v_yy_m2ps2", "v_yz_m2ps2", "v_zz_m2ps2")
 
 
 def room(seconds=3):

@@ -61,7 +61,7 @@ geometry_msgs::Pose to_ros(const SE3& pose) {
 }
 
 nav_msgs::Odometry odometry_message(const NavState& state, const Eigen::Vector3d& gyro_B,
-                                    const std::optional<PoseCovariance>& covariance, const FrameNames& frames) {
+                                    const std::optional<StateCovariance>& covariance, const FrameNames& frames) {
   nav_msgs::Odometry message;
   message.header = header_of(state.t, frames.world);
   message.child_frame_id = frames.body;
@@ -73,6 +73,8 @@ nav_msgs::Odometry odometry_message(const NavState& state, const Eigen::Vector3d
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> P(message.pose.covariance.data());
     P.topLeftCorner<3, 3>() = covariance->position;
     P.bottomRightCorner<3, 3>() = R_W_B * covariance->rotation * R_W_B.transpose();
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> V(message.twist.covariance.data());
+    V.topLeftCorner<3, 3>() = R_W_B.transpose() * covariance->velocity * R_W_B;
   }
   return message;
 }

@@ -28,7 +28,7 @@ geometry_msgs::Pose to_ros(const SE3& pose);
 /// The pose of the body in the world, and its velocities in the body's axes. gyro_B [rad/s]: measured at that time. The
 /// covariance of the pose about the axes of the world, as ROS wants it; zeros are unknown.
 nav_msgs::Odometry odometry_message(const NavState& state, const Eigen::Vector3d& gyro_B,
-                                    const std::optional<PoseCovariance>& covariance, const FrameNames& frames);
+                                    const std::optional<StateCovariance>& covariance, const FrameNames& frames);
 geometry_msgs::PoseWithCovarianceStamped pose_message(const nav_msgs::Odometry& odometry);
 geometry_msgs::PoseStamped stamped_pose_message(const nav_msgs::Odometry& odometry);
 

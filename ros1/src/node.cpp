@@ -74,7 +74,7 @@ void Node::on_message(SensorInput& input, const topic_tools::ShapeShifter& messa
 }
 
 void Node::predict(const ImuSample& sample) {
-  std::optional<PoseCovariance> covariance;
+  std::optional<StateCovariance> covariance;
   Duration back(0);
   {
     const std::lock_guard lock(mutex_);

@@ -57,7 +57,7 @@ class Node {
   std::condition_variable added_;
   bool something_new_ = false;
   std::deque<ImuSample> recent_imu_;
-  std::optional<PoseCovariance> covariance_;
+  std::optional<StateCovariance> covariance_;
 
   std::map<std::string, SensorInput> inputs_;   // by topic
   std::vector<ros::Subscriber> subscriptions_;  // after what their threads use

@@ -66,7 +66,7 @@ void Outputs::publish_images(const Step& step) const {
 }
 
 void Outputs::publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,
-                                 const std::optional<PoseCovariance>& covariance) const {
+                                 const std::optional<StateCovariance>& covariance) const {
   prediction_.publish(odometry_message(state, gyro_B, covariance, frames_));
 }
 

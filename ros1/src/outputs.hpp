@@ -20,7 +20,7 @@ class Outputs {
   void publish(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig);
   /// At an IMU sample; covariance: of the newest packet. From another thread than the rest.
   void publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,
-                          const std::optional<PoseCovariance>& covariance) const;
+                          const std::optional<StateCovariance>& covariance) const;
   void publish(const diagnostic_msgs::DiagnosticStatus& status) const;
 
  private:

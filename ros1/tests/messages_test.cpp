@@ -45,7 +45,8 @@ TEST(RosMessages, OdometryHasThePoseInTheWorldAndTheVelocitiesInTheBody) {
 }
 
 TEST(RosMessages, TheCovarianceOfTheRotationIsAboutTheAxesOfTheWorld) {
-  PoseCovariance covariance{Eigen::Vector3d(1, 2, 3).asDiagonal(), Eigen::Vector3d(4, 5, 6).asDiagonal()};
+  StateCovariance covariance{Eigen::Vector3d(1, 2, 3).asDiagonal(), Eigen::Vector3d(4, 5, 6).asDiagonal(),
+                             Eigen::Vector3d(7, 8, 9).asDiagonal()};
   covariance.position(0, 1) = covariance.position(1, 0) = 0.5;
   const auto P = odometry_message(turned_state(), Eigen::Vector3d::Zero(), covariance, kFrames).pose.covariance;
   EXPECT_EQ(P[0], 1.0);
@@ -54,6 +55,15 @@ TEST(RosMessages, TheCovarianceOfTheRotationIsAboutTheAxesOfTheWorld) {
   EXPECT_NEAR(P[21], 5.0, 1e-12);  // about the world's x, which is the body's -y
   EXPECT_NEAR(P[28], 4.0, 1e-12);
   EXPECT_NEAR(P[35], 6.0, 1e-12);
+}
+
+TEST(RosMessages, TheCovarianceOfTheVelocityIsAlongTheAxesOfTheBody) {
+  const StateCovariance covariance{Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity(),
+                                   Eigen::Vector3d(7, 8, 9).asDiagonal()};
+  const auto P = odometry_message(turned_state(), Eigen::Vector3d::Zero(), covariance, kFrames).twist.covariance;
+  EXPECT_NEAR(P[0], 8.0, 1e-12);  // along the body's x, which is the world's y
+  EXPECT_NEAR(P[7], 7.0, 1e-12);
+  EXPECT_NEAR(P[14], 9.0, 1e-12);
 }
 
 TEST(RosMessages, TransformsLeadFromTheWorldToTheBodyAndOnToEachCamera) {

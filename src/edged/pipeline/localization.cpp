@@ -206,7 +206,8 @@ void Localization::update_covariance(Timestamp t) {
   covariance_at_ = t;
   if (const std::optional<Matrix15d> P = estimator_.covariance()) {
     const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
-    covariance_ = {R_M_O * P->topLeftCorner<3, 3>() * R_M_O.transpose(), P->block<3, 3>(3, 3)};
+    covariance_ = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
+                   R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};
   }
 }
 

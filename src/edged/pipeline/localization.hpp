@@ -77,7 +77,7 @@ class Localization {
   BodyMotion body_;
   bool gyro_clipped_ = false;   ///< in this packet
   bool turned_unseen_ = false;  ///< it was until this packet
-  std::optional<PoseCovariance> covariance_;
+  std::optional<StateCovariance> covariance_;
   Timestamp covariance_at_;
   Timestamp dead_reckoning_until_ = Timestamp::min();  ///< without an estimate: end of dead reckoning
 };

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -13,8 +14,10 @@
 namespace edged {
 namespace {
 
-constexpr double kChiSquare = 14.156;  // of three degrees of freedom, 99.73 %
-constexpr double kLeastSigma = 1e-4;   // [m], [rad]
+constexpr double kChiSquare = 14.156;         // of three degrees of freedom, 99.73 %
+constexpr double kLeastSigma = 1e-4;          // [m], [rad]
+constexpr double kLeastVelocitySigma = 1e-3;  // [m/s]: the true velocity is not exact
+constexpr double kNear_s = 0.25;
 constexpr Duration kSilentAfter = std::chrono::milliseconds(500);
 
 /// Alignment of the estimate with the truth in position and yaw.
@@ -28,21 +31,27 @@ SE3 gauge(const SE3& truth, const SE3& estimate) {
 /// The alignment of the estimate with the truth at one sample. That sample is itself uncertain, and so are all errors
 /// relative to it.
 struct Anchor {
+  Timestamp t;
   SE3 T_Wtrue_W, truth;
   Eigen::Matrix3d position = Eigen::Matrix3d::Zero();  ///< covariance of the sample, in the true W [m^2]
   double yaw = 0.0;                                    ///< its variance about z [rad^2]
 
-  Anchor(const PosePair& pair, const PoseCovarianceSample& sample)
-      : T_Wtrue_W(gauge(pair.truth, pair.estimate)), truth(pair.truth) {
-    position = T_Wtrue_W.R() * sample.position * T_Wtrue_W.R().transpose();
+  Anchor(const PosePair& pair, const StateCovarianceSample& sample)
+      : t(pair.t), T_Wtrue_W(gauge(pair.truth, pair.estimate)), truth(pair.truth) {
+    position = in_true_W(sample.covariance.position);
     const Eigen::Vector3d up_B = pair.estimate.R().row(2);
-    yaw = up_B.dot(sample.rotation * up_B);
+    yaw = up_B.dot(sample.covariance.rotation * up_B);
   }
-  /// Its part in the covariance of a position.
-  Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d swing = Eigen::Vector3d::UnitZ().cross(p - truth.translation());
-    return position + yaw * swing * swing.transpose();
+  Eigen::Matrix3d in_true_W(const Eigen::Matrix3d& P_W) const {
+    return T_Wtrue_W.R() * P_W * T_Wtrue_W.R().transpose();
   }
+  /// Its part in the covariance of a vector of W: by its yaw.
+  Eigen::Matrix3d of_vector(const Eigen::Vector3d& v) const {
+    const Eigen::Vector3d swing = Eigen::Vector3d::UnitZ().cross(v);
+    return yaw * swing * swing.transpose();
+  }
+  /// The same of a position.
+  Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const { return position + of_vector(p - truth.translation()); }
   /// The same of a rotation of B.
   Eigen::Matrix3d of_rotation(const SE3& T_W_B) const {
     const Eigen::Vector3d up_B = T_W_B.R().row(2);
@@ -53,18 +62,17 @@ struct Anchor {
 /// Adds up the errors of one kind.
 class Sum {
  public:
-  /// Whether the error is consistent with its covariance.
-  bool add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-    const Eigen::Matrix3d P = covariance + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
+  /// NEES of the error.
+  double add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, double least_sigma = kLeastSigma) {
+    const Eigen::Matrix3d P = covariance + least_sigma * least_sigma * Eigen::Matrix3d::Identity();
     const double nees = error.dot(P.ldlt().solve(error));
     const Eigen::Array3d sigmas = error.array().abs() / P.diagonal().array().sqrt();
-    const bool believable = nees <= kChiSquare;
     ++count_;
     nees_ += nees;
     max_nees_ = std::max(max_nees_, nees);
-    within_ += believable ? 1.0 : 0.0;
+    within_ += nees <= kChiSquare ? 1.0 : 0.0;
     axes_within_ += (sigmas <= 3.0).cast<double>().matrix();
-    return believable;
+    return nees;
   }
 
   NormalizedErrors mean() const {
@@ -77,6 +85,36 @@ class Sum {
   std::size_t count_ = 0;
   double nees_ = 0.0, max_nees_ = 0.0, within_ = 0.0;
   Eigen::Vector3d axes_within_ = Eigen::Vector3d::Zero();
+};
+
+/// Means of the NEES around some instants.
+class MeansAt {
+ public:
+  void add(double since_start_s, const Eigen::Array3d& nees, bool has_velocity) {
+    for (std::size_t i = 0; i < kNeesAt_s.size(); ++i) {
+      if (std::abs(since_start_s - kNeesAt_s[i]) > kNear_s) continue;
+      sums_[i] += nees;
+      counts_[i] += Eigen::Array3d(1.0, 1.0, has_velocity ? 1.0 : 0.0);
+    }
+  }
+  std::vector<NeesAt> means() const {
+    std::vector<NeesAt> means;
+    for (std::size_t i = 0; i < kNeesAt_s.size(); ++i) {
+      if (counts_[i][0] == 0.0) continue;
+      const Eigen::Array3d mean = sums_[i] / counts_[i];
+      means.push_back({kNeesAt_s[i], mean[0], mean[1], mean[2]});
+    }
+    return means;
+  }
+
+ private:
+  using Sums = std::array<Eigen::Array3d, kNeesAt_s.size()>;
+  static Sums zeros() {
+    Sums sums;
+    sums.fill(Eigen::Array3d::Zero());
+    return sums;
+  }
+  Sums sums_ = zeros(), counts_ = zeros();
 };
 
 /// Collects time spans longer than kSilentAfter in which a condition holds without a break.
@@ -101,6 +139,77 @@ class Spans {
   std::vector<TimeSpan> spans_;
 };
 
+/// The velocity of a trajectory at ascending times, from its positions one step before and after.
+class VelocityOf {
+ public:
+  /// The trajectory must outlive this.
+  explicit VelocityOf(const Trajectory& trajectory) : trajectory_(trajectory), step_(typical_step(trajectory)) {}
+  /// Nothing at its ends and in gaps.
+  std::optional<Eigen::Vector3d> at(Timestamp t) const {
+    const auto before = position(t - step_), after = position(t + step_);
+    if (!before || !after) return std::nullopt;
+    return (*after - *before) / (2.0 * to_seconds(step_));
+  }
+
+ private:
+  std::optional<Eigen::Vector3d> position(Timestamp t) const {
+    const auto after = std::ranges::lower_bound(trajectory_, t, {}, &StampedPose::t);
+    if (after == trajectory_.begin() || after == trajectory_.end()) return std::nullopt;
+    const auto before = std::prev(after);
+    if (after->t - before->t > 2 * step_) return std::nullopt;
+    return interpolated(*before, *after, t).translation();
+  }
+
+  const Trajectory& trajectory_;
+  Duration step_;
+};
+
+/// Gathers the errors of all samples.
+class ConsistencySums {
+ public:
+  /// The truth must outlive this.
+  explicit ConsistencySums(const Trajectory& truth) : true_velocity_(truth) {}
+
+  /// Whether position and rotation are consistent with their covariances.
+  bool add(const PosePair& pair, const StateCovarianceSample& sample, const Anchor& anchor, bool first_start) {
+    const SE3 T_W_B = anchor.T_Wtrue_W * pair.estimate;
+    const Eigen::Vector3d error = T_W_B.translation() - pair.truth.translation();
+    const Eigen::Matrix3d P = anchor.in_true_W(sample.covariance.position) + anchor.of_position(T_W_B.translation());
+    of_each_.push_back({pair.t, error, P.diagonal().cwiseSqrt()});
+    const double position = position_.add(error, P);
+    const double rotation = rotation_.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
+                                          sample.covariance.rotation + anchor.of_rotation(T_W_B));
+    const std::optional<double> velocity = add_velocity(pair, sample, anchor);
+    if (first_start) {
+      at_.add(to_seconds(pair.t - anchor.t), {position, rotation, velocity.value_or(0.0)}, velocity.has_value());
+    }
+    return position <= kChiSquare && rotation <= kChiSquare;
+  }
+
+  void write(Consistency& result) {
+    result.poses = of_each_.size();
+    result.position = position_.mean();
+    result.rotation = rotation_.mean();
+    result.velocity = velocity_.mean();
+    result.at = at_.means();
+    result.errors = std::move(of_each_);
+  }
+
+ private:
+  std::optional<double> add_velocity(const PosePair& pair, const StateCovarianceSample& sample, const Anchor& anchor) {
+    const auto true_v = sample.t == pair.t ? true_velocity_.at(pair.t) : std::nullopt;
+    if (!true_v || sample.covariance.velocity.isZero(0.0)) return std::nullopt;
+    const Eigen::Vector3d v = anchor.T_Wtrue_W.rotation() * sample.v_W;
+    return velocity_.add(v - *true_v, anchor.in_true_W(sample.covariance.velocity) + anchor.of_vector(v),
+                         kLeastVelocitySigma);
+  }
+
+  VelocityOf true_velocity_;
+  Sum position_, rotation_, velocity_;
+  MeansAt at_;
+  std::vector<PoseErrorSample> of_each_;
+};
+
 }  // namespace
 
 double Consistency::silent_s() const {
@@ -109,11 +218,11 @@ double Consistency::silent_s() const {
   return sum;
 }
 
-Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCovarianceSample>& samples) {
+Consistency check_consistency(const Trajectory& truth, const std::vector<StateCovarianceSample>& samples) {
   Trajectory estimate;
-  for (const PoseCovarianceSample& sample : samples) estimate.push_back({sample.t, sample.T_W_B});
+  for (const StateCovarianceSample& sample : samples) estimate.push_back({sample.t, sample.T_W_B});
   Consistency result;
-  Sum position, rotation;
+  ConsistencySums errors(truth);
   Spans silent;
   std::optional<Anchor> anchor;
   int start = 0;
@@ -128,19 +237,10 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<PoseCov
       start = sample->start;
       ++result.starts;
     }
-    const SE3 T_W_B = anchor->T_Wtrue_W * pair.estimate;
-    const Eigen::Matrix3d R = anchor->T_Wtrue_W.R();
-    const Eigen::Vector3d error = T_W_B.translation() - pair.truth.translation();
-    const Eigen::Matrix3d covariance = R * sample->position * R.transpose() + anchor->of_position(T_W_B.translation());
-    result.errors.push_back({pair.t, error, covariance.diagonal().cwiseSqrt()});
-    const bool position_believable = position.add(error, covariance);
-    const bool rotation_believable = rotation.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
-                                                  sample->rotation + anchor->of_rotation(T_W_B));
-    silent.add(pair.t, sample->good && !(position_believable && rotation_believable));
-    ++result.poses;
+    const bool consistent = errors.add(pair, *sample, *anchor, result.starts == 1);
+    silent.add(pair.t, sample->good && !consistent);
   }
-  result.position = position.mean();
-  result.rotation = rotation.mean();
+  errors.write(result);
   result.silent = silent.take();
   return result;
 }

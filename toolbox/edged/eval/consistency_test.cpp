@@ -20,16 +20,17 @@ Eigen::Matrix3d covariance(const Eigen::Vector3d& sigmas, const Eigen::Vector3d&
   return R * sigmas.cwiseAbs2().asDiagonal() * R.transpose();
 }
 const Eigen::Matrix3d kPosition = covariance({0.01, 0.02, 0.05}, {0.3, -0.2, 0.5});
+const Eigen::Matrix3d kVelocity = covariance({0.02, 0.05, 0.1}, {0.5, 0.1, -0.3});
 const Eigen::Matrix3d kRotation = covariance({0.002, 0.004, 0.01}, {-0.1, 0.4, 0.2});
 
-void make_exact(PoseCovarianceSample& sample, const SE3& T_W_B) {
+void make_exact(StateCovarianceSample& sample, const SE3& T_W_B) {
   sample.T_W_B = T_W_B;
-  sample.position = sample.rotation = Eigen::Matrix3d::Zero();
+  sample.covariance.position = sample.covariance.rotation = Eigen::Matrix3d::Zero();
 }
 
 /// Poses that are off by normal errors of these covariances times `factor`, in another world; the first is exact.
-std::vector<PoseCovarianceSample> covariance_samples_of(const Trajectory& truth, double factor = 1.0,
-                                                        const SE3& T_W_Wtrue = kGauge) {
+std::vector<StateCovarianceSample> covariance_samples_of(const Trajectory& truth, double factor = 1.0,
+                                                         const SE3& T_W_Wtrue = kGauge) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   const auto draw = [&](const Eigen::Matrix3d& P) {
@@ -37,12 +38,14 @@ std::vector<PoseCovarianceSample> covariance_samples_of(const Trajectory& truth,
     return Eigen::Vector3d(P.llt().matrixL() * (factor * white));
   };
   const Eigen::Matrix3d R = T_W_Wtrue.R();
-  std::vector<PoseCovarianceSample> samples;
+  std::vector<StateCovarianceSample> samples;
   for (const StampedPose& pose : truth) {
     const Eigen::Vector3d p = pose.T.translation() - draw(kPosition);
     const Eigen::Quaterniond q = pose.T.rotation() * so3::exp(-draw(kRotation));
-    samples.push_back({pose.t, T_W_Wtrue * SE3(q, p), R * kPosition * R.transpose(), kRotation});
+    const StateCovariance P{R * kPosition * R.transpose(), kRotation, R * kVelocity * R.transpose()};
+    samples.push_back({pose.t, T_W_Wtrue * SE3(q, p), R * winding_velocity(pose.t), P});
   }
+  for (StateCovarianceSample& sample : samples) sample.v_W -= R * draw(kVelocity);
   make_exact(samples.front(), T_W_Wtrue * truth.front().T);
   return samples;
 }
@@ -52,7 +55,7 @@ TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) 
   const Consistency found = check_consistency(truth, covariance_samples_of(truth));
   EXPECT_EQ(found.poses, truth.size());
   EXPECT_EQ(found.starts, 1U);
-  for (const NormalizedErrors& errors : {found.position, found.rotation}) {
+  for (const NormalizedErrors& errors : {found.position, found.rotation, found.velocity}) {
     EXPECT_NEAR(errors.mean_nees, 3.0, 0.1);  // sqrt(6 / 10000) = 0.025 by chance
     EXPECT_GT(errors.max_nees, 16.0);
     EXPECT_LT(errors.max_nees, 30.0);
@@ -71,6 +74,25 @@ TEST(Consistency, ErrorsTwiceAsLargeAsClaimedAreFourTimesTheMean) {
   EXPECT_LT(found.position.axes_within.maxCoeff(), 0.9);
 }
 
+TEST(Consistency, MeansAroundSomeInstantsOfTheFirstStart) {
+  const Trajectory truth = winding_motion(30.0);
+  std::vector<StateCovarianceSample> samples = covariance_samples_of(truth);
+  Consistency found = check_consistency(truth, samples);
+  ASSERT_EQ(found.at.size(), 2U);  // 5 and 20 s
+  for (const NeesAt& at : found.at) {
+    for (const double nees : {at.position, at.rotation, at.velocity}) EXPECT_NEAR(nees, 3.0, 1.6);  // of 25 poses
+  }
+  for (StateCovarianceSample& sample : samples) {
+    sample.start = sample.t > timestamp_from_seconds(110.0) ? 1 : 0;
+    sample.covariance.velocity.setZero();
+  }
+  found = check_consistency(truth, samples);
+  ASSERT_EQ(found.at.size(), 1U);
+  EXPECT_EQ(found.at[0].since_start_s, 5.0);
+  EXPECT_TRUE(std::isnan(found.at[0].velocity));
+  EXPECT_EQ(found.velocity.mean_nees, 0.0);
+}
+
 TEST(Consistency, EveryErrorComesWithItsSizeAsClaimed) {
   const Trajectory truth = winding_motion(200.0);
   const Consistency found = check_consistency(truth, covariance_samples_of(truth));
@@ -85,17 +107,17 @@ TEST(Consistency, EveryErrorComesWithItsSizeAsClaimed) {
 }
 
 /// Poses from from_s to to_s after the first, moved by d in the world.
-std::vector<PoseCovarianceSample> shifted(std::vector<PoseCovarianceSample> samples, double from_s, double to_s,
-                                          const Eigen::Vector3d& d) {
+std::vector<StateCovarianceSample> shifted(std::vector<StateCovarianceSample> samples, double from_s, double to_s,
+                                           const Eigen::Vector3d& d) {
   const Timestamp first = samples.front().t;
-  for (PoseCovarianceSample& sample : samples)
+  for (StateCovarianceSample& sample : samples)
     if (const double s = to_seconds(sample.t - first); s >= from_s && s < to_s) sample.T_W_B.translation() += d;
   return samples;
 }
 
 TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) {
   const Trajectory truth = winding_motion(20.0);
-  const std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
+  const std::vector<StateCovarianceSample> samples = covariance_samples_of(truth);
   const Eigen::Vector3d far(0.5, 0.5, 0.5);
   EXPECT_TRUE(check_consistency(truth, shifted(samples, 5.0, 5.45, far)).silent.empty());
   const Consistency found = check_consistency(truth, shifted(samples, 5.0, 8.0, far));
@@ -106,8 +128,8 @@ TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) 
 
 TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<PoseCovarianceSample> samples = shifted(covariance_samples_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});
-  for (PoseCovarianceSample& sample : samples) sample.good = sample.t < timestamp_from_seconds(105.0);
+  std::vector<StateCovarianceSample> samples = shifted(covariance_samples_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});
+  for (StateCovarianceSample& sample : samples) sample.good = sample.t < timestamp_from_seconds(105.0);
   const Consistency found = check_consistency(truth, samples);
   EXPECT_TRUE(found.silent.empty());
   EXPECT_NEAR(found.position.within, 1.0 - 3.0 / 20.0, 0.01);
@@ -115,13 +137,13 @@ TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
 
 TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
+  std::vector<StateCovarianceSample> samples = covariance_samples_of(truth);
   const SE3 jump(so3::exp({0.0, 0.0, -0.5}), Eigen::Vector3d(1.0, 0.0, 0.0));
   const std::size_t half = samples.size() / 2;
   make_exact(samples[half], kGauge * truth[half].T);
   for (std::size_t i = half; i < samples.size(); ++i) {
     samples[i].T_W_B = jump * samples[i].T_W_B;
-    samples[i].position = jump.R() * samples[i].position * jump.R().transpose();
+    samples[i].covariance.position = jump.R() * samples[i].covariance.position * jump.R().transpose();
   }
   EXPECT_GT(check_consistency(truth, samples).silent_s(), 9.0);
   for (std::size_t i = half; i < samples.size(); ++i) samples[i].start = 1;
@@ -133,14 +155,15 @@ TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
 
 TEST(Consistency, AFirstPoseThatIsOffByWhatItClaimsCondemnsNoOther) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<PoseCovarianceSample> samples;
+  std::vector<StateCovarianceSample> samples;
   const Eigen::Matrix3d small = 1e-8 * Eigen::Matrix3d::Identity();
-  for (const StampedPose& pose : truth) samples.push_back({pose.t, kGauge * pose.T, small, small});
+  for (const StampedPose& pose : truth)
+    samples.push_back({pose.t, kGauge * pose.T, Eigen::Vector3d::Zero(), {small, small, Eigen::Matrix3d::Zero()}});
   // Two centimetres and a degree of yaw off, with a covariance to match.
   samples.front().T_W_B = SE3(so3::exp({0.0, 0.0, 0.017}), Eigen::Vector3d(0.02, -0.01, 0.01)) * samples.front().T_W_B;
   EXPECT_LT(check_consistency(truth, samples).position.within, 0.01);
-  samples.front().position = 4e-4 * Eigen::Matrix3d::Identity();
-  samples.front().rotation = 3e-4 * Eigen::Matrix3d::Identity();
+  samples.front().covariance.position = 4e-4 * Eigen::Matrix3d::Identity();
+  samples.front().covariance.rotation = 3e-4 * Eigen::Matrix3d::Identity();
   const Consistency found = check_consistency(truth, samples);
   EXPECT_EQ(found.position.within, 1.0);
   EXPECT_EQ(found.rotation.within, 1.0);
@@ -148,11 +171,11 @@ TEST(Consistency, AFirstPoseThatIsOffByWhatItClaimsCondemnsNoOther) {
 
 TEST(Consistency, WhatIsNotYetGoodAtAStartIsLeftOut) {
   const Trajectory truth = winding_motion(20.0);
-  std::vector<PoseCovarianceSample> samples = covariance_samples_of(truth);
+  std::vector<StateCovarianceSample> samples = covariance_samples_of(truth);
   for (std::size_t i = 0; i < 100; ++i) samples[i].good = false;
   make_exact(samples[100], kGauge * truth[100].T);
   EXPECT_EQ(check_consistency(truth, samples).poses, samples.size() - 100);
-  for (PoseCovarianceSample& sample : samples) sample.good = false;
+  for (StateCovarianceSample& sample : samples) sample.good = false;
   EXPECT_EQ(check_consistency(truth, samples).poses, 0U);
 }
 

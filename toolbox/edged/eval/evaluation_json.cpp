@@ -64,8 +64,16 @@ nlohmann::ordered_json to_json(const Consistency& c) {
                                  {"starts", c.starts},
                                  {"position", to_json(c.position)},
                                  {"rotation", to_json(c.rotation)},
+                                 {"velocity", to_json(c.velocity)},
+                                 {"nees_at", nlohmann::ordered_json::array()},
                                  {"silently_diverged_s", c.silent_s()},
                                  {"silently_diverged", nlohmann::ordered_json::array()}};
+  for (const NeesAt& at : c.at) {
+    json["nees_at"].push_back({{"since_start_s", at.since_start_s},
+                               {"position", at.position},
+                               {"rotation", at.rotation},
+                               {"velocity", at.velocity}});  // NaN becomes null
+  }
   for (const TimeSpan& span : c.silent)
     json["silently_diverged"].push_back({to_seconds(span.begin), to_seconds(span.end)});
   return json;

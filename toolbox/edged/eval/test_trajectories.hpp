@@ -25,6 +25,12 @@ inline Trajectory winding_motion(double duration_s = 20.0, double rate_hz = 50.0
   return trajectory;
 }
 
+/// Its velocity [m/s].
+inline Eigen::Vector3d winding_velocity(Timestamp stamp) {
+  const double t = to_seconds(stamp - timestamp_from_seconds(100.0));
+  return {-std::sin(0.5 * t), 1.05 * std::cos(0.7 * t) + 0.1, 0.55 * std::cos(1.1 * t)};
+}
+
 /// Every pose multiplied from the left.
 inline Trajectory moved(const SE3& T, Trajectory trajectory) {
   for (StampedPose& pose : trajectory) pose.T = T * pose.T;
