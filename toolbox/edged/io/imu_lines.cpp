@@ -55,8 +55,8 @@ std::optional<double> imu_scale_of(const ColumnName& column, ImuKind kind) {
     if (kind == ImuKind::Gyro && (unit.starts_with("deg") || unit == "dps" || unit.starts_with("\xc2\xb0")))
       return kDegree;
     if (kind == ImuKind::Gyro && unit.starts_with("rad")) return 1.0;
-    if (kind == ImuKind::Accel && unit == "mg") return 1e-3 * kStandardGravity_mps2;
-    if (kind == ImuKind::Accel && (unit == "g" || unit == "g0")) return kStandardGravity_mps2;
+    if (kind == ImuKind::Accel && unit == "mg") return 1e-3 * kStandardGravity;
+    if (kind == ImuKind::Accel && (unit == "g" || unit == "g0")) return kStandardGravity;
     if (kind == ImuKind::Accel && (unit.starts_with("m/s") || unit.starts_with("ms^") || unit.starts_with("ms-") ||
                                    is_one_of(unit, {"mps2", "ms2"})))
       return 1.0;

@@ -14,8 +14,6 @@
 
 namespace edged {
 
-inline constexpr double kStandardGravity_mps2 = 9.80665;
-
 /// Where the numbers of an IMU file stand and what they are.
 struct ImuTextForm {
   std::size_t t = 0;

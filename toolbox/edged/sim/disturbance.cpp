@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/sim/light.hpp"
 
 namespace edged {
@@ -18,7 +19,6 @@ constexpr double kShake_hz = 4.0;
 // Of knocks: a ring of 33 Hz that is over after a tenth of a second, and turns the body a little.
 constexpr double kRing_hz = 33.0, kDecay_s = 0.022, kRing_s = 0.1, kBlow_s = 0.006, kKnockTurn_rad = 0.004;
 constexpr double kLowering_s = 0.5;
-constexpr double kStandardGravity = 9.80665;
 
 constexpr double kToTheEnd = -1.0;
 

@@ -7,7 +7,6 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/aedat/aedat4_header.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
 #include "edged/io/streamed_dataset.hpp"
 #include "edged/io/text_parsing.hpp"

@@ -15,7 +15,6 @@ namespace edged {
 
 inline constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n";
 inline constexpr std::size_t kMostPacketBytes = std::size_t{1} << 28U;
-inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]: what the files call g
 
 inline constexpr const char* kAedat4PoseFrame = "edgedPoseFrame";  ///< key in its xml that other programs pass over
 

@@ -10,6 +10,7 @@
 
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_header.hpp"
 

@@ -62,8 +62,8 @@ Sample read_sample(const SourcePath& file, const std::optional<NamedImu>& named)
 /// Unit of an accelerometer whose median is this, as gravity is the most of it.
 std::optional<std::pair<double, const char*>> gravity_unit(double median) {
   if (median > 7.0 && median < 13.0) return std::pair(1.0, "m/s^2");
-  if (median > 0.7 && median < 1.3) return std::pair(kStandardGravity_mps2, "g");
-  if (median > 700.0 && median < 1300.0) return std::pair(1e-3 * kStandardGravity_mps2, "mg");
+  if (median > 0.7 && median < 1.3) return std::pair(kStandardGravity, "g");
+  if (median > 700.0 && median < 1300.0) return std::pair(1e-3 * kStandardGravity, "mg");
   return std::nullopt;
 }
 
@@ -115,7 +115,7 @@ ImuTextForm find_imu_form(const SourcePath& file) {
     throw InputError::format("{}: the unit of the accelerometer is not certain (its median is {:g}); name it: `{}`",
                              file.string(), pull, kWanted);
   form.accel_scale = found.accel_scale ? *found.accel_scale : guess->first;
-  const char* accel = form.accel_scale == 1.0 ? "m/s^2" : form.accel_scale == kStandardGravity_mps2 ? "g" : "mg";
+  const char* accel = form.accel_scale == 1.0 ? "m/s^2" : form.accel_scale == kStandardGravity ? "g" : "mg";
   const auto place = [](const std::array<std::size_t, 3>& at) {
     return fmt::format("{},{},{}", at[0] + 1, at[1] + 1, at[2] + 1);
   };
