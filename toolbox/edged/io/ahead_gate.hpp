@@ -17,7 +17,8 @@ namespace edged {
 
 /// Items of one stream of a recording, T with a `time_of`, pass through it one by one. A run of items that begins
 /// kAhead after all items before is held. It was a gap if it lasts for kSure or is followed by another gap. It is
-/// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second.
+/// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second. A
+/// recording can wait for what follows, so a whole run of items is held. JumpGate, for live streams, holds one item.
 template <typename T>
 class AheadGate {
  public:
