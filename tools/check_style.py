@@ -39,8 +39,8 @@ def functions(text):
     for character in code:
         if character == "{":
             inside = any(begin is not None for begin in open_braces)
-            holds_functions = CONTAINER.match(head) or head.rstrip().endswith("=")
-            open_braces.append(None if not inside and holds_functions else line)
+            no_function = CONTAINER.match(head) or head.rstrip().endswith("=")
+            open_braces.append(None if not inside and no_function else line)
         elif character == "}" and open_braces:
             begin = open_braces.pop()
             if begin is not None and all(outer is None for outer in open_braces):
