@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The intrinsics of Prophesee's Metavision SDK from version 5 on; those before are read as OpenCV's (camera_info.cpp).
+// The intrinsics of the Metavision SDK from version 5 on. Earlier versions use the keys of OpenCV (camera_info.cpp).
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
