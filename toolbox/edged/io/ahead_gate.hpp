@@ -71,7 +71,7 @@ class AheadGate {
  private:
   bool near(Timestamp t) const { return waiting_.empty() && newest_ && t <= *newest_ + kAhead; }
 
-  /// The newest stamp is still that of the items before while pass runs.
+  /// newest_ is updated after pass() has run.
   template <typename Pass>
   void let_through(T item, Pass& pass) {
     const Timestamp t = time_of(item);
@@ -80,7 +80,7 @@ class AheadGate {
   }
 
   std::vector<T> waiting_;
-  Timestamp begin_, end_;  ///< of what waits
+  Timestamp begin_, end_;  ///< of the held items
   std::optional<Timestamp> newest_;
 };
 
