@@ -117,7 +117,7 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
   std::vector<std::string> known;
   for (const WritableFormat& f : kWritable)
     known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
-  throw InputError::format("{}: nothing is written in format `{}`; give --format, one of: {}", path.string(),
+  throw InputError::format("{}: cannot write format `{}`; give --format, one of: {}", path.string(),
                            name.empty() ? extension : name, fmt::join(known, ", "));
 }
 

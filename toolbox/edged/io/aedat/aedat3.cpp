@@ -81,7 +81,7 @@ class Aedat3File final : public StreamedDataset {
       take(head, body);
       return true;
     } catch (const Damage& damage) {
-      repairs_.add("file: cut", fmt::format("{}: byte {}: {}; nothing behind it is read", name_, at_, damage.what()));
+      repairs_.add("file: cut", fmt::format("{}: byte {}: {}; the rest is not read", name_, at_, damage.what()));
       return false;
     }
   }

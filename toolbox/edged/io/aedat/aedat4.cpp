@@ -111,9 +111,8 @@ class Aedat4File final : public Aedat4Dataset {
     } else if (listed != packets_at_.end()) {
       next = *listed;
     }
-    repairs_.add("file: cut",
-                 fmt::format("{}: no whole packet at byte {}; {}", name_, at_,
-                             next ? fmt::format("goes on at byte {}", *next) : "nothing behind it is read"));
+    repairs_.add("file: cut", fmt::format("{}: no whole packet at byte {}; {}", name_, at_,
+                                          next ? fmt::format("continues at byte {}", *next) : "the rest is not read"));
     if (!next) return false;
     at_ = last_at_ = *next;
     searched_to_ = *next + 1;

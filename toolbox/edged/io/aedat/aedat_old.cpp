@@ -90,7 +90,7 @@ Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, cons
     throw InputError::format("{}: AEDAT {} is not read; 2.0, 3.1 and 4 are: convert it with DV", file.string(),
                              header.version);
   if (two && !lower_case(header.chip).starts_with("davis"))
-    throw InputError::format("{}: AEDAT 2.0 of the camera `{}` is not read, of a DAVIS it is: convert it with DV",
+    throw InputError::format("{}: AEDAT 2.0 of the camera `{}` is not read, only of a DAVIS: convert it with DV",
                              file.string(), header.chip.empty() ? "(not named)" : header.chip);
   const cv::Size sensor = event_sensor_size(file, options.geometry ? options.geometry : header.sensor, rig);
   return two ? open_aedat2(file, header, sensor) : open_aedat3(file, header, sensor);

@@ -25,7 +25,7 @@ void refuse_metavision_extrinsics(const YamlReader& root) {
   root.at("T_slave_master")
       .fail(
           "Metavision's extrinsics are of two cameras to each other, not to an IMU: give the intrinsics.json of the "
-          "camera, and what it is to the IMU in a file of `edged calib intrinsics.json --out head.yaml`");
+          "camera, and write its extrinsics to the IMU into a file of `edged calib intrinsics.json --out head.yaml`");
 }
 
 }  // namespace edged
