@@ -46,7 +46,8 @@ struct WriteCounts {
 std::string external_text(const std::map<std::string, std::size_t>& counts);
 
 /// Reads `dataset` to its end and writes it. Each event reads back to the same bits. Throws InputError if `path`
-/// already exists or cannot be written, and for stamps of events that are finer than the tick of the format.
+/// is a file or already holds a recording, if it cannot be written, and for stamps of events that are finer than the
+/// tick of the format.
 WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, const std::filesystem::path& path,
                             const std::optional<Calibration>& calibration, const WriteOptions& options = {});
 
