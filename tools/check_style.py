@@ -17,7 +17,7 @@ FUNCTION_LINES = (60, 100)
 SPDX = ("SPDX-FileCopyrightText: 2026 Edged USLAM developers", "SPDX-License-Identifier: Apache-2.0")
 CODE = {".cpp", ".hpp"}
 SCRIPTS = {".py", ".sh", ".cmake"}
-# What holds functions; every other brace outside a function opens one, or a list of values.
+# What holds functions. A brace after '=' outside a function opens a list of values; every other one there a function.
 CONTAINER = re.compile(r"\s*(template\s*<.*>\s*)?(namespace|class|struct|union|enum|extern)\b", re.DOTALL)
 NOT_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|^\s*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\])*"|(?<![0-9A-Fa-f])'(?:\\.|[^'\\])'""",
                       re.DOTALL | re.MULTILINE)
@@ -35,11 +35,12 @@ def files(root):
 def functions(text):
     """(first line, length) of every function, members too, counted from its opening brace to its closing one."""
     code = NOT_CODE.sub(lambda match: "\n" * match.group().count("\n"), text)
-    line, head, open_braces = 1, "", []  # of each open brace: the line of a function's, None of a container's
+    line, head, open_braces = 1, "", []  # of each open brace: the line of a function's, None of any other's
     for character in code:
         if character == "{":
             inside = any(begin is not None for begin in open_braces)
-            open_braces.append(None if not inside and CONTAINER.match(head) else line)
+            no_function = CONTAINER.match(head) or head.rstrip().endswith("=")
+            open_braces.append(None if not inside and no_function else line)
         elif character == "}" and open_braces:
             begin = open_braces.pop()
             if begin is not None and all(outer is None for outer in open_braces):

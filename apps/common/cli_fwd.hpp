@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Forward declarations of CLI11, whose own header costs six seconds of compile time per source.
+// Forward declarations of CLI11, whose header takes six seconds to compile per source.
 #pragma once
 
 namespace CLI {

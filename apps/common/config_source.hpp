@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Options of a run from the command line: a file, then single values that override it.
+// The options of a run from the command line: a file, and single values that override it.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,7 @@ void add_config_options(CLI::App& command, ConfigSource& source);
 /// Throws InputError that names the file and line, or the key.
 RunConfig load_config(const ConfigSource& source);
 
-/// As yaml.
+/// The configuration as yaml.
 std::string options_text(RunConfig config);
 
 }  // namespace edged

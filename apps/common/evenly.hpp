@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a bounded number of items, spread evenly over all.
+// Keeps a bounded number of items, evenly spaced over all added ones.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// The first item is always kept.
+/// Removes each second item. The first one is kept.
 template <typename T>
 void keep_every_second(std::vector<T>& values) {
   for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
@@ -20,7 +20,7 @@ class Evenly {
  public:
   explicit Evenly(std::size_t most) : most_(most) {}
 
-  /// True if this thinned out the earlier items.
+  /// True if this call removed half of the kept items.
   bool add(const T& value) {
     if (seen_++ % stride_ != 0) return false;
     kept_.push_back(value);

@@ -32,7 +32,7 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   out << text;
   if (!out.flush()) {
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);  // other files may need its room
+    std::filesystem::remove(part, ignored);  // frees the space for other files
     throw InputError::format("{}: cannot be written; is the disk full?", file.string());
   }
   std::filesystem::rename(part, file);

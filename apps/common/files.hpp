@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Output files of a command: complete or absent, and errors with a remedy.
+// Output files of a command. A file is complete or absent, and errors name a remedy.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +10,21 @@
 
 namespace edged {
 
-/// Replaces the file atomically: readers find the old one or the new one, even if the program is killed meanwhile.
-/// Throws InputError when it cannot be written.
+/// Replaces the file atomically: readers see the old file or the new one, even if the program is killed meanwhile.
+/// Throws InputError if it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& content);
 
 /// The temporary file of write_file.
 std::filesystem::path part_of(std::filesystem::path file);
 
-/// Throws InputError where the file cannot be written, as those below do.
+/// Throws InputError if the file cannot be written.
 std::ofstream open_for_writing(const std::filesystem::path& file);
 
-/// Throws InputError, which names the option, if the file cannot be written. Called before a long run whose result
-/// could not be saved.
+/// Throws InputError, with the option, if the file cannot be written. To be called before a long run whose result goes
+/// to the file.
 void check_writable(const std::filesystem::path& file, const char* option);
 
-/// Throw InputError where --out cannot be used.
+/// Both throw InputError, which names --out, if folder or file cannot be written.
 void make_picture_folder(const std::filesystem::path& folder);
 void write_picture(const std::filesystem::path& file, const cv::Mat& image);
 

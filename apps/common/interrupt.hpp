@@ -1,19 +1,20 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that the main loop polls.
+// Ctrl-C, SIGTERM and SIGHUP (closed terminal) set a flag, which the main loop polls.
 #pragma once
 
 #include "edged/dataset.hpp"
 
 namespace edged {
 
-/// From now on the first SIGINT, SIGTERM or SIGHUP only sets a flag; a second one of its kind ends the program at once.
+/// Installs handlers: the first SIGINT, SIGTERM or SIGHUP only sets the flag. A second signal of the same kind ends the
+/// program immediately.
 void catch_interrupts();
 
-/// The signal that came, or 0.
+/// The received signal, or 0.
 int interrupt_signal();
 
-/// A data set that ends, cleanly, when the user interrupts.
+/// A data set that ends after an interrupt by the user.
 class InterruptibleDataset final : public Dataset {
  public:
   explicit InterruptibleDataset(Dataset& inner) : inner_(inner) {}

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Json as text, for --json and files.
+// Writes json as text, for --json and files.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Indented. Bytes that are not UTF-8 are replaced: names in recordings may have any bytes.
+/// Indented text. Bytes that are not UTF-8 are replaced, as names in recordings may contain any bytes.
 inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -20,7 +20,7 @@ inline std::string compact_json(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Null for numbers that are not finite, which json does not have.
+/// Null for a number that is not finite, as json has none.
 inline nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }

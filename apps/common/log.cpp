@@ -39,7 +39,7 @@ void attach_log_file(const std::filesystem::path& file) {
   const auto to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string(), true);
   to_file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
   for (const auto& line : kept_lines()->last_raw()) to_file->log(line);
-  spdlog::set_error_handler([](const std::string&) {});  // a full disk: the writers of results report it
+  spdlog::set_error_handler([](const std::string&) {});  // such as a full disk, which the writers of results report
   auto& sinks = spdlog::default_logger()->sinks();
   std::erase(sinks, std::static_pointer_cast<spdlog::sinks::sink>(kept_lines()));
   sinks.push_back(to_file);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where log lines go: warnings to stderr at once, everything to run.log as soon as there is a folder for it.
+// Logging: warnings go to stderr, and all lines to run.log as soon as its folder exists.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,14 @@ class sink;
 
 namespace edged {
 
-/// Call first in main. Keeps the newest lines until attach_log_file.
+/// To be called first in main. Keeps the newest lines until attach_log_file().
 void start_logging();
 
-/// From now on everything also goes to the file, the lines kept so far first.
+/// Writes the kept lines to the file, then all later lines, too.
 void attach_log_file(const std::filesystem::path& file);
 
-/// While it lives, warnings and errors are kept for a command that reports them itself. The rest is logged at the end.
+/// Keeps warnings and errors during its lifetime, for a command that reports them itself. Those that were not taken are
+/// logged by the destructor.
 class HeldWarnings {
  public:
   HeldWarnings();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Checks of numbers on the command line, with readable errors.
+// Validators of numbers on the command line, with readable errors.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// Messages of CLI's own bounds would contain the largest double.
+/// Used instead of the bounds of CLI11, whose messages contain the largest double.
 inline CLI::Validator at_least_zero(bool zero_too, const char* wanted, const char* type) {
   return {[zero_too, wanted](std::string& text) {
             double value = 0.0;

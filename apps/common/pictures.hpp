@@ -19,7 +19,7 @@ inline void put_text(cv::Mat& canvas, const std::string& text, cv::Point at, dou
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, ink, 1, cv::LINE_AA);
 }
 
-/// JPEG, not wider than widest_px. Each corner with its previous position; `image` is not modified.
+/// A JPEG, at most widest_px wide, with each track and its previous position. `image` is not modified.
 std::vector<unsigned char> track_picture(const cv::Mat& image, const std::vector<Track>& tracks, int widest_px);
 
 struct SheetCell {
@@ -29,7 +29,7 @@ struct SheetCell {
 
 using SheetRow = std::vector<SheetCell>;
 
-/// CV_8UC3, with the title's lines on top. Every image is scaled to the width of its cell.
+/// CV_8UC3, with the lines of the title on top. Each image is scaled to the width of its cell.
 cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows);
 
 }  // namespace edged

@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::string_view kSimulatorPrefix = "sim:";
 
-/// The calibration that the user chose, if any.
+/// The calibration chosen by the user, if any.
 std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
   if (!options.calib.empty()) return load_calibration(options.calib);
   if (!options.rig.empty()) return load_rig(options.rig);
@@ -64,7 +64,7 @@ RecordingOptions recording_options(const SourceOptions& options) {
   return chosen;
 }
 
-/// With the chosen calibration, or that of the recording, if any.
+/// Opens the recording with the chosen calibration, else with that of the recording, if any.
 Recording open_whole(const SourceOptions& options) {
   std::optional<Calibration> calibration = chosen_calibration(options);
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) {
@@ -82,7 +82,7 @@ Recording open_whole(const SourceOptions& options) {
   return recording;
 }
 
-/// With the files of sensors beside it.
+/// Adds the sensor files that the user gave.
 Recording open_with_files(const SourceOptions& options) {
   Recording recording = open_whole(options);
   if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// RECORDING on the command line: a folder or file, or "sim:PRESET[:SEED]" for the simulator; with its calibration.
+// Opens RECORDING of the command line, a folder, a file or "sim:PRESET[:SEED]" for the simulator, with its calibration.
 #pragma once
 
 #include <filesystem>
@@ -22,24 +22,24 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;              ///< name of a shipped rig; "" where not given
-  std::filesystem::path calib;  ///< calibration file; "" where not given
-  std::filesystem::path imu;    ///< file with IMU samples; "" where not given
-  double imu_clock_rate = 1.0;  ///< seconds of the IMU's stamps to a second of the other sensors
+  std::string rig;              ///< name of a shipped rig; "" if not given
+  std::filesystem::path calib;  ///< calibration file; "" if not given
+  std::filesystem::path imu;    ///< file with IMU samples; "" if not given
+  double imu_clock_rate = 1.0;  ///< seconds of the IMU clock per second of the other sensors
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
-  std::string geometry;                   ///< "WIDTHxHEIGHT" of the event sensor; "" where not given
-  std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" where not given
+  std::string geometry;                                        ///< "WIDTHxHEIGHT" of the event sensor; "" if not given
+  std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" if not given
   std::vector<std::string> topics;        ///< of bags: ROLE=NAME
-  std::vector<std::string> cameras = {};  ///< to read, by name, where the recording has several of a kind
+  std::vector<std::string> cameras = {};  ///< names of cameras to read, if the recording has several of a modality
   PieceBounds piece;
-  std::optional<double> duration_s;  ///< of the piece, instead of its end
+  std::optional<double> duration_s;  ///< length of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
 
-/// The ground truth that a recording brings. A run goes on without one that cannot be read.
+/// The ground truth of a recording. A run continues without it if it is not readable.
 struct OwnTruth {
   std::optional<GroundTruth> truth;
-  std::string problem;  ///< why it cannot be read; empty otherwise
+  std::string problem;  ///< why it is not readable; empty otherwise
 };
 OwnTruth read_truth(const Dataset& dataset);
 
@@ -49,42 +49,42 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// Of "sim:PRESET[:SEED]"; nothing for another recording. Throws InputError for an unknown preset.
+/// The configuration of "sim:PRESET[:SEED]". Nothing for another recording. Throws InputError for an unknown preset.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
 /// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --topic, --from (also --start), --to, --duration and
 /// --dim-frames.
 void add_reading_options(CLI::App& command, SourceOptions& options);
 
-/// Adds RECORDING, --imu, a flag for each external sensor, and these.
+/// Adds RECORDING, --imu, a flag for each external sensor, and the options of add_reading_options().
 void add_source_options(CLI::App& command, SourceOptions& options);
 
-/// With the chosen calibration, or that of the recording, if any. Throws InputError when nothing can be
-/// opened.
+/// Opens the recording with the chosen calibration, else with that of the recording, if any. Throws InputError if it
+/// cannot be opened.
 Recording open_uncalibrated(const SourceOptions& options);
 
-/// Whether it is a live source, of which a slow reader loses data.
+/// True for a live source, of which a slow reader loses data.
 bool is_live(const SourceOptions& options);
 
-/// Of the recording, else of its calibration. Throws InputError if it is unknown.
+/// The size of the event sensor, from the recording, else from its calibration. Throws InputError if it is unknown.
 cv::Size recording_event_sensor(const Recording& recording);
 
-/// Throws InputError when nothing can be opened, or there is no calibration with extrinsics.
+/// Opens the recording. Throws InputError if that fails, and without a calibration with extrinsics.
 Source open_source(const SourceOptions& options);
-/// The same of a recording that is open.
+/// The same for an open recording.
 Source calibrated(const SourceOptions& options, Recording recording);
 
-/// One word of a command line, quoted if a shell needs it.
+/// A text as one word of a command line, quoted if necessary.
 std::string shell_word(const std::string& text);
 
-/// `edged COMMAND RECORDING` with the options that say how to read it, as words of a shell.
+/// The command line `edged COMMAND RECORDING` with the options for reading the recording.
 std::string command_line(const std::string& command, const SourceOptions& source);
 
 /// Time of the first event or frame [s from the start of the recording], if the chosen piece ends before it. Reads the
 /// recording again.
 std::optional<double> cameras_start_after_s(const SourceOptions& options);
 
-/// The finding about that, and the time at which a run should start [s].
+/// The finding for cameras that start late, and the time at which a run should start [s].
 Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
 

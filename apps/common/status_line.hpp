@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The status line on stderr while something runs, and log lines that must not mix with it.
+// The status line on stderr during a run, and log lines above it.
 #pragma once
 
 #include <spdlog/sinks/base_sink.h>
@@ -14,8 +14,8 @@
 
 namespace edged {
 
-/// On a terminal the line is rewritten in place, ten times a second at most; otherwise a plain line every five seconds
-/// is printed. Its destructor clears the line.
+/// On a terminal, the line is rewritten in place, at most ten times per second. Otherwise, a line is printed every five
+/// seconds. The destructor clears the line.
 class StatusLine {
  public:
   explicit StatusLine(bool quiet);
@@ -23,7 +23,7 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// True when another line is due: check it before formatting.
+  /// True if another line is due. To be checked before formatting.
   bool due() const;
   void show(const std::string& text);
   /// Clears the line, so that something else can be printed.
@@ -46,13 +46,13 @@ class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
 /// "1234567" -> "1.23 M", for rates and counts.
 std::string si_number(double value);
 
-/// "12.3 / 60.0 s read", of a job that has reached t; without the total if it is unknown.
+/// Progress at time t: "12.3 / 60.0 s read", without the total if it is unknown.
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
 
 /// Minimum width of a terminal.
 inline constexpr std::size_t kColumns = 80;
 
-/// A text wrapped between words at that width, with later lines indented. A single word may be longer.
+/// A text wrapped between words at kColumns, with later lines indented. A single word may be longer.
 std::string wrapped(const std::string& line, std::size_t indent);
 
 /// One line, cut to a number of columns.

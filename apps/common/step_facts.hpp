@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Figures of a step for tables, plots and reports: per modality, age of map matches, status changes.
+// Numbers of a step for tables, plots and reports: per modality, age of map matches, status changes.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ namespace edged {
 
 struct KindNumbers {
   std::size_t tracks = 0;               ///< of all cameras
-  std::optional<double> survival_rate;  ///< the mean; nothing where the run has no such camera
+  std::optional<double> survival_rate;  ///< mean over the cameras; nothing without a camera of the modality
   double event_rate_hz = 0.0;           ///< of all cameras
 };
 
 KindNumbers numbers_of(const Step& step, Modality modality);
 
-/// Time since the oldest keyframe with a map match in this packet's image; nothing without a match.
+/// Time since the oldest keyframe with a map match in the images of this step. Nothing without a match.
 std::optional<double> map_reach_s(const Step& step);
 
-/// Report and live page show the first ones.
+/// Report and live page show at most this many, the first ones.
 inline constexpr std::size_t kMostChangesShown = 300;
 
 struct StatusChange {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
+#include "edged/pipeline/renamed_options.hpp"
 
 namespace edged {
 namespace {
@@ -66,90 +67,6 @@ constexpr std::string_view kForEveryone[] = {
 /// under tracker.frames.
 constexpr std::string_view kPerCameraKind[] = {"klt.window_px", "templates.min_similarity", "sigma_px"};
 
-/// Keys of version 0.2. Of several new names the first that exists counts.
-constexpr ConfigFields::Renamed kRenamed[] = {
-    {"alignment_gain", "alignment.gain"},
-    {"expert.dim_frames.", "expert.low_light."},
-    {"expert.health.min_survival", "expert.health.min_survival_rate"},
-    {"expert.health.min_event_corners", "expert.health.min_event_features"},
-    {"expert.map.max_sights", "expert.map.max_observations"},
-    {"expert.map.filter.min_sights", "expert.map.filter.min_observations"},
-    {"expert.alignment_max_px", "expert.alignment.max_px"},
-    {"depth_factor.", "estimator.depth_factor."},
-    {"expert.depth_factor.", "expert.estimator.depth_factor."},
-    {"event_tracker.", "tracker.events."},
-    {"event_tracker.", "tracker."},
-    {"frame_tracker.", "tracker.frames."},
-    {"frame_tracker.", "tracker."},
-    {"expert.event_tracker.", "expert.tracker.events."},
-    {"expert.event_tracker.", "expert.tracker."},
-    {"expert.frame_tracker.", "expert.tracker.frames."},
-    {"expert.frame_tracker.", "expert.tracker."},
-    {"expert.event_tracker.klt.iterations", ""},
-    {"expert.frame_tracker.klt.iterations", ""},
-    {"expert.event_tracker.klt.epsilon_px", ""},
-    {"expert.frame_tracker.klt.epsilon_px", ""},
-    {"expert.event_tracker.klt.min_gradient", ""},
-    {"expert.frame_tracker.klt.min_gradient", ""},
-    {"expert.event_tracker.outliers.fallback_share", ""},
-    {"expert.frame_tracker.outliers.fallback_share", ""},
-    {"expert.event_tracker.outliers.min_share", ""},
-    {"expert.frame_tracker.outliers.min_share", ""},
-    {"expert.event_tracker.outliers.iterations", ""},
-    {"expert.frame_tracker.outliers.iterations", ""},
-    {"expert.event_tracker.detector.border_px", ""},
-    {"expert.frame_tracker.detector.border_px", ""},
-    {"expert.event_tracker.detector.min_gradient", ""},
-    {"expert.frame_tracker.detector.min_gradient", ""},
-    {"expert.event_tracker.detector.subpixel", ""},
-    {"expert.frame_tracker.detector.subpixel", ""},
-    {"expert.event_tracker.border_px", ""},
-    {"expert.frame_tracker.border_px", ""},
-    {"expert.event_tracker.merge_px", ""},
-    {"expert.frame_tracker.merge_px", ""},
-    {"expert.event_tracker.retry_share", ""},
-    {"expert.frame_tracker.retry_share", ""},
-    {"expert.event_tracker.refill_share", ""},
-    {"expert.frame_tracker.refill_share", ""},
-    {"expert.event_tracker.templates.iterations", ""},
-    {"expert.frame_tracker.templates.iterations", ""},
-    {"expert.map.patch.iterations", ""},
-    {"expert.dim_frames.target_range", ""},
-    {"expert.dim_frames.max_gain", ""},
-    {"expert.dim_frames.smoothing_px", ""},
-    {"expert.keyframes.starved_interval_s", ""},
-    {"expert.keyframes.min_interval_s", ""},
-    {"expert.keyframes.still_parallax_deg", ""},
-    {"expert.enhance.clahe_tiles", ""},
-    {"expert.enhance.unsharp_sigma_px", ""},
-    {"expert.depth.constant_sigma_ln", ""},
-    {"expert.depth.filter.max_age_s", ""},
-    {"expert.depth.filter.drift", ""},
-    {"expert.depth.landmarks.min_landmarks", ""},
-    {"expert.depth.network.min_events_per_pixel", ""},
-    {"expert.depth.scale.prior_sigma", ""},
-    {"expert.depth.scale.walk", ""},
-    {"expert.depth.scale.measurement_sigma", ""},
-    {"expert.depth_factor.scale_walk", ""},
-    {"expert.depth_factor.noise_share", ""},
-    {"expert.depth_factor.min_interval_s", ""},
-    {"expert.depth_factor.min_landmarks", ""},
-    {"expert.depth_factor.gate", ""},
-    {"expert.depth_factor.cauchy_scale", ""},
-    {"expert.estimator.rest_gyro_bias_sigma", ""},
-    {"expert.estimator.zero_velocity_sigma", ""},
-    {"expert.estimator.init_spacing_s", ""},
-    {"expert.estimator.init_turn_deg", ""},
-    {"expert.estimator.init_min_views", ""},
-    {"expert.estimator.min_noise_scale", ""},
-    {"expert.estimator.max_noise_scale", ""},
-    {"expert.estimator.standstill.max_gyro_mean", ""},
-    {"expert.estimator.standstill.quiet_window_s", ""},
-    {"expert.map.keyframes.min_interval_s", ""},
-    {"expert.map.keyframes.max_depth_error", ""},
-    {"expert.map.keyframes.max_scale", ""},
-};
-
 }  // namespace
 
 void AlignmentConfig::visit(ConfigFields& fields) {
@@ -168,7 +85,7 @@ OdometryConfig::OdometryConfig() {
 
 void OdometryConfig::visit(ConfigFields& fields) {
   fields.expert_but(kForEveryone, [&] { declare(fields); });
-  fields.accept(kRenamed);
+  fields.accept(kRenamedOptions);
 }
 
 void OdometryConfig::declare(ConfigFields& fields) {

@@ -17,7 +17,8 @@ namespace edged {
 
 /// Items of one stream of a recording, T with a `time_of`, pass through it one by one. A run of items that begins
 /// kAhead after all items before is held. It was a gap if it lasts for kSure or is followed by another gap. It is
-/// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second.
+/// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second. A
+/// recording can wait for what follows, so a whole run of items is held. JumpGate, for live streams, holds one item.
 template <typename T>
 class AheadGate {
  public:
@@ -70,7 +71,7 @@ class AheadGate {
  private:
   bool near(Timestamp t) const { return waiting_.empty() && newest_ && t <= *newest_ + kAhead; }
 
-  /// The newest stamp is still that of the items before while pass runs.
+  /// newest_ is updated after pass() has run.
   template <typename Pass>
   void let_through(T item, Pass& pass) {
     const Timestamp t = time_of(item);
@@ -79,7 +80,7 @@ class AheadGate {
   }
 
   std::vector<T> waiting_;
-  Timestamp begin_, end_;  ///< of what waits
+  Timestamp begin_, end_;  ///< of the held items
   std::optional<Timestamp> newest_;
 };
 

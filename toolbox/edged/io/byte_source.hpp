@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bytes read front to back, from a disk or out of an archive.
+// Bytes read sequentially, from a disk or from an archive.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace edged {
 
-/// The bytes of a file from its begin on.
+/// The bytes of a file, from its beginning on.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
-  /// Fills `to` from its front and says how far; 0 only at the end of the file. Throws Damage where the archive is
-  /// damaged, InputError where the file system fails.
+  /// Reads bytes into `to` and returns their number, 0 only at the end of the file. Throws Damage for a damaged
+  /// archive, InputError for an error of the file system.
   virtual std::size_t read(std::span<char> to) = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Binary files: reading them in parts, and little-endian numbers out of bytes that may be damaged.
+// Reads and writes binary files, and little-endian numbers in bytes that may be damaged.
 #pragma once
 
 #include <bit>
@@ -22,19 +22,19 @@ using ByteSpan = std::span<const std::uint8_t>;
 
 static_assert(std::endian::native == std::endian::little, "binary formats are copied into numbers as they are");
 
-/// The same bytes as text, which ends where they do.
+/// A view of the same bytes as text.
 inline std::string_view as_text(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 inline ByteSpan as_bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// Bytes that cannot be what they should. Caught by the reader of the format, which counts it.
+/// Bytes that violate the format. The reader of the format catches and counts it.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Takes numbers off the front of some bytes. Throws Damage where they end too early.
+/// Reads numbers from bytes, one after the other. Throws Damage if the bytes end too early.
 class ByteReader {
  public:
   explicit ByteReader(ByteSpan bytes) : all_(bytes) {}
@@ -63,7 +63,7 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
-/// The bytes of a number as they lie in memory, appended.
+/// Appends the bytes of a number in the order of the memory.
 template <typename T>
 requires std::is_arithmetic_v<T>
 void append_number(std::string& bytes, T value) {
@@ -72,14 +72,14 @@ void append_number(std::string& bytes, T value) {
   bytes.append(raw, sizeof value);
 }
 
-/// A file read by position.
+/// A file for random access.
 class BinaryFile {
  public:
   /// Throws InputError when it cannot be opened.
   explicit BinaryFile(const std::filesystem::path& file);
 
   std::uint64_t size() const { return size_; }
-  /// The bytes from `offset` on, fewer at the end of the file.
+  /// `count` bytes from `offset` on, fewer at the end of the file.
   Bytes read(std::uint64_t offset, std::size_t count);
 
  private:
@@ -87,16 +87,16 @@ class BinaryFile {
   std::uint64_t size_ = 0;
 };
 
-/// A new file, written front to back. All members throw InputError when it cannot be written.
+/// A new file, written sequentially. All members throw InputError if it cannot be written.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& file);
 
   std::uint64_t size() const { return size_; }
   void write(std::string_view bytes);
-  /// Replaces bytes written before, which a format has to know only at its end.
+  /// Replaces bytes that were written earlier, for values that are known only at the end.
   void overwrite(std::uint64_t offset, std::string_view bytes);
-  /// To the disk.
+  /// Writes all buffered bytes to the disk.
   void flush();
 
  private:

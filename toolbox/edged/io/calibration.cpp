@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Finding and checking calibrations; printing them.
+// Finds, checks and prints calibrations.
 #include "edged/io/calibration.hpp"
 
 #include <spdlog/spdlog.h>
@@ -18,7 +18,7 @@ namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
-/// The first imu*.yaml beside a file.
+/// The first imu*.yaml in the folder of a file.
 std::optional<SourcePath> imu_file_beside(const SourcePath& file) {
   const SourcePath folder = file.parent_path();
   for (const std::string& name : folder.names())

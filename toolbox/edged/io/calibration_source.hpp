@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// load_calibration of a file that may lie in an archive.
+// Loads calibrations, also from files in an archive.
 #pragma once
 
 #include "edged/io/sensor_head.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which camera of a rig a recording's events or frames are of.
+// Assigns the cameras of a recording to the cameras of a rig.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace edged {
 
-/// Makes the camera of this kind that the recording has the one that Rig::find gives, under the recording's name for it
-/// (ground truth and output frames go by that name): the one so called, else the only one of the kind. What was
-/// assumed, in one line; empty where the names agree. Throws InputError with both lists where there is none, or
-/// several.
+/// Assigns the camera of the recording of this modality to a camera of the rig: the one of the same name, else the only
+/// one of the modality. Renames that camera to the name in the recording, which ground truth and output frames use, so
+/// that Rig::find returns it. Returns the assumption in one line, empty if the names agree. Throws InputError, with the
+/// cameras of both, if no camera or several fit.
 std::string match_camera(Rig& rig, const DatasetInfo& info, Modality modality);
 
 }  // namespace edged

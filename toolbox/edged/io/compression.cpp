@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Unpacking: the three libraries behind one loop: feed all, take what comes, stop at the end, at damage or at the
-// limit.
+// Decompression with three libraries in one loop, which stops at the end of the data, at damage or at the limit.
 #include "edged/io/compression.hpp"
 
 #include <bzlib.h>
@@ -16,8 +15,8 @@ namespace {
 
 enum class Step { More, End, Failed };
 
-/// Grows the output until `step(output, consumed, produced)` says that it is over. A step without progress is a cut
-/// end.
+/// Extends the output until `step(output, consumed, produced)` returns that it is complete. A step without progress
+/// means that the data are cut.
 template <typename StepFunction>
 Decompressed unpack(ByteSpan packed, std::size_t max_bytes, const StepFunction& step) {
   Decompressed out;
@@ -73,7 +72,7 @@ Decompressed unpack_bz2(ByteSpan packed, std::size_t max_bytes) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
   const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> owner(&stream, &BZ2_bzDecompressEnd);
-  constexpr std::size_t kMost = 1U << 30U;  // its counters have 32 bits
+  constexpr std::size_t kMost = 1U << 30U;  // the counters of the library have 32 bits
   return unpack(packed, max_bytes,
                 [&](ByteSpan in, std::span<std::uint8_t> to, std::size_t& consumed, std::size_t& produced) {
                   const auto in_size = static_cast<unsigned>(std::min(in.size(), kMost));

@@ -19,7 +19,7 @@ std::optional<std::size_t> image_role(const ColumnName& column) {
   return names_time(column) ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-/// Where stamp and file stand in a line, and the unit of the stamps.
+/// The columns of stamp and file, and the unit of the stamps.
 struct ImageColumns {
   std::vector<std::size_t> at = {0, 1};
   TimeUnit unit = TimeUnit::Seconds;
@@ -35,7 +35,7 @@ ImageColumns image_columns(const SourcePath& list, TimeUnit unit) {
   return columns;
 }
 
-/// Stamp and file of a line. A file that stands last may have blanks in its name.
+/// Stamp and file of a line. A file name in the last column may contain blanks.
 std::optional<std::pair<Timestamp, std::string_view>> read_image_line(std::string_view line,
                                                                       const ImageColumns& columns) {
   FieldReader fields(line);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How the folders of the Event-Camera Dataset and of EuRoC are laid out. Internal to io.
+// The layout of the folders of the Event-Camera Dataset and of EuRoC. Internal to io.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -12,21 +12,21 @@
 
 namespace edged {
 
-/// Something of an Event-Camera Dataset text folder is there.
+/// True if the folder contains a file of the Event-Camera Dataset.
 bool is_ecd_folder(const SourcePath& folder);
-/// Its list of images: images.txt, or left_images.txt of UZH-FPV. Nothing where it has none.
+/// The list of images: images.txt, or left_images.txt of UZH-FPV. Nothing if the folder has none.
 std::optional<SourcePath> find_ecd_image_list(const SourcePath& folder);
-/// A list of stamps and images, below `folder`: the columns that its heading names, else `t path`.
+/// A list of stamps and images in `folder`, with the columns of its heading, else `t path`.
 StampedLines<FrameEntry>::Spec image_lines(const SourcePath& list, const SourcePath& folder, TimeUnit unit);
-/// The image list of the folder, which it has.
+/// The image list of a folder that has one.
 StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder);
-/// The first image that the list names, as it is written there.
+/// The first image name in the list.
 std::optional<std::string> first_ecd_image(const SourcePath& folder);
-/// Size of the first readable image of its list.
+/// Size of the first readable image of the list.
 std::optional<cv::Size> ecd_image_size(const SourcePath& folder);
-inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240: the data set's sensor where nothing else tells
+inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240, the sensor of the data set: the default size
 
-/// The folder itself or its mav0, whichever holds cam0 or imu0.
+/// The folder itself or its mav0: the one that holds cam0 or imu0.
 std::optional<SourcePath> find_mav0(const SourcePath& folder);
 
 }  // namespace edged

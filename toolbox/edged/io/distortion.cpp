@@ -11,16 +11,16 @@
 namespace edged {
 namespace {
 
-/// OpenCV's order, of which radtan has the first five.
+/// In the order of OpenCV. radtan has the first five.
 constexpr std::array<std::string_view, 14> kRadialNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5",
                                                            "k6", "s1", "s2", "s3", "s4", "tx", "ty"};
 
-/// Models of OpenCV that are radtan as long as their further coefficients are zero.
+/// Models of OpenCV that equal radtan if their further coefficients are zero.
 bool extends_radtan(std::string_view name) {
   return name == "rational_polynomial" || name == "rational" || name == "thin_prism";
 }
 
-/// Throws if a coefficient that the model lacks is not zero.
+/// Throws InputError for a nonzero coefficient that the model lacks.
 void refuse_others(const LensModel& lens, const std::vector<double>& k) {
   const auto from = k.begin() + static_cast<std::ptrdiff_t>(std::min(lens.most, k.size()));
   const auto first = std::find_if(from, k.end(), [](double x) { return x != 0.0; });

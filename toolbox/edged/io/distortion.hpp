@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The distortion of a lens as files name it, alike in all calibrations and messages. Internal to io.
+// The distortion of a lens, from the names and coefficients in calibrations and messages. Internal to io.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ struct Distortion {
   std::array<double, 5> k{};
 };
 
-/// name: as any of the formats has it. Files write as many coefficients as OpenCV can have (4, 5, 8, 12 or 14); those
-/// that the model lacks must be zero. Where all are zero there is no distortion, whatever the model. Throws InputError,
-/// which names the model and the first coefficient that is not supported.
+/// name: in the naming of any format. Files contain 4, 5, 8, 12 or 14 coefficients, as in OpenCV; those that the model
+/// lacks must be zero. If all are zero, there is no distortion for any model. Throws InputError, with the model and the
+/// first coefficient that is not supported.
 Distortion make_distortion(std::string_view name, const std::vector<double>& coefficients);
 
 }  // namespace edged

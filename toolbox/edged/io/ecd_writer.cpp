@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writing of Event-Camera Dataset folders.
+// Writes folders of the Event-Camera Dataset.
 #include "edged/io/ecd_writer.hpp"
 
 #include <spdlog/fmt/compile.h>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kFlushBytes = 1 << 20;
 
-/// A text file that comes into being with its first line.
+/// A text file that is created when its first line is written.
 class LazyFile {
  public:
   explicit LazyFile(fs::path file) : file_(std::move(file)) {}
@@ -50,7 +50,7 @@ class LazyFile {
   fmt::memory_buffer text_;
 };
 
-/// With the camera names that the reader of the format gives.
+/// The calibration with the camera names that the reader of the format uses.
 Calibration with_format_names(Calibration calibration) {
   bool events = false, frames = false;
   for (RigCamera& camera : calibration.rig.cameras) {
@@ -76,7 +76,7 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
   file.flush();
 }
 
-/// By its name in the rig, or as the readers of formats without names call it.
+/// Finds a camera by its name in the rig, or by the name that readers of formats without names use.
 const RigCamera& find_camera(const Rig& rig, const std::string& name) {
   const RigCamera* by_kind = name == "events"   ? rig.find(Modality::Events)
                              : name == "frames" ? rig.find(Modality::Frames)
@@ -183,7 +183,7 @@ class EcdWriter final : public RecordingWriter {
   }
 
  private:
-  /// The format has no room for a second camera of a kind.
+  /// The format holds one event camera and one frame camera.
   void keep_to_one(std::string& known, const std::string& camera) {
     if (known.empty()) known = camera;
     if (known != camera)

@@ -7,11 +7,11 @@
 
 namespace edged {
 
-/// events.txt, images.txt with images/, imu.txt, groundtruth.txt, height.txt and velocity.txt, each only if there is
-/// something in it; calib.txt (event camera) and calibration.yaml (everything) from a calibration, which also turns
-/// ground truth of the body into that of the camera, which is what groundtruth.txt holds. Read back, every stamp,
-/// event, pixel and number is the same to the last bit. Throws InputError when the folder cannot be written or holds a
-/// recording already, for a second camera of a kind, and for ground truth of the body without extrinsics.
+/// Writes events.txt, images.txt with images/, imu.txt, groundtruth.txt, height.txt and velocity.txt, but no empty
+/// file. With a calibration, also calib.txt (event camera) and calibration.yaml (complete). groundtruth.txt holds poses
+/// of the camera, so ground truth of the body is transformed by the calibration. Each stamp, event, pixel and number
+/// reads back to the same bits. Throws InputError if the folder cannot be written or already holds a recording, for a
+/// second camera of a modality, and for ground truth of the body without extrinsics.
 std::unique_ptr<RecordingWriter> write_ecd(const WriterSetup& setup);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The words of each format, bit by bit.
+// Decodes the words of each format.
 #include "edged/io/evt.hpp"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ constexpr std::uint32_t bits(Word word, unsigned first, unsigned count) {
   return static_cast<std::uint32_t>((word >> first) & ((Word{1} << count) - 1));
 }
 
-/// What `counter` of so many bits stands for after `last`. It wrapped when it moved by clearly more than half its
-/// range: a flipped bit never does, so that the next counter brings the time back to where it was.
+/// The time of a `counter` of `width` bits, the previous time being `last`. A step of clearly more than half the range
+/// is a wrap. A flipped bit is never such a step, so the next counter restores the time.
 std::int64_t continued(std::int64_t last, std::uint32_t counter, unsigned width) {
   const std::int64_t period = std::int64_t{1} << width, limit = period / 16 * 9;
   std::int64_t step = counter - (last & (period - 1));
@@ -34,7 +34,7 @@ std::int64_t continued(std::int64_t last, std::uint32_t counter, unsigned width)
 
 }  // namespace
 
-/// Where decoded events go, if they are within the sensor.
+/// Collects decoded events within the sensor.
 class EvtDecoder::Sink {
  public:
   Sink(std::uint32_t width, std::uint32_t height, Counts& counts, std::vector<Event>& events)
@@ -58,16 +58,16 @@ class EvtDecoder::Sink {
       add(state, t_us, x + static_cast<std::uint32_t>(std::countr_zero(mask)), y, positive);
   }
 
-  /// A counter of so many bits for the upper part of the time, in steps of 2^unit us. Beyond any recording (by damage,
-  /// bit by bit) it begins anew.
+  /// Updates the upper part of the time from a counter, in steps of 2^unit us. After a time beyond any recording, which
+  /// damage causes, it starts again.
   void time_high(State& state, std::uint32_t counter, unsigned width, unsigned unit) {
     constexpr std::int64_t kLongest_us = std::int64_t{1} << 52;
     state.high = state.timed ? continued(state.high, counter, width) : counter;
     state.timed = std::abs(state.high) < kLongest_us >> unit;
   }
 
-  /// A word that tells of no change: external trigger, IMU of the camera (in no documented unit), others, continued.
-  /// All else is in none of the formats.
+  /// Words without events: external trigger, IMU of the camera (of undocumented unit), others, continued. Other types
+  /// are in none of the formats and are counted.
   void no_change(std::uint32_t type) {
     if (type != 0xA && type != 0xD && type != 0xE && type != 0xF) ++counts_.unknown;
   }
@@ -90,7 +90,7 @@ void EvtDecoder::reset() {
 
 void EvtDecoder::decode(std::span<const std::uint8_t> bytes, std::vector<Event>& events) {
   Sink sink(width_, height_, counts_, events);
-  State state = state_;  // a local: what events are written to cannot alias it
+  State state = state_;  // a local copy, which the output of events cannot alias
   switch (format_) {
     case EvtFormat::Evt2:
       each_word<std::uint32_t>(bytes, [&](std::uint32_t word) { evt2(word, state, sink); });
@@ -192,7 +192,7 @@ void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
     case 0x8: {
       const std::int64_t before = state.high;
       sink.time_high(state, bits(word, 0, 12), 12, 12);
-      if (state.high != before) state.low = 0;  // the lower part is of the time before
+      if (state.high != before) state.low = 0;  // the lower part belongs to the previous upper part
       break;
     }
     case 0x7:  // continued

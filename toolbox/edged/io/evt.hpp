@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Decoders of what Prophesee sensors send: EVT 2.0, 2.1 and 3.0, and the records of DAT files.
+// Decodes the formats of Prophesee sensors: EVT 2.0, 2.1 and 3.0, and the records of DAT files.
 #pragma once
 
 #include <array>
@@ -21,33 +21,33 @@ enum class EvtFormat {
   Dat,          ///< records of 64 bits with their full time
 };
 
-/// Turns a stream of bytes into events, as it comes: chunks may end anywhere, also within a word. Times are the
-/// sensor's own, from its microseconds, continued where its counter wraps (EVT 3 every 16.8 s); they may step back
-/// where the stream does. Nothing a stream may hold makes it throw: what cannot be used is counted.
+/// Decodes a stream of bytes into events. Chunks may end anywhere, also within a word. Stamps come from the
+/// microseconds of the sensor, continued over wraps of its counter (EVT 3: every 16.8 s). They step back if those of
+/// the stream do. Damage is counted and never throws.
 class EvtDecoder {
  public:
   struct Counts {
-    std::size_t outside = 0;  ///< events beyond the borders of the sensor, left out
+    std::size_t outside = 0;  ///< events outside the sensor, left out
     std::size_t untimed = 0;  ///< events before the first time of the stream, left out
-    std::size_t unknown = 0;  ///< words of types that the format does not have, passed over
+    std::size_t unknown = 0;  ///< words of types that the format does not have, ignored
   };
 
   /// width, height: of the sensor [px].
   EvtDecoder(EvtFormat format, int width, int height);
 
-  /// Appends the events that end in `bytes`.
+  /// Appends the events whose last byte is in `bytes`.
   void decode(std::span<const std::uint8_t> bytes, std::vector<Event>& events);
 
-  /// Forgets time, row and cut word, but not the counts: where bytes of the stream are missing, or where packets begin
-  /// a time of their own.
+  /// Resets time, row and incomplete word, but not the counts. Needed after missing bytes, and for packets with a time
+  /// base of their own.
   void reset();
 
   const Counts& counts() const { return counts_; }
 
  private:
-  /// What one word leaves to the next.
+  /// The state between two words.
   struct State {
-    bool timed = false;               ///< a time has been seen
+    bool timed = false;               ///< the stream has given a time
     std::int64_t high = 0;            ///< upper part of the time, continued over wraps
     std::uint32_t low = 0;            ///< lower part [us], EVT 3 only
     std::uint32_t row = kNowhere;     ///< EVT 3 only
@@ -68,7 +68,7 @@ class EvtDecoder {
   std::uint32_t width_, height_;
   State state_;
   Counts counts_;
-  std::array<std::uint8_t, 8> cut_{};  ///< beginning of a word whose end is in the next chunk
+  std::array<std::uint8_t, 8> cut_{};  ///< the first bytes of a word that ends in the next chunk
   std::size_t cut_bytes_ = 0;
 };
 

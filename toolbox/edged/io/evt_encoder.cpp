@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The words of each format, as EvtDecoder takes them apart.
+// Encodes the words of each format, the inverse of EvtDecoder.
 #include "edged/io/evt_encoder.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ const std::string& EvtEncoder::encode(std::span<const Event> events) {
   return bytes_;
 }
 
-/// The first events that have stamp, row and polarity in common and lie within 32 columns become one group; how many.
+/// The number of leading events with the same stamp, row and polarity within 32 columns. They become one group.
 std::size_t EvtEncoder::write_row(std::span<const Event> events) {
   const Event& a = events.front();
   std::uint32_t mask = 1;
@@ -57,7 +57,7 @@ void EvtEncoder::write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t m
 }
 
 void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
-  constexpr std::uint64_t kLongestStep = 1024;  // of 4096: a longer one over the wrap would look like one back
+  constexpr std::uint64_t kLongestStep = 1024;  // of 4096: a longer step over the wrap decodes as a step backwards
   const std::uint64_t high = t_us >> 12;
   if (high_ != ~std::uint64_t{0})
     while (high > high_ && high - high_ > kLongestStep) put3(0x8, (high_ += kLongestStep) & 0xFFF);
@@ -66,7 +66,7 @@ void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t ma
   const unsigned polarity = e.positive ? 0x800U : 0U;
   put3(0x6, t_us & 0xFFF);
   put3(0x0, e.y);
-  if (std::popcount(mask) < 3) {  // cheaper one by one
+  if (std::popcount(mask) < 3) {  // single words are shorter
     for (; mask; mask &= mask - 1) put3(0x2, (e.x + static_cast<unsigned>(std::countr_zero(mask))) | polarity);
     return;
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Encoders of the Prophesee formats.
+// Encodes the formats of Prophesee sensors.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace edged {
 
-/// Writes events in time order as a sensor would: what EvtDecoder reads. Stamps are cut to microseconds, and what is
-/// above the range of the sensor's counter (EVT 3: 24 bits, EVT 2: 34, DAT: 32) is lost for the first event; later
-/// ones go on from there. Columns and rows have 11 bits (DAT: 14).
+/// Encodes events in time order for EvtDecoder. Stamps are rounded down to microseconds. Bits of the first stamp beyond
+/// the counter (EVT 3: 24 bits, EVT 2: 34, DAT: 32) are lost, and later stamps continue from there. Columns and rows
+/// have 11 bits (DAT: 14).
 class EvtEncoder {
  public:
   explicit EvtEncoder(EvtFormat format) : format_(format) {}

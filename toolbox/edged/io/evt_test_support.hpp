@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Events in time order with rows of neighbours, so that the vector words of EVT 2.1 and 3 have something to say.
+/// Events in time order with rows of neighbours, so that the vector words of EVT 2.1 and 3 are used.
 /// Stamps are whole microseconds.
 inline std::vector<Event> generated_events(std::size_t count, int width, int height, std::int64_t mean_step_us) {
   std::mt19937_64 random(7);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Images as files of a recording: reading one, and an entry of a list of them.
+// Reads an image file of a recording, and holds an entry of a list of images.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -10,8 +10,8 @@
 
 namespace edged {
 
-/// 8 bits of grey: colours by their luminance, of 16 bits the upper 8 (TUM-VI). Empty where the file is no image or
-/// damaged. Throws InputError where it cannot be read at all.
+/// Reads an image as 8-bit grey: colours by their luminance, the upper 8 of 16 bits (TUM-VI). Empty if the file is no
+/// image or damaged. Throws InputError if the file cannot be read.
 cv::Mat read_gray_image(const SourcePath& file);
 
 /// One line of a list of images.

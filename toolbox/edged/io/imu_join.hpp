@@ -12,8 +12,8 @@
 
 namespace edged {
 
-/// At the stamps of the gyro, the accelerometer interpolated linearly between its samples. Gyro samples without such a
-/// sample on both sides, or in a gap between two, are left out. Each comes in time order.
+/// A sample has the stamp of the gyro, with the accelerometer interpolated linearly. Gyro samples without an
+/// accelerometer sample on both sides, or within a gap of these, are left out. Each stream must be in time order.
 class ImuJoin {
  public:
   /// Returns the samples that are complete now.
@@ -24,8 +24,8 @@ class ImuJoin {
   using Reading = std::pair<Timestamp, Eigen::Vector3d>;
   std::vector<ImuSample> complete();
 
-  std::deque<Reading> gyro_;   ///< that wait for the accelerometer
-  std::deque<Reading> accel_;  ///< the last before the first of those, and what follows
+  std::deque<Reading> gyro_;   ///< samples that wait for the accelerometer
+  std::deque<Reading> accel_;  ///< the last sample before the first of gyro_, and all later ones
 };
 
 }  // namespace edged

@@ -35,7 +35,7 @@ std::optional<std::size_t> imu_role(const ColumnName& column) {
     if (!axis && ends_with_axis && (word.size() == 1 || stem != ImuKind::None))
       axis = static_cast<std::size_t>(last - 'x');
   }
-  const bool velocity = has_word(column, {"vel", "velocity"});  // "lin_vel_x" is none of the accelerometer
+  const bool velocity = has_word(column, {"vel", "velocity"});  // "lin_vel_x" is not of the accelerometer
   if (!axis || kind == ImuKind::None || (kind == ImuKind::Accel && velocity)) return std::nullopt;
   return (kind == ImuKind::Gyro ? 1 : 4) + *axis;
 }
@@ -47,7 +47,7 @@ const ColumnRoles& imu_roles() {
   return roles;
 }
 
-/// By brackets or a last word such as `dps`; nothing where the name does not say.
+/// The factor to SI units, by brackets or a last word such as `dps`. Nothing if the name has no unit.
 std::optional<double> imu_scale_of(const ColumnName& column, ImuKind kind) {
   const std::string last = column.words.size() > 1 ? column.words.back() : "";
   for (const std::string& unit : {column.unit, last}) {
@@ -55,8 +55,8 @@ std::optional<double> imu_scale_of(const ColumnName& column, ImuKind kind) {
     if (kind == ImuKind::Gyro && (unit.starts_with("deg") || unit == "dps" || unit.starts_with("\xc2\xb0")))
       return kDegree;
     if (kind == ImuKind::Gyro && unit.starts_with("rad")) return 1.0;
-    if (kind == ImuKind::Accel && unit == "mg") return 1e-3 * kStandardGravity_mps2;
-    if (kind == ImuKind::Accel && (unit == "g" || unit == "g0")) return kStandardGravity_mps2;
+    if (kind == ImuKind::Accel && unit == "mg") return 1e-3 * kStandardGravity;
+    if (kind == ImuKind::Accel && (unit == "g" || unit == "g0")) return kStandardGravity;
     if (kind == ImuKind::Accel && (unit.starts_with("m/s") || unit.starts_with("ms^") || unit.starts_with("ms-") ||
                                    is_one_of(unit, {"mps2", "ms2"})))
       return 1.0;

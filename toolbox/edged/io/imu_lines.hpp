@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the numbers of an IMU sample stand in a line, by the heading of the file or as its data set documents it.
+// The columns of IMU samples in a text file, by its heading or by the documentation of its data set.
 #pragma once
 
 #include <array>
@@ -14,39 +14,38 @@
 
 namespace edged {
 
-inline constexpr double kStandardGravity_mps2 = 9.80665;
-
-/// Where the numbers of an IMU file stand and what they are.
+/// The columns and units of an IMU file.
 struct ImuTextForm {
   std::size_t t = 0;
   std::array<std::size_t, 3> gyro{}, accel{};
   TimeUnit unit = TimeUnit::Seconds;
   double gyro_scale = 1.0;   ///< to rad/s
   double accel_scale = 1.0;  ///< to m/s^2
-  bool named = false;        ///< the columns, by the first line; else gravity tells which they are
-  bool guessed = false;      ///< something of all this is not named, but found from the content
-  std::string said;          ///< for the user: columns, units, and what of it is a guess
+  bool named = false;        ///< the first line names the columns; else gravity identifies them
+  bool guessed = false;      ///< a column or unit is not named, but found from the content
+  std::string said;          ///< for the user: columns, units, and which of them are guessed
 };
 
-/// `t gx gy gz ax ay az`, as most data sets have it.
+/// `t gx gy gz ax ay az`, the order of most data sets.
 ImuTextForm gyro_first(TimeUnit unit);
-/// `t ax ay az gx gy gz`, as the Event-Camera Dataset has it.
+/// `t ax ay az gx gy gz`, the order of the Event-Camera Dataset.
 ImuTextForm accel_first(TimeUnit unit);
 
-/// The columns that the heading names, and the units as far as it names them.
+/// The columns of a heading, and the units that it names.
 struct NamedImu {
   ImuTextForm form;
   std::optional<TimeUnit> unit;
   std::optional<double> gyro_scale, accel_scale;
 };
 
-/// Nothing where the file has no heading. Throws InputError where it does not name each column once.
+/// Nothing for a file without a heading. Throws InputError if the heading does not name each column once.
 std::optional<NamedImu> named_imu(const SourcePath& file);
 
 /// exact: lines have no further columns.
 StampedLines<ImuSample>::Spec imu_lines(const SourcePath& file, const ImuTextForm& form, bool exact = false);
 
-/// Of a file of a data set: by its heading, with the documented units where that names none; else as documented.
+/// For a file of a data set: the columns of its heading, with the documented units if it names none. Without a heading,
+/// the documented columns.
 StampedLines<ImuSample>::Spec documented_imu_lines(const SourcePath& file, const ImuTextForm& documented,
                                                    bool exact = false);
 

@@ -12,8 +12,8 @@
 
 namespace edged {
 
-/// The stamps of the IMU are brought back to the other sensors' clock: t_first + (t - t_first) / rate. As the recording
-/// is in the order of its wrong stamps, it is read twice at a time: once for the IMU, once for all else.
+/// Corrects the stamps of the IMU to the clock of the other sensors: t_first + (t - t_first) / rate. The recording is
+/// in the order of the wrong stamps, so it is read by two readers at the same time: one for the IMU, one for all else.
 class ImuOnOtherClock final : public Dataset {
  public:
   /// for_imu: the same recording as `others`, opened once more.

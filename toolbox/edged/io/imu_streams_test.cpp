@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// IMU samples that are brought together, or brought to another clock.
+// IMU samples that are merged from two streams, or corrected to another clock.
 #include <gtest/gtest.h>
 
 #include "edged/core/measurement_stamps.hpp"
@@ -19,7 +19,7 @@ TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
   const auto take = [&](const std::vector<ImuSample>& more) {
     samples.insert(samples.end(), more.begin(), more.end());
   };
-  for (int i = 0; i < 20; ++i) take(join.add_gyro(in_ms(5 * i), {1.0 * i, 0, 0}));  // that one comes late
+  for (int i = 0; i < 20; ++i) take(join.add_gyro(in_ms(5 * i), {1.0 * i, 0, 0}));  // the gyro arrives late
   for (const double t : {12.0, 28.0, 44.0, 60.0, 300.0, 310.0}) take(join.add_accel(in_ms(t), {0, t, 9.81}));
   take(join.add_gyro(in_ms(305), {7, 0, 0}));
   ASSERT_EQ(samples.size(), 11u) << "from 15 to 60 ms, nothing in the gap, and the last";
@@ -30,7 +30,7 @@ TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
   EXPECT_NEAR(samples[10].accel_B.y(), 305.0, 1e-9);
 }
 
-/// Events all the time, a sample of the IMU every 10 ms, whose clock is twice as fast.
+/// Continuous events, and an IMU sample every 10 ms, with a clock that is twice as fast.
 std::unique_ptr<Dataset> twice_as_fast() {
   auto dataset = std::make_unique<ListedDataset>();
   for (int i = 0; i < 10; ++i) {

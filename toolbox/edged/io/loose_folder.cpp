@@ -20,7 +20,7 @@ namespace {
 
 std::vector<std::string> files_in(const SourcePath& folder) {
   std::vector<std::string> files = folder.names();
-  const std::set<std::string> external = external_file_names();  // four numbers a line look like an event
+  const std::set<std::string> external = external_file_names();  // four numbers a line could be an event
   std::erase_if(files, [&](const std::string& name) { return external.contains(name) || !(folder / name).is_file(); });
   return files;
 }
@@ -42,7 +42,7 @@ std::optional<std::string> only_one(const SourcePath& folder, const std::vector<
   return names.empty() ? std::nullopt : std::optional(names.front());
 }
 
-/// Whether its heading names the axes of an IMU, or its name says that it is one and its content agrees.
+/// True if the heading names the axes of an IMU, or if the file name does and the content fits.
 bool holds_imu(const SourcePath& file) try {
   return find_imu_form(file).named || lower_case(file.name()).find("imu") != std::string::npos;
 } catch (const InputError&) {
@@ -61,7 +61,7 @@ std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recog
       binary.push_back(name);
   }
   if (const auto path = folder.disk_path(); path && binary.size() > 1)
-    for (const std::string& first : binary)  // the parts of one bag are one recording
+    for (const std::string& first : binary)  // the parts of a bag are one recording
       if (split_bag_parts(*path / first).size() == binary.size()) return first;
   if (!binary.empty()) return only_one(folder, binary);
   std::erase_if(text, [&folder](const std::string& name) { return !find_event_form(folder / name); });

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Folders that people put together themselves: one file is the recording, others lie beside it. Internal to io.
+// Folders of no known layout: one file is the recording, others may accompany it. Internal to io.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace edged {
 
-/// The name of the one file of the folder that is a recording by its content: one that `recognizes` takes by its first
-/// bytes, else a plain event file. Throws InputError where there are several.
+/// The name of the only file of the folder that is a recording: one whose first bytes `recognizes` accepts, else a
+/// plain event file. Throws InputError for several.
 std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recognizes)(ByteSpan head));
 
-/// The one text file of the folder, but for those named, that holds IMU samples by its heading or its name. Where there
-/// are several, says so and takes none.
+/// The only text file of the folder, without those named, that holds IMU samples by its heading or its name. Of
+/// several, none is chosen, with a warning.
 std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::set<std::string>& others);
 
-/// Says which of the folder's folders, and of its files with data, pictures or a calibration, are not read.
+/// Logs the subfolders, and the files with data, pictures or a calibration, that are not read.
 void tell_unread(const SourcePath& folder, const std::set<std::string>& read);
 
 }  // namespace edged

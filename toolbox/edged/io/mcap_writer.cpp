@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The records of an MCAP file, with a summary that tells what is where.
+// The records of an MCAP file, with a summary as index.
 #include "edged/io/mcap_writer.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, std::string_view profi
 std::size_t McapWriter::add_topic(const McapTopic& topic) {
   const auto id = static_cast<std::uint16_t>(channels_.size());
   std::string schema, channel;
-  append_number<std::uint16_t>(schema, id + 1);  // zero means that there is none
+  append_number<std::uint16_t>(schema, id + 1);  // zero: no schema
   put_text(schema, topic.type);
   put_text(schema, topic.type_encoding);
   put_text(schema, topic.type_text);
@@ -119,7 +119,7 @@ McapWriter::ChunkInfo McapWriter::write_chunk() {
   append_number(content, info.begin);
   append_number(content, info.end);
   append_number(content, info.unpacked);
-  append_number<std::uint32_t>(content, 0);  // checksum: not told, the compression has its own
+  append_number<std::uint32_t>(content, 0);  // no checksum, as the compression has one
   put_text(content, options_.compression);
   append_number(content, info.packed);
   content += packed;
@@ -170,7 +170,7 @@ std::string McapWriter::chunk_index(const ChunkInfo& chunk) const {
 void McapWriter::finish() {
   close_chunk();
   std::string data_end;
-  append_number<std::uint32_t>(data_end, 0);  // checksum: not told
+  append_number<std::uint32_t>(data_end, 0);  // no checksum
   file_.write(mcap_record(kMcapDataEnd, data_end));
   const std::uint64_t summary = file_.size();
   for (const Channel& channel : channels_) file_.write(channel.schema);
@@ -180,8 +180,8 @@ void McapWriter::finish() {
   for (const std::string& record : metadata_index_) file_.write(record);
   std::string footer;
   append_number(footer, summary);
-  append_number<std::uint64_t>(footer, 0);  // no list of the summary's parts
-  append_number<std::uint32_t>(footer, 0);  // checksum: not told
+  append_number<std::uint64_t>(footer, 0);  // no list of the parts of the summary
+  append_number<std::uint32_t>(footer, 0);  // no checksum
   file_.write(mcap_record(kMcapFooter, footer));
   file_.write(kMcapMagic);
   file_.flush();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes MCAP files, whatever their messages are.
+// Writes MCAP files with messages of any type.
 #pragma once
 
 #include <cstdint>
@@ -16,33 +16,34 @@
 
 namespace edged {
 
-/// What the messages of a topic are.
+/// The type of the messages of a topic.
 struct McapTopic {
   std::string_view name, encoding;                  ///< "/tf", "json"
   std::string_view type, type_encoding, type_text;  ///< "foxglove.FrameTransform", "jsonschema", the schema
 };
 
-/// Holds one chunk and the index in memory; chunks are compressed by "", "lz4" or "zstd". What has been written of a
-/// file that is never finished can be read. All throw InputError when the file cannot be written.
+/// Holds one chunk and the index in memory; chunks are compressed by "", "lz4" or "zstd". An unfinished
+/// file is readable as far as it was written. All members throw InputError if the file cannot be written.
 class McapWriter {
  public:
   /// profile: "ros2", or "" for none.
   McapWriter(const std::filesystem::path& file, std::string_view profile, const ChunkOptions& options = {"zstd"});
 
-  /// Number of a new topic, by which write() knows it.
+  /// Adds a topic and returns its number, for write().
   std::size_t add_topic(const McapTopic& topic);
-  /// t: when it was recorded and published; one before zero becomes zero.
+  /// t: the time of recording and of publication. Negative times become zero.
   void write(std::size_t topic, Timestamp t, std::string_view message);
   void write_metadata(std::string_view name, const std::map<std::string, std::string>& values);
-  /// Before and after messages of another time than their neighbours: readers find them by the times of their chunk.
+  /// Call before and after messages whose times differ from their neighbours: readers find messages by the times of
+  /// their chunk.
   void close_chunk();
-  /// Completes the file with its index; nothing may be written any more.
+  /// Completes the file with its index. Nothing may be written afterwards.
   void finish();
 
  private:
   struct Channel {
     std::string schema, channel;  ///< records
-    bool written = false;         ///< they are in a chunk
+    bool written = false;         ///< the records are in a chunk
     std::uint64_t messages = 0;
   };
   struct IndexEntry {

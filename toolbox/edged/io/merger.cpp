@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The order of measurements and how long they are held back for it.
+// Sorts measurements, and limits how long they are held.
 #include "edged/io/merger.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kPatience = std::chrono::seconds(1);       // a stream silent for so long is not waited for
+constexpr Duration kPatience = std::chrono::seconds(1);       // a stream that is silent for longer is not waited for
 constexpr Duration kDisorder = std::chrono::milliseconds(1);  // within one stream
 constexpr std::size_t kMostInBatch = 65536;
 
@@ -44,7 +44,7 @@ void ArrivalQueue<T>::push(std::span<const T> items) {
   }
 }
 
-/// How many of the first items follow one another and what came before.
+/// The number of leading items that are in order, also relative to the newest item before.
 template <typename T>
 std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items) const {
   if (!stamps_repeat_) return 0;
@@ -122,7 +122,7 @@ void Merger::leave_out(Modality unwanted) {
     frames_.clear();
     frame_pace_ = {};
   }
-  // Its clock may have been ahead of the others'.
+  // Its clock may have been ahead of the other clocks.
   begin_ = newest_ = std::max({event_pace_.last, frame_pace_.last, imu_pace_.last});
 }
 
@@ -158,7 +158,7 @@ void Merger::finish() {
   finished_ = true;
 }
 
-/// Whatever comes from now on is not expected before this stamp.
+/// No later input is expected to have an earlier stamp.
 Timestamp Merger::horizon() const {
   if (finished_) return Timestamp::max();
   if (!newest_) return Timestamp::min();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Measurements of several streams, as they come from a file, put into the order that Dataset promises.
+// Merges measurements of several streams of a file into the order that Dataset guarantees.
 #pragma once
 
 #include <deque>
@@ -18,35 +18,36 @@
 
 namespace edged {
 
-/// A batch of events spans no more.
+/// The longest time that a batch of events spans.
 inline constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 
-/// The items of one stream, T with a `time_of`, sorted although they may come a little out of order. Stamps
-/// far ahead pass an AheadGate first.
+/// The items of one stream, T with a `time_of`, sorted by their stamps. They may arrive slightly out of order. An
+/// AheadGate checks for stamps far ahead.
 template <typename T>
 class ArrivalQueue {
  public:
-  /// subject: begins the kinds of repairs. max_held: more than this are not held back, whatever the other streams do.
+  /// subject: the prefix of the kinds of repairs. max_held: the largest number of held items, also if other streams
+  /// lag.
   ArrivalQueue(std::string subject, bool stamps_repeat, std::size_t max_held, Repairs& repairs)
       : subject_(std::move(subject)), stamps_repeat_(stamps_repeat), max_held_(max_held), repairs_(repairs) {}
 
   void push(T item);
-  /// Many; those that simply follow each other go in at once.
+  /// Many items. Those in order are added at once.
   void push(std::span<const T> items);
-  /// Nothing more will come.
+  /// The end of the stream.
   void finish();
-  /// What is held is not wanted.
+  /// Discards the held items.
   void clear() { sorted_.clear(); }
 
   const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
   Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : time_of(sorted_.front()); }
   T pop();
-  /// Those before `end`, at most so many.
+  /// The items before `end`, at most `most` of them.
   std::vector<T> pop_before(Timestamp end, std::size_t most);
 
   /// Stamp of the last arrival.
   std::optional<Timestamp> last() const { return last_; }
-  /// What is before this has to leave, as too much is held.
+  /// Items before this stamp must be popped, because too many are held.
   Timestamp overflow() const {
     return sorted_.size() <= max_held_ ? Timestamp::min() : time_of(sorted_[sorted_.size() - max_held_]) + Duration(1);
   }
@@ -63,14 +64,13 @@ class ArrivalQueue {
   std::deque<T> sorted_;
   AheadGate<T> gate_;
   std::optional<Timestamp> last_;
-  Timestamp handed_out_ = Timestamp::min();  ///< what is before comes too late
+  Timestamp handed_out_ = Timestamp::min();  ///< items before this stamp are too late
 };
 
-/// Push what the file gives, pop what is ready: `while (!(m = merger.pop()) && more) push(...)`. Holds back what an
-/// expected stream may still precede, but no more than a few million events, and waits no longer than a second of
-/// recording for a stream that is silent. A stream that is farther behind the others, by another clock for instance,
-/// comes late, but whole: within it, order holds always. Its items that are out of order are sorted in, or left out
-/// where what follows them has been handed out; both are counted.
+/// Use: `while (!(m = merger.pop()) && more) push(...)`. Holds measurements that an expected stream may still precede,
+/// but at most a few million events, and waits at most one second of recording for a silent stream. A stream that lags
+/// more, for instance by another clock, is returned late, but completely. Each stream is always in order: its items out
+/// of order are sorted in, or left out if later items have been returned. Both are counted.
 class Merger {
  public:
   struct Streams {
@@ -80,25 +80,25 @@ class Merger {
 
   explicit Merger(Repairs& repairs);
 
-  /// Streams to wait for; before any push.
+  /// Sets the streams to wait for. Before any push().
   void expect(const Streams& streams);
 
-  /// What has come of that stream is forgotten, and it is not waited for; none of it may be pushed any more.
+  /// Discards the held items of that stream and does not wait for it. It must not be pushed any more.
   void leave_out(Modality unwanted);
 
   void push(std::span<const Event> events);
   void push(Frame frame);
   void push(const ImuSample& sample);
-  /// Is never waited for: it comes in its place where it is not later in the file than what follows it.
+  /// Never waited for. It is in order unless later measurements precede it in the file.
   void push(const ExternalSample& sample);
-  /// The file has ended: all that is held gets ready.
+  /// The end of the file: all held measurements become ready.
   void finish();
 
-  /// The next measurement, or nothing: push more, or after finish() the end.
+  /// The next measurement. Nothing if more has to be pushed, or at the end after finish().
   std::optional<Measurement> pop();
 
  private:
-  /// How far a stream has come, and where the newest of all was when it last delivered.
+  /// The last stamp of a stream, and the newest stamp of all streams when it last delivered.
   struct Pace {
     bool expected = false;
     std::optional<Timestamp> last, heard;

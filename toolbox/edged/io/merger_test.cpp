@@ -19,7 +19,7 @@ std::vector<Event> events_at(std::initializer_list<double> stamps) {
   return events;
 }
 
-/// "I1 E2,3 F4": what can be popped, stamps in ms.
+/// The measurements that can be popped, with stamps in ms: "I1 E2,3 F4".
 std::string popped(Merger& merger) {
   std::string text;
   const auto add = [&](const char* kind, Timestamp t) { text += fmt::format("{}{}", kind, to_ns(t) / 1'000'000); };
@@ -44,7 +44,7 @@ TEST(Merger, SortsStreamsThatArriveAtDifferentDelaysAndBreaksTiesAsDatasetSays) 
   merger.push(events_at({0, 1, 2, 3, 4}));
   merger.push(Frame{at_ms(2), "frames", {}});
   merger.push(Frame{at_ms(4), "frames", {}});
-  EXPECT_EQ(popped(merger), "I0 E0,1 I2 E2 F2");  // up to a millisecond before the stream that is last
+  EXPECT_EQ(popped(merger), "I0 E0,1 I2 E2 F2");  // up to a millisecond before the stream that lags
   merger.finish();
   EXPECT_EQ(popped(merger), "E3 I4 E4 F4");
   EXPECT_TRUE(repairs.counts().empty());

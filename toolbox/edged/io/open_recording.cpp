@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which format a folder or a file is: a table of formats for each.
+// Detects the format of a folder or a file, by a table of formats for each.
 #include "edged/io/open_recording.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -39,15 +39,15 @@ namespace {
 Recording open_file(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
-/// Files in a format that their first bytes tell.
+/// A format of files that their first bytes identify.
 struct FileFormat {
-  std::string_view name;  ///< for the refusal
+  std::string_view name;  ///< for the error message
   bool (*recognizes)(ByteSpan head) = nullptr;
   Recording (*open)(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) = nullptr;
-  bool alone = false;  ///< a folder with one file of it is a recording, whatever lies beside it
+  bool alone = false;  ///< a folder with one such file is a recording, regardless of other files
 };
 
-/// In the order in which they are tried. Text has no such bytes and comes after all of them.
+/// In the order of the checks. Text has no such bytes and is checked last.
 constexpr std::array kFileFormats = {
     FileFormat{.name = "ROS bag", .recognizes = is_bag, .open = open_bag, .alone = true},
     FileFormat{.name = "Prophesee RAW or DAT", .recognizes = is_prophesee_file, .open = open_prophesee, .alone = true},
@@ -61,14 +61,15 @@ bool is_alone_format(ByteSpan head) {
   return std::ranges::any_of(kFileFormats, [head](const FileFormat& f) { return f.alone && f.recognizes(head); });
 }
 
-/// On disk any, within an archive plain events only: other formats are read from more than one place at once.
+/// Any format on disk, but within an archive plain events only: the other formats need random access.
 Recording open_main_file(const SourcePath& file, const Rig* rig, const RecordingOptions& options) {
   if (const auto path = file.disk_path()) return open_file(*path, rig, options);
   if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
   throw InputError::format("{}: only csv and txt are read within an archive: unpack it", file.string());
 }
 
-/// The folder's one file, with an IMU in another and a calibration of ours, where it has these. Says what is not read.
+/// The only recording of the folder, with the IMU file and the calibration.yaml of the folder, if any. Logs what is not
+/// read.
 Recording open_loose_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
                             const RecordingOptions& options) {
   std::set<std::string> read = {file, "calibration.yaml"};
@@ -99,7 +100,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   return recording;
 }
 
-/// The folder of the first image of the list, or the images that lie beside the list.
+/// The folder of the first image, or the names of the images if these are in the folder of the list.
 std::set<std::string> images_of(const SourcePath& folder) {
   const std::filesystem::path path = std::filesystem::path(first_ecd_image(folder).value_or("")).lexically_normal();
   if (path.has_parent_path()) return {path.begin()->string()};
@@ -116,7 +117,7 @@ std::optional<Recording> try_bag_folder(const SourcePath& folder, const Rig* rig
 
 std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
   if (!is_ecd_folder(folder)) return std::nullopt;
-  // An imu.txt alone does not make the folder one of the Event-Camera Dataset where another file has the events.
+  // An imu.txt alone does not identify the Event-Camera Dataset if another file has the events.
   const bool imu_alone = !(folder / "events.txt").is_file() && !find_ecd_image_list(folder);
   if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
     return open_loose_folder(folder, *file, rig, options);
@@ -145,7 +146,7 @@ std::optional<Recording> try_hdf5_folder(const SourcePath& folder, const Rig* ri
   if (!file) return std::nullopt;
   Recording recording = open_hdf5(*file, rig, options);
   const DatasetInfo& info = recording.dataset->info();
-  const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == *path;  // of no set with side files
+  const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == *path;  // no data set with side files
   return bare ? open_loose_folder(folder, file->filename().string(), rig, options) : std::move(recording);
 }
 
@@ -154,14 +155,14 @@ std::optional<Recording> try_loose_folder(const SourcePath& folder, const Rig* r
   return file ? std::optional(open_loose_folder(folder, *file, rig, options)) : std::nullopt;
 }
 
-/// Folders whose files have names of their own.
+/// A format of folders that file names identify.
 struct FolderFormat {
-  std::string_view files;  ///< with the set they are of, for the refusal
-  /// Nothing where the folder is none of the format, or lies in an archive and the format is read on disk only.
+  std::string_view files;  ///< with their data set, for the error message
+  /// Nothing if the folder is not of the format, or if it is in an archive and the format is read on disk only.
   std::optional<Recording> (*open)(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) = nullptr;
 };
 
-/// In the order in which they are tried. A folder of any other names comes after all of them.
+/// In the order of the checks. Folders with other file names are checked last.
 constexpr std::array kFolderFormats = {
     FolderFormat{.files = ".db3 or .mcap files (ROS 2)", .open = try_bag_folder},
     FolderFormat{.files = "events.txt, images.txt or imu.txt (Event-Camera Dataset, UZH-FPV)", .open = try_ecd},
@@ -175,7 +176,7 @@ std::optional<Recording> try_named_folder(const SourcePath& folder, const Rig* r
   return std::nullopt;
 }
 
-/// The archive is the folder of the recording, or holds it.
+/// The archive is the folder of the recording, or contains it.
 Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const SourcePath top = SourcePath::in_archive(file);
   for (const auto attempt : {try_named_folder, try_loose_folder}) {

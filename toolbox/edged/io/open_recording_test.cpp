@@ -63,7 +63,7 @@ TEST(Recording, EcdFolderGivesAllSensorsInOrder) {
   EXPECT_EQ(c.imu[7].accel_B, Eigen::Vector3d(7, 2, 9.81));
   EXPECT_EQ(c.imu[7].gyro_B, Eigen::Vector3d(0.1, 0.2, 0.3));
   for (std::size_t i = 1; i < c.all.size(); ++i) EXPECT_LE(stamp_of(c.all[i - 1]), stamp_of(c.all[i]));
-  // At 0 all three tie: IMU, the event of that very stamp, the frame.
+  // Equal stamps at 0: IMU, event, frame.
   EXPECT_TRUE(std::holds_alternative<ImuSample>(c.all[0]));
   ASSERT_TRUE(std::holds_alternative<EventBatch>(c.all[1]));
   EXPECT_EQ(std::get<EventBatch>(c.all[1]).events.size(), 1u);
@@ -212,7 +212,7 @@ TEST(Recording, AFolderWithOneRecordingAndAnImuInACsvIsBoth) {
   EXPECT_EQ(named.dataset->info().format, "csv");
   EXPECT_TRUE(named.dataset->info().has_imu);
 
-  // Packed text is the same; where it is cut, what came before is read.
+  // Packed text gives the same recording. If it is cut, the text before the cut is read.
   std::filesystem::remove(loose / "flight.csv");
   const std::string packed = gzipped(folder, events);
   folder.write("loose/flight.csv.gz", packed);

@@ -30,8 +30,8 @@ std::optional<std::size_t> pose_role(const ColumnName& name) {
   return place ? std::optional<std::size_t>(1 + *axis) : std::nullopt;
 }
 
-/// OpenVINS names whole vectors: `# timestamp(s) q p v bg ba ...`. Its quaternion is that of JPL from the world to the
-/// IMU, whose numbers x y z w are Hamilton's from the IMU to the world.
+/// OpenVINS names whole vectors: `# timestamp(s) q p v bg ba ...`. Its quaternion is a JPL one from world to IMU. Its
+/// numbers x y z w equal those of the Hamilton quaternion from IMU to world.
 std::optional<PoseColumns> openvins_columns(const std::vector<ColumnName>& names) {
   const auto is = [&names](std::size_t i, std::string_view word) {
     return names[i].words.size() == 1 && names[i].words[0] == word;
@@ -50,7 +50,7 @@ std::string said_of(const PoseColumns& c, const std::string& source) {
                      source);
 }
 
-/// The first poses of a file: stamps as they are written, and the four numbers behind the position.
+/// The first poses of a file: stamps in their unit, and the four numbers after the position.
 struct PoseSample {
   std::size_t columns = 0, line = 0;
   bool commas = false;
@@ -80,7 +80,7 @@ PoseSample read_pose_sample(const SourcePath& file, std::size_t t) {
   return sample;
 }
 
-/// Since 1970 by the number of digits, else by the distance of the poses: 0.2 ms to 2 s.
+/// The unit of stamps since 1970 by the number of digits, else by the interval between poses: 0.2 ms to 2 s.
 TimeUnit unit_of_stamps(const PoseSample& sample, std::string& doubt) {
   const double size = std::abs(sample.stamps.front());
   if (size >= 1e17) return TimeUnit::Nanoseconds;
@@ -107,7 +107,8 @@ TimeUnit unit_of_stamps(const PoseSample& sample, std::string& doubt) {
   return fitting.front();
 }
 
-/// Most trajectories begin at rest with small angles, or say so by a scalar that is never negative.
+/// The order of the quaternion. Most trajectories begin at rest with small angles, or have a scalar that is never
+/// negative.
 std::string doubt_of_scalar(const std::vector<std::array<double, 4>>& turns, bool scalar_first) {
   if (turns.empty()) return "";
   constexpr double kNearOne = 0.995;

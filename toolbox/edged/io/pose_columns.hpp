@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the numbers of a pose stand in a line of a trajectory, by its heading or by the conventions of who writes it.
+// The columns of poses in a trajectory file, by its heading or by the conventions of programs.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace edged {
 
-/// One line is one pose: stamp, position [m], unit quaternion.
+/// The columns of a line, which is one pose: stamp, position [m], unit quaternion.
 struct PoseColumns {
   std::size_t t = 0;
   std::array<std::size_t, 3> p = {1, 2, 3};
@@ -20,8 +20,8 @@ struct PoseColumns {
   TimeUnit unit = TimeUnit::Seconds;
   bool named = false;      ///< by a heading
   bool exact = false;      ///< lines have no further columns
-  std::string said = {};   ///< for the user: the order, and where it comes from
-  std::string doubt = {};  ///< what speaks against it; "" where nothing does
+  std::string said = {};   ///< for the user: the order, and how it was found
+  std::string doubt = {};  ///< what contradicts the order; "" for nothing
 };
 
 /// `t tx ty tz qx qy qz qw` of the TUM RGB-D benchmark.
@@ -29,16 +29,16 @@ PoseColumns tum_columns(TimeUnit unit);
 /// `t px py pz qw qx qy qz ...` of EuRoC.
 PoseColumns euroc_columns();
 
-/// The columns that the heading names; nothing where the file has none. `unit`: where the heading names none. Throws
-/// InputError where it does not name each column once.
+/// The columns of the heading. Nothing for a file without a heading. `unit`: of the stamps, unless the heading names
+/// it. Throws InputError if the heading does not name each column once.
 std::optional<PoseColumns> named_pose_columns(const SourcePath& file, std::optional<TimeUnit> unit);
 
-/// By the heading, else by the conventions: behind commas and stamps in nanoseconds the scalar comes first (EuRoC,
-/// VINS), behind blanks last (TUM, ORB-SLAM3). The unit of the stamps, where no name tells it, is the one in which they
-/// are of today or a sensor's distance apart. Throws InputError where the file holds no poses.
+/// The columns of the heading, else those of the conventions: with commas and stamps in nanoseconds the scalar is first
+/// (EuRoC, VINS), with blanks it is last (TUM, ORB-SLAM3). An unnamed unit of the stamps is the one that gives a
+/// present date or the interval of a sensor. Throws InputError if the file holds no poses.
 PoseColumns find_pose_columns(const SourcePath& file);
 
-/// The other of the two orders of the quaternion.
+/// The columns with the other order of the quaternion.
 PoseColumns with_other_scalar(const PoseColumns& columns);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the writer of a format takes.
+// The interface of the writers of all formats.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Takes a recording in the order of Dataset, the ground truth first. What a format cannot hold never comes to it.
+/// Writes a recording in the order of Dataset, the ground truth first. It is not given what its format cannot hold.
 class RecordingWriter {
  public:
   virtual ~RecordingWriter() = default;
@@ -22,20 +22,20 @@ class RecordingWriter {
   virtual void write(const ImuSample& /*sample*/) {}
   virtual void write(const ExternalSample& /*sample*/) {}
   virtual void write(const GroundTruth& /*truth*/) {}
-  /// Completes the files. Throws InputError where they cannot be written, as all members do.
+  /// Completes the files. All members throw InputError if the files cannot be written.
   virtual void finish() = 0;
 };
 
-/// What a writer may want to know beforehand.
+/// The input of a writer before the first measurement.
 struct WriterSetup {
-  std::filesystem::path path;              ///< folder or file to make
-  DatasetInfo info;                        ///< of what is written
-  std::optional<Calibration> calibration;  ///< where the recording has one, or the user
+  std::filesystem::path path;              ///< folder or file to create
+  DatasetInfo info;                        ///< of the recording
+  std::optional<Calibration> calibration;  ///< from the recording or the user, if any
 
-  /// Size of the event sensor [px]; throws InputError where nothing tells it.
+  /// Size of the event sensor [px]. Throws InputError if it is unknown.
   cv::Size event_sensor() const;
 
-  /// What the readers of formats that call their cameras "events" and "frames" will call this one, or "body".
+  /// The name of this frame for readers that name their cameras "events" and "frames"; else "body".
   std::string name_when_read(const std::string& frame) const;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Counting of damage.
+// Counts damage.
 #include "edged/io/repairs.hpp"
 
 #include <spdlog/fmt/fmt.h>

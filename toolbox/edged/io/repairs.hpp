@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What was wrong with a recording and passed over, counted; and the point beyond which it is refused.
+// Counts errors of a recording that are repaired or skipped, and the limit beyond which the recording is refused.
 #pragma once
 
 #include <cstddef>
@@ -23,14 +23,14 @@ class Repairs {
 /// of the lines read so far.
 class LineDamage {
  public:
-  /// subject: begins each kind, e.g. "events".
+  /// subject: the prefix of each kind, such as "events".
   LineDamage(std::string file, std::string subject, Repairs& repairs)
       : file_(std::move(file)), subject_(std::move(subject)), repairs_(repairs) {}
 
-  /// A line that is left out because it is wrong.
+  /// A wrong line, which is left out.
   void bad(std::size_t line, const std::string& kind, const std::string& detail);
 
-  /// A line that is mended or harmless: counted only.
+  /// A repaired or harmless line, which is only counted.
   void mended(std::size_t line, const std::string& kind, const std::string& detail);
 
  private:

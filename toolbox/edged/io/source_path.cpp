@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Files on disk; those of an archive are passed on to it.
+// Opens files on disk, and files of archives by ZipArchive.
 #include "edged/io/source_path.hpp"
 
 #include <zlib.h>
@@ -56,7 +56,7 @@ class GzipSource final : public ByteSource {
   }
 
  private:
-  /// Whether the end is one that the file should have.
+  /// True if the file ends without an error.
   bool ended_well() const {
     int error = Z_OK;
     gzerror(file_.get(), &error);
@@ -113,7 +113,7 @@ std::string SourcePath::string() const {
 
 std::string SourcePath::name() const {
   if (archive_) return path_.empty() ? archive_->file().stem().string() : path_.filename().string();
-  return fs::absolute(path_ / ".").parent_path().filename().string();  // of ".", too
+  return fs::absolute(path_ / ".").parent_path().filename().string();  // also for "."
 }
 
 std::unique_ptr<ByteSource> SourcePath::open() const {
@@ -130,7 +130,7 @@ Bytes SourcePath::head(std::size_t most) const {
     while (const std::size_t got = source->read({reinterpret_cast<char*>(bytes.data()) + filled, most - filled}))
       filled += got;
   } catch (const Damage&) {
-    // What came before it is as good as a short file.
+    // The bytes before the damage are used as a short file.
   }
   bytes.resize(filled);
   return bytes;

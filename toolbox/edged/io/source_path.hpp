@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The files of a recording, wherever they lie: in a folder or in a zip archive, which is read in place; gzip
-// files as what they hold.
+// Paths of the files of a recording: in a folder or in a zip archive, which is read in place. Gzip files are read as
+// their content.
 #pragma once
 
 #include <concepts>
@@ -18,15 +18,15 @@ namespace edged {
 
 class ZipArchive;
 
-/// A file or a folder, on disk or within an archive. Behaves as a path does.
+/// A file or a folder, on disk or within an archive. Used like std::filesystem::path.
 class SourcePath {
  public:
-  /// On disk. Implicit, as every path on disk is the path of a source.
+  /// A path on disk. Implicit, as each path on disk is a SourcePath.
   template <typename Path>
   requires std::convertible_to<Path, std::filesystem::path> SourcePath(const Path& path)  // NOLINT
       : path_(path) {}
 
-  /// The folder that an archive is, packed. Throws InputError when it cannot be opened.
+  /// The root folder of an archive. Throws InputError if the archive cannot be opened.
   static SourcePath in_archive(const std::filesystem::path& zip);
 
   SourcePath operator/(const std::filesystem::path& below) const { return {path_ / below, archive_}; }
@@ -34,23 +34,23 @@ class SourcePath {
 
   /// Nothing within an archive.
   std::optional<std::filesystem::path> disk_path() const { return archive_ ? std::nullopt : std::optional(path_); }
-  /// In an archive or a gzip file: it can be read from its begin only.
+  /// True in an archive or for a gzip file, which can only be read sequentially.
   bool is_packed() const;
   bool is_file() const;
   bool is_folder() const;
-  /// Names of what a folder holds, sorted.
+  /// Names of the entries of a folder, sorted.
   std::vector<std::string> names() const;
 
   /// For messages: "flight.zip/events.txt" within an archive.
   std::string string() const;
-  /// Its last name; of the top of an archive the archive's without ".zip".
+  /// The last component. For the root of an archive, the name of the archive without ".zip".
   std::string name() const;
 
   /// Throws InputError when it cannot be opened.
   std::unique_ptr<ByteSource> open() const;
-  /// So many bytes of its front, or all there are before its end or damage.
+  /// The first `most` bytes, or fewer before the end or damage.
   Bytes head(std::size_t most) const;
-  /// All of it. Throws as open and read do, and Damage beyond max_bytes.
+  /// The whole content. Throws as open() does, and Damage for a damaged file or one beyond max_bytes.
   Bytes read(std::size_t max_bytes) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Recordings packed as zip: the same as unpacked, damaged, refused.
+// Recordings in zip archives: equal to unpacked ones, damaged, refused.
 #include "edged/io/source_path.hpp"
 
 #include <gmock/gmock.h>
@@ -140,7 +140,7 @@ TEST(ZippedRecording, FlippedBitsAreMendedOrRefused) {
   std::mt19937 random(7);
   for (int i = 0; i < 400; ++i) {
     std::string damaged = whole;
-    // The list of files at the end in every third archive.
+    // In every third archive, damages the list of files at its end.
     const std::size_t at = i % 3 == 0 ? whole.size() - 1 - random() % 600 : random() % whole.size();
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto file = folder.write("a.zip", damaged);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Items with a stamp, one a line, in strictly rising time order whatever the file holds.
+// Reads items with stamps, one per line, and returns them in strictly increasing time order.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -20,7 +20,7 @@
 
 namespace edged {
 
-/// What a last line without line end means: numbers may have lost digits, a file name is checked anyway.
+/// How to treat a last line without line end: numbers may have lost digits, but a file name is checked anyway.
 enum class LastLine { MustEnd, MayLackEnd };
 
 /// T has a `time_of`. Unreadable and late lines and repeated stamps are left out and counted.
@@ -29,8 +29,8 @@ class StampedLines {
  public:
   struct Spec {
     SourcePath file;
-    std::string subject;  ///< "imu", "frames": begins the kinds of repairs
-    std::string layout;   ///< what a line should be, for messages
+    std::string subject;  ///< "imu", "frames": the prefix of the kinds of repairs
+    std::string layout;   ///< the expected form of a line, for messages
     LastLine last_line = LastLine::MustEnd;
     std::function<std::optional<T>(std::string_view)> parse;
   };
@@ -74,7 +74,7 @@ class StampedLines {
     next_ = std::exchange(held_, std::nullopt);
   }
 
-  /// Behind the gate.
+  /// The next item that the gate accepts.
   std::optional<T> next_passed() {
     const auto pass = [this](T item) { passed_.push_back(std::move(item)); };
     while (passed_.empty() && !ended_) {
@@ -118,7 +118,7 @@ class StampedLines {
   LineDamage damage_;
   std::size_t line_ = 0;
   bool damage_counted_ = false;
-  bool parsed_ = false;  ///< a line so far
+  bool parsed_ = false;  ///< at least one line was parsed
   bool ended_ = false;
   AheadGate<T> gate_;
   std::deque<T> passed_;

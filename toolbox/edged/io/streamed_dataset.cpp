@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bounds and order of what readers push.
+// Checks the bounds and restores the order of pushed measurements.
 #include "edged/io/streamed_dataset.hpp"
 
 #include <spdlog/fmt/fmt.h>

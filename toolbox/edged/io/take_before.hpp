@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Two streams in one order. Internal to io.
+// Merges two streams in time order. Internal to io.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace edged {
 
-/// What of the measurement held comes before t: all of it, the first events of a batch, or nothing.
+/// Takes the part of the held measurement before t: all of it, the first events of a batch, or nothing.
 inline std::optional<Measurement> take_before(std::optional<Measurement>& held, Timestamp t) {
   if (!held || *first_stamp(*held) >= t) return std::nullopt;
   auto* batch = std::get_if<EventBatch>(&*held);

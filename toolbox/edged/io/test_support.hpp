@@ -20,7 +20,7 @@
 
 namespace edged {
 
-/// A fresh folder that goes away with the object.
+/// A new temporary folder, which the destructor removes.
 class TempFolder {
  public:
   TempFolder() {
@@ -59,13 +59,13 @@ inline std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The real recordings; tests skip themselves where a folder of it is absent.
+/// The folder of real recordings. Tests are skipped if a recording is missing.
 inline std::filesystem::path data_folder() {
   if (const char* own = std::getenv("EDGED_DATA")) return own;
   return std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-/// Gives what it is told to.
+/// A data set with given measurements.
 class ListedDataset : public Dataset {
  public:
   const DatasetInfo& info() const override { return info_; }
@@ -112,7 +112,7 @@ inline ListedDataset random_dataset(Duration tick = Duration(1)) {
   return d;
 }
 
-/// All a data set gives, sorted by kind.
+/// All measurements of a data set, by kind.
 struct Contents {
   std::vector<Measurement> all;
   std::vector<Event> events;
@@ -136,7 +136,7 @@ inline bool operator==(const Event& a, const Event& b) {
   return a.t == b.t && a.x == b.x && a.y == b.y && a.positive == b.positive;
 }
 
-/// The message of the InputError that `action` throws, or "" when it throws none.
+/// The message of the InputError that `action` throws, or "" for none.
 template <typename Action>
 std::string input_error(Action&& action) {
   try {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Headings of text files.
+// Parses the headings of text files.
 #include "edged/io/text_columns.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -17,12 +17,12 @@ namespace {
 
 /// A line above the data.
 struct HeadingLine {
-  std::string text;  ///< without the marks of a comment
+  std::string text;  ///< without the comment marks
   std::size_t number = 0;
   bool comment = false;
 };
 
-/// What stands above the data, and how many fields a line of data has.
+/// The lines above the data, and the number of fields of a data line.
 struct FileHead {
   std::vector<HeadingLine> lines;
   std::size_t columns = 0;
@@ -34,7 +34,7 @@ std::size_t count_fields(std::string_view line) {
   return count;
 }
 
-/// A line of data begins or ends with a number: a list of images may have the stamps behind the names.
+/// A data line begins or ends with a number: in a list of images the stamps may follow the names.
 bool holds_data(std::string_view line) {
   const std::size_t last = line.find_last_of(" \t,;") + 1;
   return parse_number(FieldReader(line).next()) ||
@@ -62,7 +62,7 @@ FileHead read_head(const SourcePath& file) {
   return {};
 }
 
-/// What a line names.
+/// The columns that a line names.
 struct Naming {
   NamedColumns columns;
   std::vector<std::string_view> missing, repeated;
@@ -85,7 +85,7 @@ Naming names_in(const HeadingLine& line, const ColumnRoles& roles) {
       at[*role] = place;
     } else if (*role > 0) {
       naming.repeated.push_back(roles.roles[*role]);
-    } else if (has_word(name, {"header"})) {  // rostopic has the time of arrival first, then that of the message
+    } else if (has_word(name, {"header"})) {  // rostopic writes the time of arrival first, then that of the message
       at[0] = place;
     }
   }

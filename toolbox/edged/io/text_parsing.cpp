@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Blocks, lines, fields, numbers and stamps of text files.
+// Reads blocks, lines, fields, numbers and stamps of text files.
 #include "edged/io/text_parsing.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-/// The digits of a decimal number without leading zeros, its value being 0.DIGITS * 10^point.
+/// The digits of a decimal number without leading zeros. Its value is 0.DIGITS * 10^point.
 struct Decimal {
   std::string digits;
   long point = 0;
@@ -68,7 +68,7 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
 BlockReader::BlockReader(const SourcePath& file, std::size_t block_bytes)
     : name_(file.string()), source_(file.open()), buffer_(block_bytes + 1) {}
 
-/// As much as there is room for, or to the end; one byte is kept for a line end.
+/// Fills the buffer, or reads to the end of the file. One byte is reserved for a line end.
 void BlockReader::fill() try {
   while (!at_end_ && filled_ < buffer_.size() - 1) {
     const std::size_t got = source_->read({buffer_.data() + filled_, buffer_.size() - 1 - filled_});
@@ -187,7 +187,7 @@ const char* unit_name(TimeUnit unit) {
 std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
   const std::optional<Decimal> d = parse_decimal(field);
   if (!d) return std::nullopt;
-  const long whole = d->point + static_cast<long>(unit);  // digits of the number of nanoseconds
+  const long whole = d->point + static_cast<long>(unit);  // digits of the integer part in nanoseconds
   if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
   if (whole > 19) return std::nullopt;
   std::uint64_t ns = 0;
@@ -230,7 +230,7 @@ std::optional<Timestamp> last_stamp(const SourcePath& file,
   in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
 
   std::string_view rest = tail;
-  rest = rest.substr(0, rest.rfind('\n') + 1);  // a last line that was cut may show a wrong stamp
+  rest = rest.substr(0, rest.rfind('\n') + 1);  // a cut last line may have a wrong stamp
   while (!rest.empty()) {
     rest.remove_suffix(1);
     const std::size_t start = rest.rfind('\n') + 1;

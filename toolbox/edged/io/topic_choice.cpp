@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Types, ties and the messages about them.
+// Assigns roles by types, and reports ambiguous topics.
 #include "edged/io/topic_choice.hpp"
 
 #include <algorithm>
@@ -45,14 +45,14 @@ bool can_take(const std::string& type, Role role) {
 
 namespace {
 
-/// Without being asked for: a bag may hold several barometers, and twists that are commands.
+/// Roles that are assigned without --topic. A bag may hold several barometers, and twists that are commands.
 bool is_chosen_by_itself(Role role, std::size_t fitting) { return fitting == 1 && role != Role::Velocity; }
 
 std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < topics.size(); ++i)
     if (topics[i].count > 0 && role_of(topics[i].type) == role) found.push_back(i);
-  // The same images once more, compressed: the original is enough.
+  // Ignores compressed copies of the same images.
   std::erase_if(found, [&](std::size_t i) {
     return std::ranges::any_of(found, [&](std::size_t j) { return topics[i].name == topics[j].name + "/compressed"; });
   });
@@ -86,7 +86,7 @@ void check_role_names(const WantedTopics& wanted) {
   throw InputError::format("{}: no events, images or IMU among its topics: {}", file, types);
 }
 
-/// The first dvs_msgs (2015) had other fields under the same name.
+/// dvs_msgs of 2015 has other fields under the same type name.
 void refuse_old_events(const Topic& topic, const std::string& file) {
   if (topic.type == "dvs_msgs/EventArray" && topic.definition.find("uint64 time") != std::string::npos)
     throw InputError::format(
@@ -108,7 +108,7 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& 
       continue;
     }
     std::vector<std::size_t> fitting = candidates(topics, role);
-    std::erase_if(fitting, [&](std::size_t i) {  // wanted as another
+    std::erase_if(fitting, [&](std::size_t i) {  // chosen for another role
       return std::ranges::any_of(wanted, [&](const auto& other) { return other.second == topics[i].name; });
     });
     if (is_chosen_by_itself(role, fitting.size())) choice.topics[r] = fitting.front();

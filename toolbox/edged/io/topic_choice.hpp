@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which topic of a bag, or stream of another container, is which sensor: by type, or as the user says.
+// Assigns the topics of a bag, or the streams of another container, to sensors: by type, or by the choice of the user.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ namespace edged {
 
 struct Topic {
   std::string name;        ///< "/dvs/events"
-  std::string type;        ///< "dvs_msgs/EventArray", in ROS 2 too
-  std::string definition;  ///< of the type, as far as the container tells it
-  std::size_t count = 0;   ///< of messages
+  std::string type;        ///< "dvs_msgs/EventArray", also for ROS 2
+  std::string definition;  ///< of the type, if the container holds it
+  std::size_t count = 0;   ///< number of messages
 };
 
 enum class Role { Events, Frames, Imu, Truth, Height, Velocity };
@@ -28,31 +28,30 @@ static_assert(kRoleNames.size() == 4 + kExternalSensors, "a role for each");
 /// The external sensor of a role; null for the other roles.
 const ExternalSensor* external_sensor_of(Role role);
 
-/// Of messages of that type ("dvs_msgs/EventArray"); nothing for what is of no use here.
+/// The role of messages of that type ("dvs_msgs/EventArray"). Nothing for types that are not read.
 std::optional<Role> role_of(const std::string& type);
 
-/// Whether messages of that type can take the role: those whose role it is, and an Odometry for its twist.
+/// True if a topic of that type can have the role: by role_of(), or an Odometry for its twist.
 bool can_take(const std::string& type, Role role);
 
-/// Of the roles that are cameras.
+/// The modality of a role that is a camera.
 constexpr std::optional<Modality> modality_of(Role role) {
   if (role == Role::Events) return Modality::Events;
   return role == Role::Frames ? std::optional(Modality::Frames) : std::nullopt;
 }
 
-/// Roles by name with the topic the user wants, or "none".
+/// Names of roles, each with the topic that the user wants, or "none".
 using WantedTopics = std::map<std::string, std::string>;
 
-/// Index of the topic of each role.
+/// The index of the topic of each role.
 struct TopicChoice {
   std::array<std::optional<std::size_t>, kRoleNames.size()> topics;
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
 };
 
-/// The only topic of a fitting type takes its role, but for velocity: a twist may be a command, and its axes are those
-/// of whatever sensor it is, so that its topic has to be named (an Odometry, too). Throws InputError that lists them
-/// where there are several, where the bag lacks a wanted one, where no sensor is left, and for the event messages of
-/// 2015.
+/// The only topic of a fitting type gets the role. The topic of the velocity must be named, because a twist may be a
+/// command, and its axes are those of an unknown sensor (an Odometry, too). Throws InputError, with the topics, if
+/// several fit, if the bag lacks a wanted one, if no sensor is left, and for the event messages of 2015.
 TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing of trajectories.
+// Reads and writes trajectories.
 #include "edged/io/trajectory_io.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -16,10 +16,10 @@
 namespace edged {
 namespace {
 
-constexpr double kQuaternionTolerance = 0.05;  // of the norm; printed with few digits it is off by less
+constexpr double kQuaternionTolerance = 0.05;  // of the norm; rounding to few digits changes it by less
 constexpr double kPrintedRotationTolerance = 1e-2;
 
-/// What a line says, or what is wrong with it.
+/// The pose of a line, or the error.
 struct ParsedLine {
   std::optional<StampedPose> pose;
   std::string wrong;
@@ -92,7 +92,7 @@ Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const Dama
   return trajectory;
 }
 
-/// By the heading, else as the data set documents it.
+/// The columns by the heading, else by the documentation of the data set.
 PoseColumns documented(const SourcePath& file, const PoseColumns& columns) {
   return named_pose_columns(file, columns.unit).value_or(columns);
 }

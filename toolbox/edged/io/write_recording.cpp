@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The table of writable formats, and the loop that fills one.
+// The table of writable formats, and the loop that writes a recording.
 #include "edged/io/write_recording.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -55,7 +55,7 @@ constexpr std::array kWritable = {
                    .open = write_hdf5},
 };
 
-/// Hands on what the format holds and counts.
+/// Passes the measurements that the format can hold to the writer, and counts all.
 class Sieve {
  public:
   Sieve(RecordingWriter& writer, const WritableFormat& format, bool round)
@@ -117,7 +117,7 @@ const WritableFormat& writable_format(std::string_view name, const std::filesyst
   std::vector<std::string> known;
   for (const WritableFormat& f : kWritable)
     known.push_back(fmt::format("{} ({})", f.name, f.extension.empty() ? "a folder" : f.extension));
-  throw InputError::format("{}: nothing is written in format `{}`; give --format, one of: {}", path.string(),
+  throw InputError::format("{}: cannot write format `{}`; give --format, one of: {}", path.string(),
                            name.empty() ? extension : name, fmt::join(known, ", "));
 }
 
@@ -147,7 +147,8 @@ WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, cons
     writer->finish();
     return sieve.counts;
   } catch (const InputError&) {
-    if (!existed) std::filesystem::remove_all(path, ignored);  // half a recording passes for a whole one
+    if (!existed)
+      std::filesystem::remove_all(path, ignored);  // an incomplete recording could be taken for a complete one
     throw;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Every writable format gives back what was written.
+// Each writable format reads back what was written.
 #include "edged/io/write_recording.hpp"
 
 #include <gmock/gmock.h>
@@ -64,10 +64,10 @@ TEST_P(WritableFormats, LeaveOutWhatIsNotWantedAndGiveTheRestAsEver) {
   }
 }
 
-/// Those that nothing but events fits into cannot be run by themselves.
+/// Formats that hold events only are not sufficient for a run.
 TEST_P(WritableFormats, KeepWhosePosesTrajectoriesHold) {
   for (const char* frame : {"events", "frames", "body"}) {
-    if (GetParam().name == "ecd" && frame != std::string("events")) continue;  // its truth is the event camera's
+    if (GetParam().name == "ecd" && frame != std::string("events")) continue;  // holds poses of the event camera
     TempFolder folder;
     ListedDataset source = random_dataset(GetParam().tick);
     source.describe().pose_frame = source.truth->frame = frame;

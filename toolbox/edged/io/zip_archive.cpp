@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// libzip behind ByteSource.
+// Reads zip archives by libzip, as ByteSource.
 #include "edged/io/zip_archive.hpp"
 
 #include <zip.h>
@@ -13,13 +13,13 @@ namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
-/// How entries are named here: separators as everywhere, no "./" in front.
+/// The normalized name of an entry: generic separators, no leading "./".
 std::string entry_name(const fs::path& path) {
   std::string name = path.lexically_normal().generic_string();
   return name == "." ? "" : name;
 }
 
-/// "" for the top, else with the separator at its end.
+/// "" for the root, else with a separator at the end.
 std::string folder_prefix(const fs::path& folder) {
   std::string name = entry_name(folder);
   if (!name.empty() && name.back() != '/') name += '/';

@@ -17,10 +17,10 @@ struct zip;
 
 namespace edged {
 
-/// Not for several threads at once.
+/// Not thread-safe.
 class ZipArchive {
  public:
-  /// Reads the list of files. Throws InputError where it is damaged.
+  /// Reads the list of files. Throws InputError if it is damaged.
   explicit ZipArchive(const std::filesystem::path& file);
 
   const std::filesystem::path& file() const { return file_; }
@@ -33,13 +33,13 @@ class ZipArchive {
  private:
   std::filesystem::path file_;
   std::shared_ptr<zip> zip_;
-  std::map<std::string, std::uint64_t> entries_;  ///< path to number, of files
+  std::map<std::string, std::uint64_t> entries_;  ///< of files: path to index
 };
 
-/// What libzip says of an error by its number.
+/// The text of libzip for the number of an error.
 std::string zip_reason(int error);
 
-/// From the first bytes of a file.
+/// head: the first bytes of a file.
 bool is_zip(ByteSpan head);
 
 }  // namespace edged

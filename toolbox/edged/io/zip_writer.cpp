@@ -19,7 +19,7 @@ namespace {
   throw InputError::format("{}: cannot be written: {}", file.string(), reason);
 }
 
-/// By name, so that the same files make the same archive.
+/// Sorted by name, so that the same files give the same archive.
 std::vector<fs::path> files_below(const fs::path& folder, const fs::path& but) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))

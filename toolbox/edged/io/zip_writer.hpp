@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A folder as one zip archive.
+// Writes a folder as a zip archive.
 #pragma once
 
 #include <filesystem>
 
 namespace edged {
 
-/// All files of the folder and those below, under its name; not `file` itself, where that lies there. Replaces `file`,
-/// at once and only when all is written. Throws InputError where a file cannot be read or the archive not be written.
+/// Writes all files of the folder and its subfolders, under its name, except `file` itself. Replaces `file` atomically,
+/// after all is written. Throws InputError if a file cannot be read or the archive cannot be written.
 void zip_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace edged

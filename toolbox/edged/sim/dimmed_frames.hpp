@@ -11,8 +11,8 @@
 namespace edged {
 
 /// The frame of a typical 8-bit camera at a share `factor` of the light, with unchanged exposure and gain: fewer
-/// electrons (10000 fill 255 grey levels), their noise, a read noise of 1.2 grey levels. The noise follows from the
-/// stamp: a frame is the same wherever reading began.
+/// electrons (10000 correspond to 255 grey levels) with shot noise, and a read noise of 1.2 grey levels. The stamp is
+/// the seed of the noise, so a frame does not depend on where reading begins.
 class DimmedFrames final : public Dataset {
  public:
   DimmedFrames(std::unique_ptr<Dataset> bright, double factor);

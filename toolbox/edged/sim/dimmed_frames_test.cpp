@@ -24,7 +24,7 @@ TEST(DimmedFrames, HaveTheMeanAndTheNoiseOfLittleLight) {
   const Recorded bright = record(small("room", 0.8)), dark = dimmed(0.06);
   ASSERT_EQ(dark.frames.size(), bright.frames.size());
   ASSERT_GT(dark.frames.size(), 10U);
-  // At rest, so that the difference of two frames is noise: of the photons and 1.2 levels, and a twelfth of rounding.
+  // At rest, the difference of two frames is noise: of the photons, 1.2 levels of read noise, and 1/12 of rounding.
   const cv::Mat &first = dark.frames[1].image, &second = dark.frames[3].image;
   const double level = 0.06 * cv::mean(bright.frames[1].image)[0];
   EXPECT_NEAR(cv::mean(first)[0], level, 0.1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/sim/light.hpp"
 
 namespace edged {
@@ -15,10 +16,9 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kCovering_s = 0.06;
 constexpr double kStopping_s = 0.5, kTurningRound_s = 1.5;
 constexpr double kShake_hz = 4.0;
-// Of knocks: a ring of 33 Hz that is over after a tenth of a second, and turns the body a little.
+// Knocks: a vibration of 33 Hz that ends after a tenth of a second and slightly rotates the body.
 constexpr double kRing_hz = 33.0, kDecay_s = 0.022, kRing_s = 0.1, kBlow_s = 0.006, kKnockTurn_rad = 0.004;
 constexpr double kLowering_s = 0.5;
-constexpr double kStandardGravity = 9.80665;
 
 constexpr double kToTheEnd = -1.0;
 
@@ -41,7 +41,7 @@ Usual usual(DisturbanceKind kind) {
     case DisturbanceKind::ImuGap:
       return {0.3, 0.0};
     case DisturbanceKind::GyroSaturation:
-      return {1.0, 1.5};  // peak rate over the gyro's range
+      return {1.0, 1.5};  // peak rate relative to the range of the gyro
     case DisturbanceKind::Shake:
       return {1.0, 400.0};  // peak rate [deg/s]
     case DisturbanceKind::Person:
@@ -50,7 +50,7 @@ Usual usual(DisturbanceKind kind) {
       return {kToTheEnd, 0.4};  // share of the view
     case DisturbanceKind::WanderingLamp:
     case DisturbanceKind::SwitchingLamp:
-      return {kToTheEnd, 7.5};  // times the light of a well lit room
+      return {kToTheEnd, 7.5};  // relative to the light of a well lit room
     case DisturbanceKind::BlankWall:
       return {4.0, 0.0};
     case DisturbanceKind::PureRotation:
@@ -83,7 +83,7 @@ Jet to_jet(const Ramp& ramp, double t, double length_s) {
   return {ramp.value, ramp.slope, within ? 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (length_s * length_s) : 0.0};
 }
 
-/// Decaying vibration after t = 0, as of a light body after a hard contact. The phase of the sine is 0 there.
+/// Decaying vibration after t = 0, as of a light body after a hard contact. A sine of phase 0 at t = 0.
 Jet ring(double t) {
   if (t <= 0.0 || t >= kRing_s) return {};
   constexpr double kOmega = 2.0 * kPi * kRing_hz;
@@ -94,7 +94,7 @@ Jet ring(double t) {
   return decay * sine * (Jet{1.0} + fading);
 }
 
-/// The same of a body that was at rest: the blow takes a few milliseconds.
+/// The same for a body at rest before, which is accelerated within a few milliseconds.
 Jet hit(double t) { return ring(t) * to_jet(ramp(t, kBlow_s), t, kBlow_s); }
 
 /// Largest second derivative.
@@ -173,7 +173,7 @@ Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
   const bool rotates = disturbance_.kind == DisturbanceKind::PureRotation;
   const bool stands = disturbance_.kind == DisturbanceKind::Standstill || disturbance_.kind == DisturbanceKind::PutDown;
   if (!rotates && !stands) return moving;
-  // The clock of the path is t less the time it stood still.
+  // The clock of the path is t minus the time for which the path was stopped.
   const Ramp still = plateau(t, disturbance_.at_s - kStopping_s, disturbance_.end_s(), kStopping_s);
   const double rate = 1.0 - still.value;
   Kinematics k = trajectory_.at(t - still.integral_s);
@@ -190,8 +190,8 @@ Kinematics DisturbedTrajectory::on_stopped_clock(double t) const {
 void DisturbedTrajectory::knock(double t, Kinematics& k) const {
   const Disturbance& d = disturbance_;
   const double peak = d.strength * kStandardGravity;
-  // It is lowered at the speed at which the contact ends, with the required peak of the vibration, and taken up by a
-  // blow.
+  // The body is lowered at the speed that gives the required peak of the vibration at the contact. It is lifted with a
+  // knock.
   static const double ring_peak = peak_change(ring), hit_peak = peak_change(hit);
   constexpr double kOmega = 2.0 * kPi * kRing_hz;
   const double reach_m = peak / ring_peak, speed = reach_m * kOmega;
@@ -219,7 +219,7 @@ DisturbedTrajectory::Turn DisturbedTrajectory::turn(double t) const {
   }
   const double x = (t - d.at_s) / d.length_s;
   if (x <= 0.0 || x >= 1.0) return {};
-  // sin^2 is 0 at both ends, and so is its slope.
+  // sin^2 and its slope are 0 at both ends.
   const double swell = std::pow(std::sin(kPi * x), 2), swell_rate = kPi / d.length_s * std::sin(2.0 * kPi * x);
   if (d.kind == DisturbanceKind::GyroSaturation) {
     const double angle = d.strength * gyro_range_ * d.length_s / kPi;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A disturbance of a recording: one at a known time, in the scene, in the motion or in the sensors.
+// The motion of a simulated recording with a disturbance.
 #pragma once
 
 #include "edged/sim/simulator_config.hpp"
@@ -8,12 +8,12 @@
 
 namespace edged {
 
-/// A motion with a disturbance (with its defaults set): the clock of the path is stopped, for the position alone
-/// in pure rotation; or the body turns about an axis of its own on top of it; or it is knocked. Transitions, such as
-/// slowing down or turning to a wall, take place before the disturbance and after it.
+/// A motion with a disturbance, whose defaults are set. The clock of the path is stopped (for the position only in pure
+/// rotation), or the body also rotates about one of its axes, or it is knocked. Transitions, such as slowing down or
+/// turning to a wall, take place before and after the disturbance.
 class DisturbedTrajectory {
  public:
-  /// gyro_range [rad/s]; axis_B: of the turns, unit.
+  /// gyro_range [rad/s]; axis_B: unit axis of the rotations.
   DisturbedTrajectory(ContinuousTrajectory trajectory, const Disturbance& disturbance, double gyro_range,
                       const Eigen::Vector3d& axis_B)
       : trajectory_(std::move(trajectory)), disturbance_(disturbance), gyro_range_(gyro_range), axis_B_(axis_B) {}
@@ -22,7 +22,7 @@ class DisturbedTrajectory {
   Kinematics at(double t) const;
 
  private:
-  /// Angle on top of the path [rad] and its rate [rad/s].
+  /// Angle added to the path [rad] and its rate [rad/s].
   struct Turn {
     double angle = 0.0, rate = 0.0;
   };

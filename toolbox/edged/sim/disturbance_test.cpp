@@ -34,7 +34,7 @@ SimulatorConfig undisturbed(SimulatorConfig config) {
   return config;
 }
 
-/// Events a second between two times.
+/// The event rate between two times.
 double event_rate(const Recorded& recorded, double from_s, double to_s) {
   const auto within = [=](const Event& e) { return to_seconds(e.t) >= from_s && to_seconds(e.t) < to_s; };
   return static_cast<double>(std::count_if(recorded.events.begin(), recorded.events.end(), within)) / (to_s - from_s);
@@ -170,12 +170,12 @@ double differing_share(const Rendering& a, const Rendering& b) {
   return static_cast<double>(count) / static_cast<double>(a.inverse_depth.size());
 }
 
-/// By the time of frames [s], the share of the view that the disturbance covers.
+/// The share of the view that the disturbance covers, by the time of the frame [s].
 std::map<double, double> covered_shares(SimulatorConfig config) {
   config.max_motion_px = 3.0;
   Simulator with(config), without_one(undisturbed(config));
   std::map<double, double> shares;
-  // The same pictures: they are taken at the latest every 3 ms, and at the frames' exposures in any case.
+  // The same renders: at least every 3 ms, and at the exposures of the frames.
   while (const auto measurement = with.next()) {
     if (!std::holds_alternative<Frame>(*measurement)) continue;
     while (!std::holds_alternative<Frame>(*without_one.next())) continue;
@@ -217,7 +217,7 @@ TEST(Walkers, CoverTheirShareOfTheViewWhileTheCameraRests) {
     config.disturbance.at_s = 0.0, config.disturbance.strength = strength;
     const std::map<double, double> shares = covered_shares(config);
     EXPECT_NEAR(largest_between(shares, 0.0, 5.0), strength, 0.3 * strength);
-    // Nor is the view ever long without them.
+    // The view is never without them for long.
     for (const double t : {0.0, 1.2, 2.4}) EXPECT_GT(largest_between(shares, t, t + 1.2), 0.25 * strength);
     EXPECT_GT(event_rate(record(config), 0.2, 4.0), 10.0 * kNoise_hz);
   }
@@ -233,7 +233,7 @@ TEST(Walkers, AreAwayBeforeAndAfterTheirTime) {
   EXPECT_EQ(largest_between(shares, 3.5, 4.0), 0.0);
 }
 
-/// Middle of what is as bright as half of the brightest [px], nothing where all is dark.
+/// The centre of the pixels that are at least half as bright as the brightest one [px]. Nothing in the dark.
 std::optional<Eigen::Vector2d> spot_of(const cv::Mat& image) {
   cv::Mat blurred;
   cv::GaussianBlur(image, blurred, cv::Size(), 4.0);
@@ -263,7 +263,7 @@ TEST(WanderingLamp, LetsABrightSpotWanderOverADarkRoomThatRests) {
     cv::circle(rest, cv::Point(static_cast<int>(spot->x()), static_cast<int>(spot->y())), 45, cv::Scalar(0), -1);
     EXPECT_LT(cv::mean(rest)[0], 25.0);
   }
-  EXPECT_GT(seen, 40);  // of 72 frames: at times it is beside the view
+  EXPECT_GT(seen, 40);  // of 72 frames: the spot is sometimes outside the view
   EXPECT_GT(places.sizes().maxCoeff(), 40.0);
   EXPECT_GT(event_rate(recorded, 0.5, 3.0), 30.0 * kNoise_hz);
 }
@@ -307,7 +307,7 @@ TEST(Standstill, StopsAllMotionAndGoesOnAfterIt) {
     const Kinematics k = simulator.trajectory().at(t);
     EXPECT_LT(k.v_W.norm() + k.a_W.norm() + k.omega_B.norm(), 1e-9);
   }
-  // A stop and a start take half of their time each.
+  // A stop and a start each delay by half of their duration.
   const SE3 late = simulator.trajectory().at(2.6).T_W_B, early = plain.trajectory().at(1.1).T_W_B;
   EXPECT_LT((late.translation() - early.translation()).norm(), 1e-9);
   const Recorded recorded = record(config);
@@ -320,7 +320,7 @@ TEST(PutDown, KnocksAsHardAsItSaysAndRestsInBetween) {
     SimulatorConfig config = disturbed("put-down", 1.0, 0.8);
     config.disturbance.strength = strength;
     const Simulator simulator(config);
-    // Of the acceleration that the knock adds, in g.
+    // The acceleration that the knock adds, in g.
     const auto peak_g = [&](double from_s, double to_s) {
       double peak = 0.0;
       for (double t = from_s; t < to_s; t += 5e-4)
@@ -333,7 +333,7 @@ TEST(PutDown, KnocksAsHardAsItSaysAndRestsInBetween) {
       const Kinematics k = simulator.trajectory().at(t);
       EXPECT_LT(k.v_W.norm() + k.a_W.norm() + k.omega_B.norm(), 1e-9);
     }
-    // It is lowered until the contact, which gives way by a few millimetres, and has no jump.
+    // The body is lowered until the contact, which yields by a few millimetres. The motion has no jump.
     const double above = simulator.trajectory().at(0.5).T_W_B.translation().z();
     const double contact = simulator.trajectory().at(1.0).T_W_B.translation().z();
     EXPECT_GT(above - contact, 0.005 * strength);
@@ -363,7 +363,7 @@ TEST(EventStorm, FiresAsOftenAsItSaysAllOverTheArray) {
   for (const Event& event : recorded.events)
     if (event.t >= timestamp_from_seconds(1.01) && event.t < timestamp_from_seconds(1.09))
       ++counts[event.y * 120U + event.x];
-  // 148 of each pixel; the refractory time makes them more even than by chance.
+  // 148 events per pixel. The refractory time makes them more uniform than a Poisson process.
   EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 80);
   EXPECT_LT(*std::max_element(counts.begin(), counts.end()), 220);
 }

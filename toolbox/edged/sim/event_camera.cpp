@@ -116,7 +116,7 @@ void EventCamera::step_pixel(std::size_t pixel, float before, const Interval& in
         after == before ? 1.0 : std::clamp((reference_[pixel] - before) / (after - before), 0.0F, 1.0F);
     const std::int64_t t_ns =
         interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
-    // A pixel in its refractory time takes the new level without an event.
+    // In its refractory time, a pixel adopts the new level without an event.
     if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
     last_ns_[pixel] = t_ns;
     events.push_back(make_event(pixel, t_ns, positive));
@@ -151,7 +151,7 @@ void EventCamera::add_hot_pixels(const Interval& interval, std::vector<Event>& e
 }
 
 void EventCamera::add_storm(const Interval& interval, double hz, std::vector<Event>& events) {
-  // More are drawn to replace those within a refractory time, in the order of time.
+  // More events are sampled, in time order, to replace those within a refractory time.
   const double drawn_hz = hz / std::max(0.1, 1.0 - hz * config_.refractory_us * 1e-6);
   const double length_ns = static_cast<double>(interval.length_ns);
   const int count = storm_random_.arrivals(drawn_hz * length_ns * 1e-9 * static_cast<double>(level_.size()));

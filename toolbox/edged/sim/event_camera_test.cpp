@@ -38,7 +38,7 @@ TEST(LogBrightness, IsTheNaturalLogarithm) {
 TEST(EventCamera, CountsAndTimesTheEventsOfARamp) {
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Event> events = ramp(quiet(), sign * 3.0);
-    // 3 / 0.3 events a pixel; where in its cycle it started decides about one more or less.
+    // 3 / 0.3 events per pixel, one more or less by the initial phase.
     EXPECT_NEAR(static_cast<double>(events.size()), 10.0 * kPixels * kPixels, kPixels * kPixels);
     Timestamp last;
     for (const Event& e : events) {

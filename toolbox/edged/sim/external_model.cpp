@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-constexpr std::uint64_t kFirstExternalStream = 20;  // and one more a sensor
+constexpr std::uint64_t kFirstExternalStream = 20;  // one stream per sensor, from this number on
 
 const ExternalErrors& errors_of(const ExternalModelConfig& config, std::size_t index) {
   return index == 0 ? config.height.errors : config.velocity.errors;
@@ -49,7 +49,7 @@ ExternalModel::ExternalModel(const ExternalModelConfig& config, std::size_t inde
       shift_(shift + duration_from_seconds(1e-3 * errors_.late_ms)),
       random_(seed, kFirstExternalStream + index) {}
 
-/// Between the samples of the IMU, as an unsynchronised sensor.
+/// The stamps lie between those of the IMU, as those of an unsynchronised sensor.
 double ExternalModel::sample_s() const {
   if (errors_.rate_hz <= 0.0) return std::numeric_limits<double>::infinity();
   return (static_cast<double>(count_) + 0.37) / errors_.rate_hz;
@@ -64,7 +64,7 @@ ExternalNumbers ExternalModel::true_numbers(const Kinematics& truth) const {
 
 std::optional<ExternalSample> ExternalModel::measure(const Kinematics& truth) {
   const double t_s = sample_s();
-  // All random numbers are always drawn: a gap or a share of outliers changes nothing else.
+  // The same random numbers are generated for any configuration, so a gap or outliers change nothing else.
   const Eigen::Vector3d noise = random_.normal3(), walk = random_.normal3(), wrong = random_.normal3();
   const bool is_outlier = random_.uniform() < errors_.outlier_share;
   ExternalNumbers numbers = true_numbers(truth);

@@ -14,8 +14,8 @@
 
 namespace edged {
 
-/// One of them: its samples in the order of their stamps. Each has random numbers of its own, so other sensors do not
-/// change.
+/// One external sensor, with samples in the order of their stamps. It has its own random numbers, so it does not change
+/// other sensors.
 class ExternalModel {
  public:
   /// index: of the sensor in ExternalSample. shift: from the camera's clock to the stamps.

@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-/// Climbs with 1 m/s, goes with 2 m/s along x and turns about z with 3 rad/s.
+/// A body that rises at 1 m/s, moves at 2 m/s along x and rotates about z at 3 rad/s.
 struct Climb {
   Kinematics at(double t) const {
     Kinematics k;

@@ -20,7 +20,7 @@ constexpr double kGround_m = 0.25, kHeight_m = 1.3;
 constexpr double kTakeOff_s = 2.5, kHover_s = 0.5, kLanding_s = 3.0, kStill_s = 1.0;
 constexpr double kDrag = 0.25;  // deceleration by air of a level quadrotor per speed [1/s]
 
-/// From 0 to 1 with three derivatives zero at both ends; its steepest slope is 2.19.
+/// A step from 0 to 1 with three derivatives zero at both ends. Its steepest slope is 2.19.
 double step(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * x * x * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)));
@@ -154,7 +154,7 @@ Path path_of(Manoeuvre manoeuvre) {
 
 double airborne_s(const Path& path) { return kTakeOff_s + kHover_s + path.duration_s + kHover_s + kLanding_s; }
 
-/// The part of gusts and controller: per axis two sines of random phase within [-1, 1].
+/// The effect of gusts and controller: per axis two sines of random phase, within [-1, 1].
 class Wobble {
  public:
   Wobble(double slow_hz, double fast_hz, Random& random) {
@@ -193,7 +193,7 @@ class Drone {
     constexpr double h = 1e-3;
     const Eigen::Vector3d before = position(t - h), p = position(t), after = position(t + h);
     const Eigen::Vector3d v = (after - before) / (2.0 * h), a = (after - 2.0 * p + before) / (h * h);
-    // Thrust is along the body's z and carries weight, acceleration and drag.
+    // Thrust is along z of the body and equals weight, acceleration and drag.
     const Eigen::Vector3d z = (a + kDrag * v - kGravity_W).normalized();
     const double heading = path_.heading(manoeuvre_time(t));
     const Eigen::Vector3d forward(std::cos(heading), std::sin(heading), 0.0);

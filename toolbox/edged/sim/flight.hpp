@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How a quadrotor flies: take-off, a named manoeuvre, landing, its tilt following its acceleration.
+// The flight of a quadrotor: take-off, a manoeuvre and landing, with a tilt that follows from the acceleration.
 #pragma once
 
 #include <cstdint>

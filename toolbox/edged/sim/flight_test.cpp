@@ -28,7 +28,7 @@ double heading(const Kinematics& k) {
   return std::atan2(x.y(), x.x());
 }
 
-/// Between which the manoeuvre takes place.
+/// Begin and end of the manoeuvre.
 struct Span {
   double begin, end;
 };

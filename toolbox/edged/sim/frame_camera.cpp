@@ -58,7 +58,8 @@ cv::Mat FrameCamera::read_out() {
 }
 
 void FrameCamera::adapt(const cv::Mat& image) {
-  // A part of the way in log exposure, at most by a factor of two per frame, as cameras do to avoid oscillation.
+  // A part of the correction in log exposure, at most a factor of two per frame, as in real cameras, to avoid
+  // oscillation.
   const double factor = std::pow(config_.target_level / std::max(1.0, cv::mean(image)[0]), 0.6);
   exposure_ms_ = std::clamp(exposure_ms_ * std::clamp(factor, 0.5, 2.0), config_.min_exposure_ms,
                             std::max(config_.min_exposure_ms, config_.max_exposure_ms));

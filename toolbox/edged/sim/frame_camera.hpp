@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A standard camera: light collected over an exposure, noise, eight bits.
+// A standard camera: light integrated over an exposure, with noise, in eight bits.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace edged {
 
-/// The value of a pixel with so many electrons: with photon noise and read noise [electrons], in 8 bits.
+/// The 8-bit value of a pixel from its electrons, with photon noise and read noise [electrons].
 std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random);
 
 class FrameCamera {
  public:
   FrameCamera(const FrameCameraConfig& config, int width, int height, std::uint64_t seed);
 
-  /// Adds the light of dt_s seconds between two pictures (linear, width x height), brightness linear in time in
+  /// Adds the light of dt_s seconds between two pictures (linear, width x height). The brightness is linear in time in
   /// between.
   void expose(std::span<const float> begin, std::span<const float> end, double dt_s);
 
-  /// CV_8UC1 of the light collected since the last one.
+  /// The image (CV_8UC1) of the light since the previous one.
   cv::Mat read_out();
 
-  /// Of the next frame [ms]. With auto_exposure it follows the mean grey level of the last frame, a part of the way and
-  /// within its bounds.
+  /// Exposure of the next frame [ms]. With auto_exposure, it is a part of the correction by the mean grey level of the
+  /// last frame, within its bounds.
   double exposure_ms() const { return exposure_ms_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = 32;
 
-/// Exposure and mean level of the last of a number of frames of an even wall.
+/// Exposure and mean grey level of the last of several frames of a uniform wall.
 struct Converged {
   double exposure_ms, level;
 };

@@ -30,8 +30,8 @@ class ImuModel {
  public:
   ImuModel(const ImuModelConfig& config, std::uint64_t seed);
 
-  /// One sample (Forster 2017, Eq. 27, 28); the biases change by one sample period after it. The samples are taken to
-  /// come at rate_hz.
+  /// One sample (Forster 2017, Eq. 27, 28). Afterwards, the biases change by the walk of one period. The samples are
+  /// assumed to have the rate rate_hz.
   ImuSample measure(Timestamp t, const Kinematics& truth);
 
   const Eigen::Vector3d& bias_gyro() const { return bias_gyro_; }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPanel_m = 0.3;
 constexpr double kSunWidth_rad = 0.0093;
-// Of a spotlight: how far and how fast it wanders; the cone's edge goes from full light to none.
+// Spotlight: extent and speed of its motion; the edge of its cone, from full light to none.
 constexpr double kYaw_rad = 0.5, kPitch_rad = 0.3, kYaw_hz = 0.23, kPitch_hz = 0.37;
 constexpr float kFullCosine = 0.951F, kOuterCosine = 0.848F;  // 18 and 32 deg
 constexpr float kPowerDistance_m = 2.0F;
@@ -22,7 +22,7 @@ double smooth(double x) {
   return x * x * (3.0 - 2.0 * x);
 }
 
-/// On at first, and switched at these instants.
+/// A light that is on at first, and is switched at these instants.
 double switched_level(const std::vector<double>& switch_s, double t_s) {
   const auto next = std::upper_bound(switch_s.begin(), switch_s.end(), t_s);
   const auto count = next - switch_s.begin();
@@ -36,7 +36,7 @@ Lamp side_lamp(const Eigen::Vector3d& towards_wall, const Eigen::Vector3d& size,
   lamp.axis_W = -towards_wall;
   lamp.centre_W = 0.49 * size.cwiseProduct(towards_wall) + Eigen::Vector3d(0.0, 0.0, 1.9);
   lamp.power = 7.0;
-  // Off at first, half of the time.
+  // With probability one half, the light is off at first.
   if (random.uniform() < 0.5) lamp.switch_s.push_back(-1.0);
   for (double t = random.uniform(2.0, 5.0); t < duration_s; t += random.uniform(1.0, 5.0)) lamp.switch_s.push_back(t);
   return lamp;
@@ -90,7 +90,7 @@ Beam beam_at(const Spotlight& spot, double t_s) {
   const double yaw = kYaw_rad * std::sin(yaw_w * t_s + spot.phase_yaw);
   const double pitch = kPitch_rad * std::sin(pitch_w * t_s + spot.phase_pitch);
   const Eigen::Vector3d side = Eigen::Vector3d::UnitZ().cross(spot.axis_W).normalized();
-  // It goes on within the time of a switch before its begin, so that it shines when its time begins.
+  // It is switched on before begin_s, so that it has full light at begin_s.
   const double there = smooth((t_s - spot.begin_s) / kSwitching_s + 1.0) - smooth((t_s - spot.end_s) / kSwitching_s);
   const double level = there * switched_level(spot.switch_s, t_s);
   const double rate = kYaw_rad * yaw_w * std::abs(std::cos(yaw_w * t_s + spot.phase_yaw)) +

@@ -9,7 +9,7 @@ namespace edged {
 namespace {
 
 constexpr double kPitch_m = 0.025;
-// A face lies before its support, not in it: a lamp in the same plane gives no light, instead of a rounding error's.
+// A face lies in front of its support, so that a lamp in the plane of the support gives no light by rounding errors.
 constexpr double kLift_m = 1e-6;
 
 }  // namespace
@@ -34,7 +34,7 @@ LightField::Map LightField::make_map(const Face& face, const Lighting& lighting)
   map.middle_v = 0.5F * static_cast<float>(map.rows - 1);
   map.per_m_u = map.middle_u / static_cast<float>(face.half_u);
   map.per_m_v = map.middle_v / static_cast<float>(face.half_v);
-  // The last node is reached from the one before it.
+  // Coordinates stay below the last node, so that each has a next node for the interpolation.
   map.last_u = std::nextafter(static_cast<float>(map.columns - 1), 0.0F);
   map.last_v = std::nextafter(static_cast<float>(map.rows - 1), 0.0F);
   std::vector<Eigen::Vector3d> nodes_W;

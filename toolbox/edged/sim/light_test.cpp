@@ -89,7 +89,8 @@ TEST(Renderer, ShowsTheSunsPatchWhereTheRaysThroughTheWindowFall) {
     return picture.radiance[static_cast<std::size_t>(row * 101 + column)];
   };
   const double bright = 0.1 + 10.0 / std::sqrt(2.0);
-  EXPECT_NEAR(at(0.0, 1.0), bright, 0.01);  // the middle of the window, 2 m above, comes down 2 m before the wall
+  EXPECT_NEAR(at(0.0, 1.0), bright,
+              0.01);  // the middle of the window, 2 m high, shines on the floor 2 m in front of the wall
   EXPECT_NEAR(at(0.4, 1.3), bright, 0.01);
   EXPECT_NEAR(at(-0.4, 0.7), bright, 0.01);
   EXPECT_NEAR(at(0.6, 1.0), 0.1, 1e-3);

@@ -37,13 +37,13 @@ class Sway {
   std::array<double, 3> frequency_{}, phase_{};
 };
 
-/// Three signals with their own reach, played at the pace that gives the wanted peak of their joint speed.
+/// Three signals with different amplitudes. Their clock is scaled for the wanted peak of the combined speed.
 class Sway3 {
  public:
   Sway3(const Eigen::Vector3d& reach, double peak_speed, double duration_s, Random& random)
       : reach_(reach), sways_{Sway(random), Sway(random), Sway(random)} {
     constexpr double kStep = 0.02;
-    // The pace decides which part of the signals is played, so that their peak is sought again.
+    // The scale of the clock determines the part of the signals that is used, so their peak is computed again.
     for (int round = 0; round < 4; ++round) {
       double peak = 1e-9;
       for (double t = 0.0; t < duration_s; t += kStep)
@@ -129,7 +129,7 @@ ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, 
   if (config.flight != Manoeuvre::None)
     return {PoseSpline::fit(fly(config.flight, seed), {.knot_s = config.knot_s, .reweightings = 0}), config.rest_s,
             0.0};
-  // The clock loses half of the blend; a small reserve keeps the end of the spline after the recording.
+  // The blend delays the clock by half its length. A small margin keeps the end of the spline after the recording.
   const double moving_s = std::max(1.0, duration_s - config.rest_s - 0.5 * config.blend_s + 0.1);
   const bool random = config.file.empty();
   Trajectory poses = random ? random_camera_poses(config, moving_s, seed) : recorded_poses(config, moving_s);

@@ -11,9 +11,9 @@
 
 namespace edged {
 
-/// The motion of the body for duration_s seconds. Random motion sways the camera around a point 1.3 m above the ground,
-/// its axis level and along +x on average. A flight has its own length, whatever duration_s is. Throws
-/// InputError when the file is shorter than asked for.
+/// The motion of the body for duration_s seconds. Random motion moves the camera around a point 1.3 m above the ground,
+/// with its mean axis level and along +x. The length of a flight does not depend on duration_s. Throws InputError if
+/// the file is too short.
 ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, const SE3& T_B_C, std::uint64_t seed);
 
 }  // namespace edged

@@ -32,7 +32,7 @@ void mount_davis346(SimulatorConfig& config) {
   config.frames.auto_exposure = true;
 }
 
-/// As TUM-VI's with a quarter of its pixels: 152 degrees across, 212 from corner to corner.
+/// As the cameras of TUM-VI, with a quarter of the pixels: 152 degrees across, 212 from corner to corner.
 void mount_fisheye(SimulatorConfig& config) {
   config.camera = {.width = 256,
                    .height = 256,
@@ -68,7 +68,7 @@ const std::map<std::string, FlightPlan>& flight_plans() {
   return plans;
 }
 
-/// A motor's vibration through soft mounts, and a sensor set to 1000 deg/s and 8 g.
+/// The vibration of motors through soft mounts, and a range of 1000 deg/s and 8 g.
 void set_imu(ImuModelConfig& imu, double motors_on_s, double motors_off_s) {
   imu.gyro_range = 17.45;
   imu.accel_range = 78.5;
@@ -93,7 +93,7 @@ void set_flight(SimulatorConfig& config, const FlightPlan& plan) {
   const double landed_s = config.motion.rest_s + airborne_s(plan.manoeuvre);
   config.duration_s = std::ceil(10.0 * (landed_s + 1.0)) / 10.0;
   set_imu(config.imu, config.motion.rest_s - 0.7, landed_s + 0.1);
-  // A pixel's bandwidth follows its photocurrent; its noise is worst where that is small.
+  // The bandwidth of a pixel is proportional to its photocurrent. Its noise is largest where that is small.
   config.events.bandwidth_hz = 20.0;
   config.events.bandwidth_per_radiance_hz = 2000.0;
   config.events.shot_hz = 0.05 / std::sqrt(plan.light) + (plan.light < 0.1 ? 0.6 : 0.0);
@@ -149,7 +149,7 @@ SimulatorConfig simulator_preset(const std::string& name) {
     config.motion.max_speed = 1.5;
     config.motion.max_angle_deg = 60.0;
     config.motion.max_rate_deg_s = 573.0;
-    // Pixels that are too slow for the finest texture at that speed.
+    // At that speed, the pixels are too slow for the finest texture.
     config.events.threshold_on = config.events.threshold_off = 0.4;
     config.events.bandwidth_hz = 20.0;
     config.events.bandwidth_per_radiance_hz = 600.0;
@@ -164,7 +164,7 @@ SimulatorConfig simulator_preset(const std::string& name) {
     return config;
   }
   if (name == "spot") {
-    // 2.5 lux, where a well lit room has 200.
+    // 2.5 lux. A well lit room has 200.
     config.scene.kind = SceneKind::Poster;
     config.scene.light = 0.0125;
     config.events.bandwidth_hz = 20.0;

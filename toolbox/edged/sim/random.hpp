@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A seeded source of random numbers whose bits do not depend on the standard library's distributions.
+// A seeded random number generator, whose bits do not depend on the distributions of the standard library.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ namespace edged {
 
 class Random {
  public:
-  /// Different streams of one seed are independent: one part of the simulator does not change the random numbers of
+  /// Different streams of one seed are independent, so that parts of the simulator do not affect the random numbers of
   /// others.
   Random(std::uint64_t seed, std::uint64_t stream)
       : engine_(seed * 0x9E3779B97F4A7C15ULL + stream * 0xD1B54A32D192ED03ULL) {}
@@ -36,7 +36,7 @@ class Random {
     return {x, y, z};
   }
 
-  /// Number of arrivals where `mean` are expected: exact in the mean, for a mean well below the count of pixels.
+  /// A random number of events with this exact mean, which must be well below the number of pixels.
   int arrivals(double mean) {
     const double whole = std::floor(mean);
     return static_cast<int>(whole) + (uniform() < mean - whole ? 1 : 0);

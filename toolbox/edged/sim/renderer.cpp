@@ -37,7 +37,7 @@ Extent project_extent(const Face& face, const SE3& T_C_W) {
   return extent;
 }
 
-/// First and last index whose [low, high] meets [from, to]; low and high need not be sorted.
+/// First and last index whose [low, high] overlaps [from, to]. low and high need not be sorted.
 std::pair<int, int> overlap(const std::vector<float>& low, const std::vector<float>& high, double from, double to) {
   const int n = static_cast<int>(low.size());
   const auto meets = [&](int i) {
@@ -186,7 +186,7 @@ float Renderer::squared_beam_speed(const Eigen::Vector3f& bearing, float inverse
 }
 
 void Renderer::blur() {
-  // The lens and the size of a pixel: standard deviation sqrt(0.4) = 0.63 px.
+  // Blur of the lens and the size of a pixel: standard deviation sqrt(0.4) = 0.63 px.
   constexpr float kSide = 0.2F, kMiddle = 0.6F;
   std::vector<float>& out = out_.radiance;
   const std::size_t w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
@@ -214,7 +214,7 @@ double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector
       const std::size_t i = static_cast<std::size_t>(y * width_ + x);
       const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], bearing_z_[i]);
       const Eigen::Vector3f own = seen_[i] < 0 ? -v : (views_[static_cast<std::size_t>(seen_[i])].velocity - v).eval();
-      const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // of the point, over its depth
+      const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // velocity of the point / depth
       if (wide_) {
         fastest = std::max(fastest, focal_ * focal_ * b.cross(moved).squaredNorm());
       } else {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting of a scene into a distorted camera, and the speed of its image.
+// Ray casting of a scene into a camera with distortion, and the speed of the image.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,10 @@
 
 namespace edged {
 
-/// One picture, row by row.
+/// A picture, row by row.
 struct Rendering {
   std::vector<float> radiance;  ///< linear, 1 is a white spot in good light
-  /// 1 / z-depth [1/m], of a lens with a view_limit 1 / distance; 0 where there is nothing
+  /// 1 / z-depth [1/m], or 1 / distance for a lens with a view_limit; 0 without a surface
   std::vector<float> inverse_depth;
 };
 
@@ -30,7 +30,8 @@ class Renderer {
   const Scene& scene() const { return scene_; }
 
   /// Fastest image motion [px/s] in the last picture, for a camera that moves with v_C [m/s] and turns with omega_C
-  /// [rad/s], both in its own frame; of surfaces and of the edge of a wandering light; evaluated at every fourth pixel.
+  /// [rad/s], both in the camera frame. Includes surfaces and the edge of a moving light. Evaluated at every fourth
+  /// pixel.
   double max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector3d& omega_C) const;
 
   int width() const { return width_; }
@@ -53,20 +54,20 @@ class Renderer {
   PixelBox bounds(const Face& face, const SE3& T_C_W) const;
   void cast(const View& view, const PixelBox& box, int index);
   void shade();
-  /// Of the edge of the light [px^2/s^2], at most.
+  /// Largest squared speed of the edge of the light [px^2/s^2].
   float squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const;
   void blur();
 
   int width_, height_;
   float focal_;
-  bool wide_;  // bearings are unit vectors, to all sides
+  bool wide_;  // bearings are unit vectors in all directions
   Scene scene_;
   LightField light_;
   std::vector<float> bearing_x_, bearing_y_, bearing_z_;
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
-  std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, of a lens that is not wide
+  std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, unless wide_
   std::vector<View> views_;
-  Beam beam_;              // of the spotlight in the camera frame; dark where there is none
+  Beam beam_;              // of the spotlight in the camera frame; dark without one
   std::vector<int> seen_;  // face at each pixel, -1 for none
   std::vector<float> scratch_;
   Rendering out_;

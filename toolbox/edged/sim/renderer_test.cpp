@@ -52,7 +52,8 @@ TEST(Renderer, ShowsTheNearerOfTwoFacesAndNothingFromBehind) {
 TEST(Renderer, ALensThatSeesBehindItselfSeesTheWallBehindIt) {
   const CameraModel camera(96, 96, 30, 30, 48, 48, DistortionModel::Equidistant);
   Renderer renderer(camera, wall_scene(2.0, 200.0));
-  const SE3 away(Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d::Zero());  // looks along -z, the wall in its back
+  const SE3 away(Eigen::Quaterniond(0, 1, 0, 0),
+                 Eigen::Vector3d::Zero());  // the camera axis is along -z, away from the wall
   const Rendering& picture = renderer.render(away);
   EXPECT_EQ(picture.inverse_depth[48 * 96 + 48], 0.0F);
   const Eigen::Vector3d ray = camera.pixel_to_ray({0.0, 0.0});
@@ -86,7 +87,7 @@ double largest_motion(const CameraModel& camera, const Rendering& picture, const
 TEST(Simulator, MovesNoPixelMoreThanHalfAPixelBetweenRenders) {
   SimulatorConfig config = simulator_preset("handheld-fast");
   config.duration_s = 2.5;
-  config.imu.rate_hz = 5000.0;  // so that next() comes back after nearly every picture
+  config.imu.rate_hz = 5000.0;  // so that next() returns after nearly every picture
   Simulator simulator(config);
   Rendering before = simulator.last_rendering();
   const auto camera_at = [&](Timestamp t) { return simulator.trajectory().at(to_seconds(t)).T_W_B * config.T_B_C; };

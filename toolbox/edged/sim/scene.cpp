@@ -20,7 +20,7 @@ Eigen::Quaterniond random_rotation(Random& random) {
   return Eigen::Quaterniond(random.normal(), vector.x(), vector.y(), vector.z()).normalized();
 }
 
-/// The six faces of a cuboid of these half sizes, seen from outside, or from inside for a room.
+/// The six faces of a cuboid of these half sizes, visible from outside, or from inside for a room.
 struct Cuboid {
   SE3 T_W_O;
   Eigen::Vector3d half;
@@ -50,7 +50,7 @@ void add_cuboid(Scene& scene, const Cuboid& cuboid, double light, Random& random
   }
 }
 
-/// The faces from `first` on once more, moved.
+/// Adds moved copies of the faces from `first` on.
 void add_moved(Scene& scene, std::size_t first, const Eigen::Vector3d& by_W) {
   for (std::size_t i = first, end = scene.faces.size(); i < end; ++i) {
     scene.faces.push_back(Face(scene.faces[i]));
@@ -66,8 +66,8 @@ bool keeps_clear(const Cuboid& cuboid, double clearance, std::span<const SE3> pa
   });
 }
 
-/// The blank half of the room at -x: uniform walls right in front of the room's own, so that not even their edges are
-/// visible.
+/// The blank half of the room at -x: uniform walls directly in front of the walls of the room, whose edges are hidden,
+/// too.
 void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   Cuboid half = room;
   half.half -= Eigen::Vector3d::Constant(1e-3);
@@ -86,8 +86,8 @@ void paint_half(Scene& scene, const Cuboid& room, double light, Random random) {
   scene.textures.emplace_back(cv::Mat(1, 1, CV_8UC1, cv::Scalar(180)));
 }
 
-/// Of the faces from `first` on: moves them with the newest dynamic_object, with an own light, as their starting place
-/// may have no light map.
+/// Attaches the faces from `first` on to the newest dynamic_object. They have their own light, as their initial
+/// position may have no light map.
 void set_moving(Scene& scene, std::size_t first) {
   for (std::size_t i = first; i < scene.faces.size(); ++i) {
     Face& face = scene.faces[i];
@@ -97,7 +97,7 @@ void set_moving(Scene& scene, std::size_t first) {
   }
 }
 
-/// Upright and 1 m ahead when the camera is at T_W_C, walking to its left, 0.65 m/s.
+/// A person 1 m in front of a camera at T_W_C, who walks to its left at 0.65 m/s.
 void add_person(Scene& scene, const SE3& T_W_C, double at_s, double light, Random random) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d left = up.cross(T_W_C.rotation() * Eigen::Vector3d::UnitZ()).normalized();
@@ -134,7 +134,7 @@ Outlook outlook(std::span<const SE3> path_W_C) {
   return out;
 }
 
-/// Head, trunk and two legs that stride; the trunk is as broad as wanted.
+/// Head, trunk of the given width, and two moving legs.
 void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const DynamicObject& walk, double light,
                 Random& random) {
   struct Part {
@@ -160,12 +160,12 @@ void add_walker(Scene& scene, const SE3& T_W_P, double breadth_m, const DynamicO
 }
 
 /// Two people who cross the view again and again, one behind the other, from the moment the disturbance begins.
-/// Together they cover about its strength of the view when both are in it.
+/// With both in view, they cover a share of the view of about the strength of the disturbance.
 void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance& disturbance, double light,
                  Random random) {
   constexpr double kClearance_m = 0.9, kBehind_m = 0.35, kReach_m = 1.1, kAway_m_s = 2.0;
-  constexpr double kViewPerDepth = 1.2;    // width of the view of a usual camera
-  constexpr double kHeightCovered = 0.85;  // by somebody who stands before it
+  constexpr double kViewPerDepth = 1.2;    // width of the view of a common camera at 1 m
+  constexpr double kHeightCovered = 0.85;  // by a person in front of the camera
   const Outlook view = outlook(path_W_C);
   Eigen::Matrix3d R_W_P;
   R_W_P << view.left_W, -view.ahead_W, Eigen::Vector3d::UnitZ();
@@ -185,8 +185,8 @@ void add_walkers(Scene& scene, std::span<const SE3> path_W_C, const Disturbance&
   }
 }
 
-/// Held beside the camera's mean position, aimed along its mean axis.
-/// unit: radiance of the light 1 of the scene's faces.
+/// A spotlight beside the mean position of the camera, along its mean axis.
+/// unit: radiance that corresponds to light 1 of the faces.
 Spotlight make_spotlight(std::span<const SE3> path_W_C, const Disturbance& disturbance, double unit, Random random) {
   const Outlook view = outlook(path_W_C);
   Spotlight spot;
@@ -213,7 +213,7 @@ void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   const bool twins = config.twin_m > 0.0;
   const Eigen::Vector3d to_twin = config.twin_m * Eigen::Vector3d::UnitX();
   int placed = 0;
-  // A room too full for another box keeps the ones it has.
+  // If there is no space for another box, no further ones are added.
   for (int tries = 0; placed < config.objects && tries < 200 * config.objects; ++tries) {
     Cuboid box;
     for (int i = 0; i < 3; ++i) box.half[i] = random.uniform(0.12, 0.4);

@@ -27,26 +27,26 @@ struct DynamicObject {
 
   Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();  ///< [m/s]
   std::vector<Swing> swings = {};
-  /// Before and after its time it approaches and leaves.
+  /// It moves with away_W before from_s and after to_s: it approaches and leaves.
   double from_s = 0.0, to_s = 1e9;
   Eigen::Vector3d away_W = Eigen::Vector3d::Zero();  ///< [m/s]
 
-  /// From where its faces have their centres.
+  /// Displacement from the centres of its faces.
   Eigen::Vector3d displacement(double t_s) const;
   Eigen::Vector3d velocity(double t_s) const;
 };
 
-/// A rectangle seen from the side its normal points to.
+/// A rectangle that is visible from the side of its normal.
 struct Face {
   Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal, u x v = -normal
   double half_u = 0.0, half_v = 0.0;             ///< [m]
-  int dynamic_object = -1;                       ///< of the scene, with which it moves; -1: it stays
+  int dynamic_object = -1;                       ///< index into the scene: the face moves with it; -1: static
   std::size_t texture = 0;                       ///< index into the scene
   float texels_per_m = 256.0F;
   float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
   float brightness = 1.0F;                 ///< radiance of a white spot in light 1
-  bool glows = false;                      ///< by itself, whatever light falls on it
-  int lamp = -1;                           ///< a face that glows does so with this lamp of the scene; -1: always
+  bool glows = false;                      ///< its radiance does not depend on the light
+  int lamp = -1;                           ///< the face glows while this lamp of the scene is on; -1: always
 };
 
 struct Scene {
@@ -54,15 +54,13 @@ struct Scene {
   std::vector<Face> faces;
   std::vector<DynamicObject> dynamic_objects;
   std::optional<Lighting> lighting;    ///< none: light 1 everywhere
-  std::optional<Spotlight> spotlight;  ///< on top of it
+  std::optional<Spotlight> spotlight;  ///< in addition
 };
 
-/// The scene around a camera path: a closed room that holds all of it with objects that keep clear of it, a wall in
-/// front of all of it, square to the mean optical axis, or a hall that does not depend on the path but for where its
-/// furniture stands.
-/// What the disturbance (filled in) wants is made, too: a blank wall (of a room only; the half of it at -x); a person,
-/// who passes before the camera at T_W_C_meeting; walkers, to and fro before the camera's mean place; a lamp whose spot
-/// wanders.
+/// The scene around a camera path: a closed room around it, with objects that keep their distance from it; a wall in
+/// front of it, perpendicular to the mean optical axis; or a hall, in which only the furniture depends on the path.
+/// disturbance (with its defaults set): adds a blank wall (in a room only, the half at -x), a person who passes in
+/// front of the camera at T_W_C_meeting, walkers in front of the mean camera position, or a lamp with a moving spot.
 Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed,
                  const Disturbance& disturbance = {}, const SE3& T_W_C_meeting = {});
 

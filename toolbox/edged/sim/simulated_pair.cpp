@@ -16,13 +16,13 @@ SimulatorConfig of_right(SimulatorConfig config, double baseline_m) {
   return config;
 }
 
-/// Its stamp, of a batch that of its first event, where it is one of those.
+/// The stamp of a measurement of type T, for a batch that of its first event. Timestamp::max() for other measurements.
 template <typename T>
 Timestamp stamp_as(const std::optional<Measurement>& measurement) {
   return measurement && std::holds_alternative<T>(*measurement) ? *first_stamp(*measurement) : Timestamp::max();
 }
 
-/// Its events before that stamp; the rest stays.
+/// Takes the events before that stamp. The rest stays.
 Measurement take_events(std::optional<Measurement>& measurement, Timestamp end) {
   auto& batch = std::get<EventBatch>(*measurement);
   const auto cut = std::ranges::find_if(batch.events, [end](const Event& event) { return event.t >= end; });
@@ -37,7 +37,7 @@ Measurement take_events(std::optional<Measurement>& measurement, Timestamp end) 
 SimulatedPair::SimulatedPair(const SimulatorConfig& config, double baseline_m)
     : left_(config), right_(of_right(config, baseline_m)) {}
 
-/// Its IMU and its external sensors are those of the left one.
+/// IMU and external sensors are those of the left simulator.
 std::optional<Measurement> SimulatedPair::take_right() {
   while (std::optional<Measurement> measurement = right_.next()) {
     if (camera_of(*measurement)) return measurement;

@@ -10,8 +10,8 @@
 
 namespace edged {
 
-/// "events" and "frames" as of the Simulator, with its IMU and the same bits; "events2" and "frames2" to the right of
-/// them, with noise of their own.
+/// "events", "frames" and the IMU have the same bits as those of Simulator. "events2" and "frames2" are to the right of
+/// them, with independent noise.
 class SimulatedPair final : public Dataset {
  public:
   static constexpr double kUsualBaseline_m = 0.1;

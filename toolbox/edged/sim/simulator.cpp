@@ -27,7 +27,7 @@ namespace {
 constexpr Timestamp kForever = Timestamp::max();
 constexpr Duration kMicrosecond(1000);
 constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
-// Between renders at most this, so that slow changes (leak, bandwidth, onset of motion) are not missed.
+// Longest time between renders, so that slow changes (leak, bandwidth, onset of motion) are not missed.
 constexpr double kLongestStep_s = 3e-3;
 
 SimulatorConfig checked(SimulatorConfig config) {
@@ -61,7 +61,7 @@ Scene scene_of(const DisturbedTrajectory& trajectory, const SimulatorConfig& con
                     config.disturbance, trajectory.at(config.disturbance.middle_s()).T_W_B * config.T_B_C);
 }
 
-/// Turns are about the camera's axis that points down.
+/// Rotations of the disturbance are about the y axis of the camera, which points down.
 DisturbedTrajectory trajectory_of(const SimulatorConfig& config) {
   return {make_motion(config.motion, config.duration_s, config.T_B_C, static_cast<std::uint64_t>(config.seed)),
           config.disturbance, config.imu.gyro_range, config.T_B_C.R().col(1)};
@@ -71,7 +71,7 @@ Timestamp whole_microseconds(double s) {
   return timestamp_from_ns(static_cast<std::int64_t>(std::llround(s * 1e6)) * 1000);
 }
 
-/// An even number of microseconds, so that its middle is a whole one.
+/// An even number of microseconds, so that the middle is a whole number of them.
 Duration exposure_of(double ms) { return whole_microseconds(ms * 1e-3).time_since_epoch() / 2000 * 2000; }
 
 std::uint64_t noise_seed(const SimulatorConfig& config) {
@@ -144,12 +144,12 @@ class Simulator::Impl {
   void advance();
   Timestamp next_render_time() const;
   void prepare_imu();
-  /// The external sensor whose sample is next; null without any.
+  /// The external sensor with the next sample; null without any.
   ExternalModel* next_external();
   void collect_light(Timestamp from, Timestamp to);
-  /// Per pixel, from now until the next picture.
+  /// Rate of additional events per pixel until the next picture.
   double storm_hz() const;
-  /// Of the frame that is exposed next.
+  /// Begin and middle of the next exposure.
   Timestamp exposure_begin() const;
   Timestamp exposure_middle() const { return exposure_begin() + exposure_ / 2; }
   EventBatch take_events(Timestamp before);
@@ -165,13 +165,13 @@ class Simulator::Impl {
   FrameCamera frame_camera_;
   ImuModel imu_model_;
   std::vector<ExternalModel> external_models_;
-  Duration time_offset_, exposure_;  // the latter of the next frame
+  Duration time_offset_, exposure_;  // exposure_: of the next frame
   Timestamp end_;                    // of the cameras
   std::optional<Timestamp> t_;       // rendered up to here
   int frame_count_ = 0;              // read out so far
   std::int64_t imu_count_ = 0;
   std::vector<float> radiance_, previous_;  // input of the sensors: the last rendered image and the one before
-  std::deque<Event> events_;                // rendered but not returned yet, as frames_
+  std::deque<Event> events_;                // rendered but not yet returned; frames_, too
   std::deque<Frame> frames_;
   std::optional<ImuSample> imu_;  // the next one
   std::size_t renderings_ = 0;
@@ -294,7 +294,7 @@ double Simulator::Impl::image_speed(Timestamp t) const {
 }
 
 Timestamp Simulator::Impl::next_render_time() const {
-  // A reserve of a tenth for motion between the evaluated pixels.
+  // A margin of a tenth for the motion between the evaluated pixels.
   const double reach = 0.9 * config_.max_motion_px;
   const double speed = std::max(image_speed(*t_), 1e-3);
   double step = std::min(kLongestStep_s, reach / speed);
@@ -328,7 +328,7 @@ double Simulator::Impl::storm_hz() const {
 
 void Simulator::Impl::collect_light(Timestamp from, Timestamp to) {
   if (from < exposure_begin()) return;
-  // Renders are placed on both ends of every exposure, so that an interval is within one or outside.
+  // Both ends of each exposure are rendered, so that an interval is inside or outside an exposure.
   frame_camera_.expose(previous_, radiance_, to_seconds(to - from));
   if (to < exposure_begin() + exposure_) return;
   Frame frame{exposure_middle(), "frames" + config_.mount.suffix, frame_camera_.read_out()};

@@ -137,7 +137,7 @@ TEST(Simulator, StampsFramesInTheMiddleOfExposuresThatAdaptToTheLight) {
   SimulatorConfig config = small("low-lit", 1.0);
   const Recorded recorded = record(config);
   ASSERT_EQ(recorded.frames.size(), 25U);
-  // Frame k begins at (k + 0.1) / rate; exposed for 8 ms at first, as long as allowed soon.
+  // Frame k begins at (k + 0.1) / rate. The exposure is 8 ms at first, and soon the longest allowed.
   EXPECT_EQ(recorded.frames.front().t, timestamp_from_seconds(0.004 + 0.004));
   EXPECT_EQ(recorded.frames.back().t, timestamp_from_seconds(24.1 / 25.0 + 0.0125));
   EXPECT_LT(cv::mean(recorded.frames.back().image)[0], 25.0);

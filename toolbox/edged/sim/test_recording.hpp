@@ -20,7 +20,7 @@ struct Recorded {
   std::vector<ImuSample> imu;
 };
 
-/// A quarter of a DAVIS240C's pixels and hardly a rest at the start.
+/// A quarter of the pixels of a DAVIS240C, with a short rest at the start.
 inline SimulatorConfig small(const std::string& preset, double duration_s) {
   SimulatorConfig config = simulator_preset(preset);
   config.duration_s = duration_s;

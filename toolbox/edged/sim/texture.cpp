@@ -76,7 +76,7 @@ void draw_text(cv::Mat& image, const cv::Point& at, double scale, Random& random
               cv::LINE_AA);
 }
 
-/// One mark of a random kind; size: about how large [texels].
+/// One mark of a random kind. size: approximate size [texels].
 void draw_mark(cv::Mat& image, double size, Random& random) {
   const cv::Point at{random.index(image.cols), random.index(image.rows)};
   const cv::Scalar ink(random.uniform() < 0.5 ? random.uniform(12, 70) : random.uniform(160, 245));
@@ -97,7 +97,7 @@ void draw_mark(cv::Mat& image, double size, Random& random) {
   }
 }
 
-/// Large marks first, small ones over them; as many of each as keep their covered area alike.
+/// Large marks first, small ones over them. Each size covers the same area.
 void draw_marks(cv::Mat& image, double cover, Random& random) {
   for (double mark = 160.0; mark >= 10.0; mark *= 0.7) {
     const int count = static_cast<int>(cover * image.rows * image.cols / (mark * mark));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Procedural surfaces, and their anti-aliased look-up.
+// Procedural textures, and their anti-aliased sampling.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Rough log2 of x > 0: linear between powers of two, so continuous; off by at most 0.09.
+/// Approximate log2 of x > 0: linear between powers of two and continuous, with an error of at most 0.09.
 inline float rough_log2(float x) { return static_cast<float>(std::bit_cast<std::uint32_t>(x)) * 0x1.0p-23F - 127.0F; }
 
 /// A square albedo map (0..255) that repeats in both directions, with a pyramid of halved copies.
@@ -62,10 +62,10 @@ class Texture {
   std::vector<Level> levels_;
 };
 
-/// Clouds of many octaves with checker pieces, strokes, discs, polygons and letters on them: corners at every scale.
+/// Noise of many octaves with checkers, strokes, discs, polygons and letters: corners at all scales.
 Texture make_rich_texture(int size, Random& random);
 
-/// The same with less of everything: a painted wall with a mark here and there.
+/// The same with fewer marks: a painted wall.
 Texture make_plain_texture(int size, Random& random);
 
 /// White with a few dark polygons, discs and stars, none touching another.

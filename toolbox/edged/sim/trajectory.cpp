@@ -81,7 +81,8 @@ Samples unroll(const Trajectory& poses) {
   return out;
 }
 
-/// Minimises the weighted squared residuals plus a trace of roughness that only matters where samples are missing.
+/// Minimises the weighted squared residuals plus a small penalty on roughness, which only matters where samples are
+/// missing.
 std::vector<Vector7d> solve(const Samples& samples, const std::vector<double>& weights, double knot_s,
                             std::size_t controls) {
   constexpr double kRoughness = 1e-4;
@@ -160,7 +161,7 @@ Kinematics PoseSpline::at(double s) const {
   k.T_W_B = SE3(q, value.head<3>());
   k.v_W = first.head<3>();
   k.a_W = second.head<3>();
-  // The part of q^-1 dq along the scalar is the change of length, which normalising removes.
+  // The scalar part of q^-1 dq is the change of the norm, which the normalisation removes.
   k.omega_B = 2.0 * (q.conjugate() * dq).vec() / q.squaredNorm();
   return k;
 }
@@ -173,7 +174,7 @@ Ramp ramp(double t, double length_s) {
 }
 
 Kinematics ContinuousTrajectory::at(double t) const {
-  // The clock of the spline: its speed and place.
+  // Speed and time of the clock of the spline.
   auto [rate, rate_change, s] = ramp(t - rest_s_, blend_s_);
   if (s >= spline_.duration()) s = spline_.duration(), rate = 0.0, rate_change = 0.0;
   Kinematics k = spline_.at(s);

@@ -31,8 +31,8 @@ class PoseSpline {
  public:
   using Vector7d = Eigen::Matrix<double, 7, 1>;
 
-  /// Robust least squares through samples T_W_B in time order, outliers weighted away, gaps bridged smoothly. Throws
-  /// InputError when there are fewer than 8 samples or stamps that do not increase.
+  /// Robust least squares fit of samples T_W_B in time order. Outliers get a low weight, and gaps are bridged smoothly.
+  /// Throws InputError for fewer than 8 samples, and for stamps that do not increase.
   static PoseSpline fit(const Trajectory& samples, const SplineFit& options);
 
   /// Seconds since the first sample; clamped to [0, duration].
@@ -50,8 +50,8 @@ struct Ramp {
 };
 Ramp ramp(double t, double length_s);
 
-/// A spline that is at rest at first, then takes up its motion smoothly: the path stays the same, its clock s(t) runs
-/// from standing still to full speed during the blend.
+/// A spline that is at rest at first and then starts smoothly. The path is unchanged: its clock s(t) accelerates from
+/// rest to full speed during the blend.
 class ContinuousTrajectory {
  public:
   /// rest_s: time at rest [s]; blend_s: until full speed is reached [s].
@@ -62,7 +62,7 @@ class ContinuousTrajectory {
   Kinematics at(double t) const;
   double duration() const { return rest_s_ + 0.5 * blend_s_ + spline_.duration(); }
 
-  /// What is to be added to t after the blend to get seconds since the first sample.
+  /// The offset to be added to t after the blend, to get seconds since the first sample.
   double sample_shift() const { return -rest_s_ - 0.5 * blend_s_; }
 
  private:

@@ -46,7 +46,8 @@ TEST(ContinuousTrajectory, RestsAtFirstAndThenReachesItsPeaks) {
     rate = std::max(rate, k.omega_B.norm());
   }
   EXPECT_NEAR(speed, 1.5, 0.15);
-  EXPECT_NEAR(rate, 150.0 * M_PI / 180.0, 0.6);  // of the three angles, which is not quite that of the rotation
+  EXPECT_NEAR(rate, 150.0 * M_PI / 180.0,
+              0.6);  // rate of the three angles, which differs slightly from the angular rate
 }
 
 TEST(PoseSpline, IgnoresOutliers) {
@@ -117,7 +118,7 @@ TEST(ImuModel, ShakesWithItsMotorsAtTheirFrequencyOnly) {
     }
   }
   EXPECT_NEAR(std::sqrt(squares / 3000.0), 2.0 * std::sqrt(1.25), 0.4);
-  EXPECT_NEAR(sum / 3000.0, 0.0, 0.05);  // which integrates to nothing
+  EXPECT_NEAR(sum / 3000.0, 0.0, 0.05);  // its integral is zero
 }
 
 TEST(ImuModel, ReadsNoMoreThanItsRange) {

@@ -9,7 +9,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kAround = std::chrono::seconds(2);  // averaging time for gravity: other accelerations average out
+constexpr Duration kAround = std::chrono::seconds(2);  // averaging time for gravity; other accelerations average out
 constexpr Duration kLeastAround = std::chrono::milliseconds(2500);
 constexpr Duration kLongestGap = std::chrono::milliseconds(60);  // between two turns
 constexpr double kLeastPush = 0.5;                               // [m/s^2]

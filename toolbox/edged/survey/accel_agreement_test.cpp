@@ -25,7 +25,7 @@ Eigen::Vector3d acceleration(double t) {
   return (place_at(t + kStep_s) - 2 * place_at(t) + place_at(t - kStep_s)) / (kStep_s * kStep_s);
 }
 
-/// A flight of 12 s: IMU samples with that sign of the accelerometer, and the rotations of a camera.
+/// A flight of 12 s: IMU samples with the given sign of the accelerometer, and the rotations of a camera.
 struct Flown {
   GyroIntegral imu;
   std::vector<Turn> turns;

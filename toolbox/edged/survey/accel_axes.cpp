@@ -11,12 +11,13 @@
 namespace edged {
 namespace {
 
-constexpr Duration kMean = std::chrono::milliseconds(250);  // averages vibration out
-constexpr std::size_t kApart = 8;                           // time between compared means, for a sufficient rotation
-constexpr Duration kHole = std::chrono::milliseconds(50);   // samples missing
-constexpr double kLeastTurn = 0.15;                         // [rad] between them
-constexpr std::size_t kFewest = 8;                          // pairs
-constexpr double kClearlyLess = 0.5;  // of the squared error; right ones: 0.69 at least (mirrors, EuRoC, simulator)
+constexpr Duration kMean = std::chrono::milliseconds(250);  // removes vibration
+constexpr std::size_t kApart = 8;  // number of means between compared ones, for a sufficient rotation
+constexpr Duration kHole = std::chrono::milliseconds(50);  // a longer step: samples are missing
+constexpr double kLeastTurn = 0.15;                        // [rad] between them
+constexpr std::size_t kFewest = 8;                         // pairs
+// Ratio of squared errors. Correct axes have at least 0.69 (mirrors, EuRoC, simulator).
+constexpr double kClearlyLess = 0.5;
 
 }  // namespace
 

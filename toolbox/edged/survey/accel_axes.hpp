@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Whether the accelerometer's axes are those of the gyro.
+// Checks whether the axes of the accelerometer are those of the gyro.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,9 +13,9 @@
 
 namespace edged {
 
-/// As the body rotates, gravity rotates the opposite way in its axes. If it does so only after sign changes of
-/// accelerometer axes, these contradict the gyro's. (Negating the third axis is equivalent to negating both others;
-/// negating all three is not observable: down for up.) The unit of the gyro must be right. Memory is bounded.
+/// When the body rotates, gravity rotates in the opposite direction in the axes of the body. If this holds only after
+/// sign changes of accelerometer axes, these contradict the gyro. (Negating the third axis is equivalent to negating
+/// both others. Negating all three is not observable.) The unit of the gyro must be correct. Memory is bounded.
 class AccelAxes {
  public:
   AccelAxes();
@@ -36,7 +36,7 @@ class AccelAxes {
 
   void end_mean();
 
-  std::array<Eigen::Vector3d, 4> signs_;  ///< of the axes; as they are first
+  std::array<Eigen::Vector3d, 4> signs_;  ///< candidate signs of the axes; the first are the given ones
   std::array<double, 4> errors_{};        ///< sum of squares, one for each signs [m^2/s^4]
   std::size_t pairs_ = 0;
   std::optional<ImuSample> last_;

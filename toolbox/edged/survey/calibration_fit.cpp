@@ -14,10 +14,12 @@ namespace {
 struct Offset {
   double value = 0.0, sigma = 0.0;
   double least =
-      0.0;  ///< a smaller offset fits, whatever the sigma: calibrations are not more accurate, and a run corrects it
+      0.0;  ///< a smaller offset fits for any sigma: calibrations are not more accurate, and a run corrects it
   double known = 0.0;  ///< with a larger sigma the fit is undetermined
 
-  /// Sigmas of an estimate are already inflated by two. With sigmas at `known`, an offset of 2 * known is detected.
+  /// The sigmas of an estimate are already inflated by a factor of two. With a sigma of `known`, an offset of 2 * known
+  /// is
+  /// detected.
   bool off() const { return std::abs(value) > std::max(least, 2.0 * sigma); }
   bool unknown() const { return sigma > known && !off(); }
 };

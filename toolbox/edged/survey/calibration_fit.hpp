@@ -17,10 +17,10 @@ struct CalibrationFound {
   double rotation_deg = 0.0;    ///< between T_B_C as given and as estimated
   double time_offset_ms = 0.0;  ///< estimated total time offset
   double given_offset_ms = 0.0;
-  bool beyond = false;  ///< farther off than the priors estimator.calibration.*: wrong, and not corrected
+  bool beyond = false;  ///< farther off than the priors estimator.calibration.* allow: wrong, and not corrected
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of the estimate; nothing without one
   bool inverse = false;                                     ///< the estimate is the inverse of the given rotation
-  bool events = false;                                      ///< its pixels have a latency, which is part of its clock
+  bool events = false;  ///< an event camera: the latency of its pixels is part of the time offset
 
   bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }
 };
@@ -44,8 +44,8 @@ struct CalibrationFit {
 /// Whether the estimated rotation or clock differs from the given one.
 bool is_off(const CalibrationFound& found);
 
-/// found: without sigmas if there is no estimate. findings: those of `camera NAME: ...` concern that camera, other
-/// errors all. missing: what initialization waited for last, may be empty.
+/// found: without sigmas if there is no estimate. findings: those that begin with `camera NAME:` concern that camera,
+/// other errors concern all. missing: the last condition that initialization waited for; may be empty.
 CalibrationFit judge_fit(const std::vector<CalibrationFound>& found, std::vector<Finding> findings,
                          const std::string& missing);
 

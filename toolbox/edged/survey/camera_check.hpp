@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a camera and the gyro say of each other.
+// The result of the comparison of a camera with the gyro.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@ namespace edged {
 struct CameraCheck {
   RigCamera camera;  ///< as calibrated
   bool has_extrinsics = true;
-  std::optional<GyroAgreement> agreement;  ///< nothing where there was too little to compare
-  std::optional<ClockRate> clock = {};     ///< where the IMU's runs at another rate than the camera's
+  std::optional<GyroAgreement> agreement;  ///< nothing without enough rotations to compare
+  std::optional<ClockRate> clock = {};     ///< if the IMU clock runs at another rate than the camera clock
 
-  /// Whether enough of the turning is explained for the rest to mean something.
+  /// True if the gyro explains enough of the rotation for the other results to be reliable.
   bool sure() const { return agreement && agreement->unexplained < 0.5; }
-  /// Whether the gyro is in deg/s.
+  /// True if the gyro is in deg/s.
   bool in_degrees() const;
 };
 

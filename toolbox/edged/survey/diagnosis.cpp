@@ -19,8 +19,8 @@ namespace edged {
 namespace {
 
 constexpr double kShortest_s = 1.0;     // a run needs this much to initialize
-constexpr double kMostLeftOut_s = 0.5;  // at an end that not all sensors reach
-constexpr double kSigmas = 6.0;         // errors of corners are correlated, so sigmas are too small
+constexpr double kMostLeftOut_s = 0.5;  // per end of the recording, not covered by all sensors
+constexpr double kSigmas = 6.0;         // correlated errors of corners make sigmas too small
 
 std::string interval(const char* name, const StreamSurvey& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
@@ -99,7 +99,7 @@ void judge_frames(const Survey& s, Findings& out) {
 }
 
 void judge_shift(const CameraCheck& check, Findings& out) {
-  // In dim light the events are delayed by milliseconds relative to good light: no error of the clock.
+  // In low light, events are delayed by milliseconds, which is no error of the clock.
   constexpr double kDetermined_ms = 2.5;
   const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
@@ -139,7 +139,8 @@ std::optional<Eigen::Vector3d> unknown_axis(const GyroAgreement& found) {
 }
 
 RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found) {
-  // Of the measurement itself: rolling shutter, scale and crossed axes of the gyro, corners that slide along edges.
+  // Errors of the measurement: rolling shutter, scale and cross-axis errors of the gyro, corners that slide along
+  // edges.
   constexpr double kSystematic_deg = 0.8;
   const Eigen::Matrix3d off = R_B_C.transpose() * found.R_B_C;
   const auto axis = unknown_axis(found);
@@ -154,7 +155,7 @@ RotationError error_of(const Eigen::Matrix3d& R_B_C, const GyroAgreement& found)
   return error;
 }
 
-/// Whether the transform is given in the other direction: its inverse fits, and far better than itself.
+/// True if the transform is given in the opposite direction: its inverse fits, and far better.
 bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, const GyroAgreement& found) {
   constexpr double kBetter = 5.0;  // standard deviations
   const RotationError inverse = error_of(given.transpose(), found);
@@ -162,7 +163,7 @@ bool inverse_fits(const Eigen::Matrix3d& given, const RotationError& error, cons
 }
 
 void judge_rotation(const CameraCheck& check, Findings& out) {
-  constexpr double kWrong_deg = 8.0;  // online calibration corrects less than this, at a cost
+  constexpr double kWrong_deg = 8.0;  // the online calibration corrects smaller errors, with a loss of accuracy
   constexpr double kDetermined_deg = 1.5;
   const GyroAgreement& found = *check.agreement;
   const std::string name = "camera " + check.camera.name;
@@ -193,7 +194,7 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
     out.error(text, remedy);
 }
 
-/// An initial guess without a calibration.
+/// An initial guess for a missing calibration.
 void tell_rotation(const CameraCheck& check, Findings& out) {
   const Eigen::Matrix3d& R = check.agreement->R_B_C;
   out.note(fmt::format(
@@ -232,8 +233,8 @@ void judge_gyro_scale(const CameraCheck& check, Findings& out) {
     out.good(fmt::format("camera {}: the gyro's scale agrees with it to {}", check.camera.name, number));
 }
 
-/// From the camera with most information. Rotations overlap and displacements are noisy: the correlation of n unrelated
-/// ones is 1.2 over the root of n.
+/// Uses the camera with the most information. Rotations overlap and displacements are noisy: the correlation of n
+/// unrelated ones is 1.2 / sqrt(n).
 void judge_accel(const std::vector<CameraCheck>& cameras, Findings& out) {
   constexpr double kLeast = 0.3, kByChance = 3.0;
   const CameraCheck* best = nullptr;
@@ -257,7 +258,7 @@ void judge_accel(const std::vector<CameraCheck>& cameras, Findings& out) {
                          accel.correlation));
 }
 
-/// False where the calibration is of a sensor of another size.
+/// False if the calibration is for a sensor of another size.
 bool judge_size(const CameraCheck& check, const Survey& s, Findings& out) {
   const cv::Size calibrated(check.camera.model.width(), check.camera.model.height());
   const bool events = check.camera.modality == Modality::Events;

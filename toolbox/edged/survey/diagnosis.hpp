@@ -17,11 +17,11 @@ inline constexpr const char* kTurnRound =
     "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B "
     "(`edged calib` shows both directions)";
 
-/// True if a finding says that the IMU itself is wrong.
+/// True if a finding states an error of the IMU itself.
 bool imu_unusable(const std::vector<Finding>& findings);
 
 /// In the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground truth, repairs.
-/// calibrated: there is a calibration, though maybe of no camera that is recorded.
+/// calibrated: there is a calibration, possibly of other cameras than the recorded ones.
 std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::vector<CameraCheck>& cameras);
 
 }  // namespace edged

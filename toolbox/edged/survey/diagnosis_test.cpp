@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Each problem is named with its remedy, and a good recording has none.
+// Each problem is reported with its remedy, and a good recording has none.
 #include "edged/survey/diagnosis.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ CameraCheck agreeing() {
   return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
 }
 
-/// The remedy of the first finding of that severity that has this text.
+/// The remedy of the first finding of that severity that contains this text.
 std::string remedy_of(const std::vector<Finding>& findings, Severity severity, const std::string& text) {
   for (const Finding& f : findings)
     if (f.severity == severity && f.text.find(text) != std::string::npos) return f.remedy;

@@ -8,7 +8,8 @@ namespace edged {
 namespace {
 
 constexpr Duration kBin = std::chrono::milliseconds(10);
-constexpr int kMostSide = 2048;  // pixels beyond are not counted one by one; the largest sensor today has 1280 x 720
+// Pixels beyond it are not counted individually. The largest sensor at present has 1280 x 720.
+constexpr int kMostSide = 2048;
 constexpr std::size_t kListedHotPixels = 10;
 
 std::size_t area(cv::Size size) { return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height); }
@@ -17,7 +18,7 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
-/// The largest sensor where the size is not known.
+/// The largest sensor, if the size is unknown.
 cv::Size counted_area(cv::Size sensor) {
   return sensor.empty() ? cv::Size(kMostSide, kMostSide)
                         : cv::Size(std::min(sensor.width, kMostSide), std::min(sensor.height, kMostSide));
@@ -40,7 +41,7 @@ void EventSurveyor::add(std::span<const Event> events) {
   }
 }
 
-/// Ends the bin that is being counted; the others of so many are empty.
+/// Ends the current bin. The remaining bins of `bins` are empty.
 void EventSurveyor::close_bin(std::size_t bins) {
   const double rate = static_cast<double>(bin_events_) / to_seconds(kBin);
   const auto band = std::ranges::upper_bound(EventSurvey::kRateBands, rate) - EventSurvey::kRateBands.begin();

@@ -19,19 +19,19 @@ struct EventSurvey {
 
   double positive_share = 0.0;                              ///< of all events
   double peak_rate_hz = 0.0;                                ///< over 10 ms
-  std::array<double, kRateBands.size() + 1> rate_shares{};  ///< of the time, by band
-  double active_share = 0.0;                                ///< pixels that fired at all, of the sensor
-  cv::Size extent;                                          ///< the least sensor that holds every event [px]
-  bool hot_known = true;  ///< false for a recording that is too short to detect hot pixels
+  std::array<double, kRateBands.size() + 1> rate_shares{};  ///< shares of the time in each band
+  double active_share = 0.0;                                ///< share of the pixels that fired at all
+  cv::Size extent;                                          ///< the smallest sensor that contains all events [px]
+  bool hot_known = true;  ///< false if the recording is too short to detect hot pixels
   std::size_t hot_pixels = 0;
-  double hot_share = 0.0;         ///< events of hot pixels, of all
+  double hot_share = 0.0;         ///< share of the events from hot pixels
   std::vector<HotPixel> hottest;  ///< at most ten, hottest first
 };
 
-/// Takes events in time order. Memory: that of HotPixelFinder, 92 MB at most.
+/// Events must be in time order. Memory: that of HotPixelFinder, at most 92 MB.
 class EventSurveyor {
  public:
-  /// sensor: pixels beyond it are counted, but not one by one; empty where it is not known.
+  /// sensor: events beyond it are counted, but not per pixel; empty if unknown.
   explicit EventSurveyor(cv::Size sensor);
 
   void add(std::span<const Event> events);

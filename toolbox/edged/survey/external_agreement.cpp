@@ -24,16 +24,16 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostSamples = 22'500;
 constexpr Duration kWindow = std::chrono::seconds(4);
-constexpr Duration kForGravity = std::chrono::seconds(4);  // before and after a window
-constexpr std::size_t kFewestSamples = 12;                 // of a window
+constexpr Duration kForGravity = std::chrono::seconds(4);  // duration before and after a window
+constexpr std::size_t kFewestSamples = 12;                 // in a window
 constexpr Duration kForRate = std::chrono::milliseconds(10);
 constexpr double kCorrelated = 2.0;    // inflation of sigmas: the residuals of a window are correlated
-constexpr double kKnown = 0.2;         // sigma of a scale, or of an entry of a rotation, that is known
-constexpr double kKnownHeight = 0.25;  // of its scale
+constexpr double kKnown = 0.2;         // largest sigma of a determined scale or entry of a rotation
+constexpr double kKnownHeight = 0.25;  // largest sigma of the determined scale of the height
 constexpr double kSureSigmas = 4.0;
 constexpr double kArmSigma_m = 0.3;  // prior of the lever arm
 
-/// Calls `use` with the samples of each window, one after the other.
+/// Calls `use` with the samples of each window.
 template <typename Sample, typename Use>
 void for_each_window(const std::vector<Sample>& samples, const Use& use) {
   for (std::size_t begin = 0; begin < samples.size();) {
@@ -44,10 +44,10 @@ void for_each_window(const std::vector<Sample>& samples, const Use& use) {
   }
 }
 
-/// The columns of A without their projection on those of C.
+/// The columns of A minus their projection on those of C.
 MatrixXd unexplained(const MatrixXd& A, const MatrixXd& C) { return A - C * C.householderQr().solve(A); }
 
-/// Normal equations of the shared unknowns of a sensor and the IMU; those of each window are eliminated.
+/// Normal equations of the shared unknowns of a sensor and the IMU. The unknowns of each window are eliminated.
 struct Equations {
   explicit Equations(Eigen::Index unknowns) : N(MatrixXd::Zero(unknowns, unknowns)), b(VectorXd::Zero(unknowns)) {}
 
@@ -100,7 +100,7 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
   const auto n = static_cast<Eigen::Index>(window.size());
   MatrixXd A(3 * n, 12), own(3 * n, 6);
   VectorXd y(3 * n);
-  Vector3d measured = Vector3d::Zero();  // of each axis, how often
+  Vector3d measured = Vector3d::Zero();  // number of measurements of each axis
   for (Eigen::Index i = 0; i < n; ++i) {
     const VelocitySample& sample = window[static_cast<std::size_t>(i)];
     const auto attitude = gyro.attitude_at(sample.t);
@@ -119,7 +119,7 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
     y.segment<3>(3 * i) = *pushed;
   }
   equations.add(A, y, own);
-  // Noise adds to the squares of the columns, which would bias their length.
+  // Noise increases the squares of the columns, so it would bias their length.
   for (int axis = 0; axis < 3; ++axis) {
     if (measured[axis] > 2.0)
       equations.N.diagonal().segment<3>(3 * axis).array() -= noise * noise * (measured[axis] - 2.0);
@@ -144,7 +144,7 @@ Turned nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
 
 double angle_of(const Matrix3d& R) { return so3::log(Eigen::Quaterniond(R)).norm(); }
 
-/// If no rotation fits, the axis with the wrong sign, or all axes. The signs with the smallest rotation are chosen.
+/// The axis with the wrong sign, or all axes, if no rotation fits. The signs with the smallest rotation are chosen.
 void look_for_mirror(const Matrix3d& M, const Vector3d& weight, Turned& best, VelocityAgreement& agreement) {
   constexpr double kBad = 0.1, kFarBetter = 0.2;
   const double without = best.misfit;
@@ -224,7 +224,7 @@ void judge_mirrored(const VelocityAgreement& found, std::vector<Finding>& out) {
 void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out) {
   constexpr double kOff_deg = 20.0, kOff = 0.15;
   const double angle_deg = kDegreesPerRadian * angle_of(found.T_B_S.R()), sigma_deg = kDegreesPerRadian * found.sigma;
-  const double ratio = 1.0 / found.scale;  // of what is measured
+  const double ratio = 1.0 / found.scale;  // measured over true velocity
   if (found.left_handed) return judge_mirrored(found, out);
   const bool turned = angle_deg > std::max(kOff_deg, kSureSigmas * sigma_deg);
   const bool scaled = std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * found.sigma);
@@ -266,7 +266,7 @@ std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySa
   if (gyro.empty()) return std::nullopt;
   Equations equations(12);
   for_each_window(samples, [&](const auto& window) { add_velocities(window, gyro, noise, equations); });
-  // The prior decides what the data do not: axes as those of the IMU, and a sensor not far from it.
+  // The prior determines what the data do not: axes of the IMU, and a sensor close to it.
   const double variance = std::pow(std::max(noise, kLeastNoise), 2);
   Eigen::Matrix<double, 12, 1> expected;
   expected << Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::Zero();

@@ -15,28 +15,28 @@
 
 namespace edged {
 
-/// Ratio of the changes of height to those of the accelerometer.
+/// Ratio of the changes of height to those from the accelerometer.
 struct HeightAgreement {
   double scale = 1.0, scale_sigma = 0.0;
 };
 
 /// Rotation and ratio of the velocity in the body's axes to the measured one.
 struct VelocityAgreement {
-  SE3 T_B_S;  ///< the best rotation, and where the sensor is
+  SE3 T_B_S;  ///< the best rotation, and the position of the sensor
   double scale = 1.0;
-  double sigma = 0.0;                               ///< of an entry of R_B_S, of the axes that are known
+  double sigma = 0.0;                               ///< of the entries of R_B_S in the determined axes
   bool left_handed = false;                         ///< a rotation fits only after the signs are applied
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();  ///< of the axes
 };
 
-/// Within a few seconds, a body of unknown velocity, and of unknown gravity or biases, moves as the integral of the
-/// accelerometer says (docs/math.md, Y1). Nothing if the motion does not determine it.
+/// Over a few seconds, the motion of the body is the integral of the accelerometer, with unknown velocity, gravity and
+/// biases (docs/math.md, Y1). Nothing if the motion does not determine the result.
 std::optional<HeightAgreement> compare_heights(const std::vector<HeightSample>& samples, const GyroIntegral& gyro);
 /// noise: of a sample [m/s].
 std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySample>& samples,
                                                     const GyroIntegral& gyro, double noise);
 
-/// Collects samples, a quarter of an hour at 25 Hz at most, and adds findings about them.
+/// Collects samples, at most a quarter of an hour at 25 Hz, and adds findings about them.
 class ExternalCheck {
  public:
   void add(const ExternalSample& sample);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A body that swings and turns, and sensors on it that are mounted, wired or scaled in wrong ways.
+// A body that swings and rotates, with sensors of wrong mounting, sign or scale.
 #include "edged/survey/external_agreement.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ class SensorsOnABody : public ::testing::Test {
     return samples;
   }
 
-  /// measured: what the sensor gives for the velocity of the body in its own axes.
+  /// measured: the output of the sensor for a velocity of the body in the body frame.
   std::vector<VelocitySample> velocities(const Eigen::Matrix3d& measured, const Vector3d& sigma = {0.05, 0.05, 0.05}) {
     std::vector<VelocitySample> samples;
     for (double t = 0.1; t < kLength_s - 0.1; t += 0.04) {

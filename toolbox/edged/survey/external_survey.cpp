@@ -37,7 +37,7 @@ void ExternalSurveyor::add(const ExternalSample& sample) {
   add_to_mean(t, numbers.values);
 }
 
-/// By second differences, which are zero in uniform motion; their variance is six times that of the noise.
+/// The noise from second differences, which are zero in uniform motion. Their variance is six times that of the noise.
 void ExternalSurveyor::add_noise(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size() && !before_.empty(); ++i) {
     squares_ += std::pow(values[i] - 2.0 * last_[i] + before_[i], 2);

@@ -14,14 +14,14 @@ namespace edged {
 
 struct ExternalSurvey {
   StreamSurvey stream;
-  std::vector<double> least, most;  ///< of each column, where it is measured
+  std::vector<double> least, most;  ///< of the measured values of each column
   double noise = 0.0;               ///< standard deviation of a sample, from differences of consecutive samples
-  double sigma = 0.0;               ///< mean sigma stated in the samples; 0: none
+  double sigma = 0.0;               ///< mean sigma of the samples; 0: none
   double fastest = 0.0;             ///< largest change in a second, of any column, between means of half a second
   Duration constant{0};             ///< the longest time in which no number changed
 };
 
-/// Takes the samples of one sensor in order. Memory is bounded.
+/// Samples of one sensor, in time order. Memory is bounded.
 class ExternalSurveyor {
  public:
   void add(const ExternalSample& sample);
@@ -42,7 +42,7 @@ class ExternalSurveyor {
   std::size_t mean_count_ = 0;
 };
 
-/// By the names of the sensors.
+/// The surveys by the names of the sensors.
 using ExternalSurveys = std::map<std::string, ExternalSurvey, std::less<>>;
 
 }  // namespace edged

@@ -20,7 +20,7 @@ struct Finding {
   Severity severity = Severity::Good;
   std::string text;    ///< one line with numbers
   std::string remedy;  ///< may be empty
-  /// The IMU itself is wrong: no verdict on a calibration is possible until that is corrected.
+  /// An error of the IMU itself. Until it is corrected, no calibration can be checked.
   bool imu_unusable = false;
 };
 

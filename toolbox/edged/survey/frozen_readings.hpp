@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Detects a sensor of three axes that repeats its readings to the last bit, which the noise of a working one prevents.
+// Detects a sensor of three axes that repeats its readings to the last bit. The noise of a working sensor prevents
+// this.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +14,12 @@ namespace edged {
 
 struct FrozenReadings {
   Duration covered{0};                              ///< from the first to the last sample
-  Duration longest{0};                              ///< in which no axis changed
-  Timestamp since;                                  ///< where that time begins
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< in it
+  Duration longest{0};                              ///< the longest time in which no axis changed
+  Timestamp since;                                  ///< begin of that time
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< reading in that time
   std::array<Duration, 3> axes{};                   ///< the longest time in which that axis did not change
 
-  /// No axis ever changes, but for a short part.
+  /// True if no axis changes, except for a short part.
   bool dead() const { return is_whole(longest); }
   bool dead(std::size_t axis) const { return is_whole(axes.at(axis)); }
 
@@ -28,7 +29,7 @@ struct FrozenReadings {
   }
 };
 
-/// Takes samples in time order. Memory is bounded.
+/// Samples must be in time order. Memory is bounded.
 class FrozenDetector {
  public:
   void add(Timestamp t, const Eigen::Vector3d& value);

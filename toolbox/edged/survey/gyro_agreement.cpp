@@ -15,7 +15,7 @@ namespace edged {
 namespace {
 
 constexpr std::size_t kFewestTurns = 30;
-constexpr Duration kShiftStep = std::chrono::milliseconds(4);  // then refined
+constexpr Duration kShiftStep = std::chrono::milliseconds(4);  // step of the search, which is then refined
 constexpr double kUnlike = 0.5;  // of the rotation unexplained: above it the gyro does not belong to the camera
 
 /// The same rotations, measured by the camera and by the gyro at one time shift [rad/s].
@@ -80,7 +80,7 @@ Fit fit_turns(const Pairs& pairs) {
   return fit;
 }
 
-/// A step of Gauss-Newton in the shift [s], with its uncertainty. Rotations overlap: `overlap` of them count as one.
+/// A Gauss-Newton step in the shift [s], with its uncertainty. Rotations overlap: `overlap` of them count as one.
 double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgreement& agreement) {
   double slopes = 0.0, product = 0.0, squares = 0.0, weight = 0.0;
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
@@ -101,14 +101,14 @@ double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgre
   return -product / std::max(slopes, 1e-12);
 }
 
-/// How many turns share an instant.
+/// The number of rotations that contain the same instant.
 double overlap_of(std::span<const Turn> turns) {
   double covered = 0.0;
   for (const Turn& turn : turns) covered += to_seconds(turn.end - turn.begin);
   return std::max(1.0, covered / std::max(to_seconds(turns.back().end - turns.front().begin), 1e-3));
 }
 
-/// The shift of the grid where rotation and scale fit best.
+/// The shift of the grid with the best fit of rotation and scale.
 std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected) {
   std::optional<Duration> best;
   double least = std::numeric_limits<double>::infinity();
@@ -140,7 +140,7 @@ Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
   return sum * (static_cast<double>(kBlocks) - 1) / static_cast<double>(kBlocks);
 }
 
-/// A refinement, if the rotations come with their corners.
+/// A refinement by the corners of the rotations, if given.
 void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreement& agreement) {
   // With a wrong unit of the gyro a better rotation is useless.
   const double scale = agreement.gyro_scale;
@@ -159,16 +159,16 @@ void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreeme
   agreement.rotation_sigma = std::sqrt(fit->rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
 }
 
-/// Corners of a picture of events slide along edges, and blurred ones lag behind: alike in all parts of a recording. It
-/// shows in what the gyro does not explain, and in a scale that no gyro has (right ones are within a per cent). Either
-/// may be an error of the rotation of as many radians.
+/// The systematic error of the rotation [rad]. Corners on images of events slide along edges, and blurred ones lag, in
+/// all parts of a recording. This leaves rotation unexplained by the gyro, and gives a scale that no gyro has (correct
+/// ones are within a per cent). Either may be an error of the rotation of the same size.
 double common_error_of(const GyroAgreement& agreement) {
   constexpr double kOfUnexplained = 0.5;
   const double off_scale = agreement.scale_sigma > 0.0 ? std::log(std::max(agreement.gyro_scale, 1e-3)) : 0.0;
   return std::hypot(kOfUnexplained * std::min(agreement.unexplained, 1.0), off_scale);
 }
 
-/// As compare_with_gyro, of a gyro with right signs.
+/// compare_with_gyro for a gyro with correct signs.
 std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const GyroIntegral& gyro,
                                               Duration expected) {
   constexpr int kRefinements = 5;
@@ -204,7 +204,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
 
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected) {
-  // Half a turn about an axis is equivalent to two negated axes: then only little may stay unexplained.
+  // A rotation by 180 deg is equivalent to two negated axes: then the unexplained share must be small.
   constexpr double kDoubtful = 0.03, kFarBetter = 0.5;
   auto given = compare_as_given(turns, gyro, expected);
   if (!given || given->unexplained < kDoubtful) return given;

@@ -23,7 +23,7 @@ GyroIntegral gyro_of(double seconds, double factor = 1.0) {
   return gyro;
 }
 
-/// What a camera, turned by R_B_C and with its clock behind by `offset_s`, measures of it at 25 Hz.
+/// The measurements of a camera at 25 Hz, rotated by R_B_C, with a clock that is behind by `offset_s`.
 std::vector<Turn> turns_of(double seconds, const Eigen::Matrix3d& R_B_C, double offset_s) {
   std::vector<Turn> turns;
   for (double t = 0.5; t < seconds - 0.5; t += 0.04) {

@@ -12,27 +12,27 @@
 
 namespace edged {
 
-/// Integrated gyro, and the specific force along with it.
+/// The integral of the gyro, and of the specific force.
 class GyroIntegral {
  public:
   void add(const ImuSample& sample);
-  /// The rotation vector of the body between two stamps, for turns small enough to be added: whatever the unit of the
-  /// gyro. Nothing where samples are missing.
+  /// The rotation vector of the body between two stamps as the sum of the readings, for small rotations and any unit of
+  /// the gyro. Nothing if samples are missing.
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
-  /// The same for any turn: R_W_B(end) = R_W_B(begin) * Exp(it).
+  /// The same for any rotation: R_W_B(end) = R_W_B(begin) * Exp(result).
   std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
   /// The rotation relative to the first sample, and the integral of the specific force in those axes between two stamps
   /// [m/s]: the change of velocity plus the reaction to gravity.
   std::optional<Eigen::Quaterniond> attitude_at(Timestamp t) const;
   std::optional<Eigen::Vector3d> pushed_between(Timestamp begin, Timestamp end) const;
   bool empty() const { return stamps_.empty(); }
-  Timestamp first() const { return stamps_.front(); }  ///< of one that is not empty
+  Timestamp first() const { return stamps_.front(); }  ///< must not be empty
   Timestamp last() const { return stamps_.back(); }
 
  private:
   /// The first sample after each of two stamps.
   std::optional<std::pair<std::size_t, std::size_t>> samples_after(Timestamp begin, Timestamp end) const;
-  /// From the sample `after` - 1 to t, which lies before the next one.
+  /// The integral from the sample `after` - 1 to t, which is before the next sample.
   Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
 
   std::vector<Timestamp> stamps_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeastSigmas = 6.0;
 constexpr double kFlood = 0.01;  // of all events
-// Texture makes neighbours differ by about half of what they fire, noise by its root.
+// By texture, neighbours differ by about half of their events; by noise, by the square root of that number.
 constexpr float kTextureSpread = 0.5F;
 
 }  // namespace

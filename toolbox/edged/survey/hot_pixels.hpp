@@ -12,23 +12,23 @@
 
 namespace edged {
 
-/// A pixel that fires by itself, independent of the scene.
+/// A pixel that fires independently of the scene.
 struct HotPixel {
   int x = 0, y = 0;
-  std::size_t events = 0;  ///< of the whole recording, with those of the scene
-  double rate_hz = 0.0;    ///< beyond those of its neighbours
+  std::size_t events = 0;  ///< in the whole recording, including those of the scene
+  double rate_hz = 0.0;    ///< beyond the rate of its neighbours
 };
 
-/// A hot pixel fires in every window of time, with its neighbours or without them. Its excess is averaged over all
-/// windows, quiet ones with a larger weight, as there the scene has little influence.
+/// A hot pixel fires in each time window, with or without its neighbours. Its excess is averaged over all windows.
+/// Windows with few events have a larger weight, as the scene has less influence there.
 class HotPixelFinder {
  public:
-  static constexpr double kLeastHz = 5.0;  ///< slower ones are harmless
+  static constexpr double kLeastHz = 5.0;  ///< lower rates are harmless
 
-  /// 22 bytes a pixel of `grid`; pixels outside are ignored.
+  /// Needs 22 bytes per pixel of `grid`. Pixels outside are ignored.
   explicit HotPixelFinder(cv::Size grid);
 
-  /// Stamps may not go back.
+  /// Stamps must not decrease.
   void add(int x, int y, Timestamp t) {
     if (x >= grid_.width || y >= grid_.height) return;
     if (t >= window_end_) end_window(t);
@@ -41,18 +41,19 @@ class HotPixelFinder {
     last_ = t;
   }
 
-  /// Hottest first; nothing before two windows have passed, unless one pixel has more than a hundredth of all events.
+  /// The hot pixels, hottest first. None before two windows have passed, unless one pixel has more than 1 % of all
+  /// events.
   std::vector<HotPixel> result() const;
-  /// False for recordings that are too short.
+  /// False if the recording is too short.
   bool known() const { return first_ != Timestamp::min() && last_ - first_ >= kWindow * 3 / 2; }
-  /// Pixels that fired at all.
+  /// The number of pixels that fired at all.
   std::size_t active() const;
 
  private:
   /// Sums of a weighted mean of events per second beyond the neighbours, of variance 1 / weight.
   struct Excess {
     float sum = 0.0F, weight = 0.0F;
-    float most_sum = 0.0F, most_weight = 0.0F;  ///< of the window that adds most
+    float most_sum = 0.0F, most_weight = 0.0F;  ///< of the window with the largest contribution
     double without_most_hz() const { return weight > most_weight ? (sum - most_sum) / (weight - most_weight) : 0.0; }
   };
   static constexpr Duration kWindow = std::chrono::milliseconds(500);
@@ -65,7 +66,7 @@ class HotPixelFinder {
   int neighbours(int x, int y) const;
 
   cv::Size grid_, extent_, judged_;  ///< judged_: extent_ at the last window
-  float silent_weight_ = 0.0F;       ///< of a pixel that has been silent with its neighbours so far
+  float silent_weight_ = 0.0F;       ///< of a pixel without events of its own and of its neighbours so far
   std::vector<std::uint32_t> total_;
   std::vector<std::uint16_t> window_;
   std::vector<Excess> excess_;

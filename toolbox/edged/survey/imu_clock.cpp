@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kFewestClockTurns = 30, kMostTurns = 200;
 constexpr double kLeastCorrelation = 0.9;
-constexpr double kFarBetter = 0.4;   // of what the clock as it is leaves unexplained
-constexpr double kLeastOff = 0.004;  // of the rate: less is within what turns can tell
+constexpr double kFarBetter = 0.4;   // ratio of the unexplained shares with the corrected and with the given clock
+constexpr double kLeastOff = 0.004;  // relative error of the rate; smaller ones are not observable from rotations
 constexpr double kDriftSearched = 0.06, kDriftStep = 0.003;
 constexpr Duration kClockShiftStep = std::chrono::milliseconds(10);
 
-/// Pearson's correlation of the angular speeds of camera and gyro at a rate and a shift; 0 where too few turns are
-/// covered by both.
+/// Pearson correlation of the angular speeds of camera and gyro at a rate and a shift. 0 if both cover too few
+/// rotations.
 double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, double rate, Duration shift) {
   const auto on_imu = [&](Timestamp t) {
     return gyro.first() + duration_from_seconds(rate * to_seconds(t + shift - gyro.first()));
@@ -39,7 +39,7 @@ double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, dou
   return variance > 0.0 ? (xy - x * y / n) / std::sqrt(variance) : 0.0;
 }
 
-/// At the best shift.
+/// The correlation at the best shift.
 double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, double rate, Duration expected,
                       Duration most) {
   double best = 0.0;

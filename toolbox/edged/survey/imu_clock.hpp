@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Rate of the IMU's clock relative to that of a camera.
+// The rate of the IMU clock relative to the clock of a camera.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@
 
 namespace edged {
 
-/// A clock that runs at another rate than the camera's.
+/// The rate of an IMU clock that differs from that of the camera.
 struct ClockRate {
-  double rate = 1.0;         ///< seconds of the IMU to a second of the camera
-  double correlation = 0.0;  ///< of how fast both turn, the clock corrected
+  double rate = 1.0;         ///< seconds of the IMU per second of the camera
+  double correlation = 0.0;  ///< of the angular speeds of both, with the corrected clock
 };
 
-/// Compares how fast camera and gyro turn, whatever the camera's mounting and the gyro's unit, with the stamps of the
-/// IMU stretched about its first one. Nothing if the rate is right or cannot be determined.
-/// expected: t_imu = t_cam + it. spans: how long the IMU lasts over how long the cameras do, which is tried, too.
+/// Compares the angular speeds of camera and gyro, independent of the mounting of the camera and the unit of the gyro,
+/// with the stamps of the IMU scaled about the first one. Nothing if the rate is correct or cannot be determined.
+/// expected: t_imu = t_cam + expected. spans: duration of the IMU over that of the cameras, a candidate of the rate.
 std::optional<ClockRate> other_clock_rate(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected,
                                           double spans);
 

@@ -54,8 +54,9 @@ std::string lengths_text(const Survey& s, double cameras_s) {
   return fmt::format("the IMU covers {:.1f} s, the other sensors {:.1f} s", to_seconds(s.imu.length()), cameras_s);
 }
 
-/// The factor of two or a thousand, if any, by which the IMU lasts longer than the cameras: another clock or unit.
-std::optional<double> telling_ratio(const Survey& s, double cameras_s) {
+/// The ratio of the durations of IMU and cameras, if it is close to two or a power of a thousand: another clock or
+/// unit.
+std::optional<double> known_span_ratio(const Survey& s, double cameras_s) {
   constexpr double kNear = 0.02, kLeast_s = 1.0;
   const double ratio = s.imu_span_ratio();
   for (const double known : {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9})
@@ -63,7 +64,8 @@ std::optional<double> telling_ratio(const Survey& s, double cameras_s) {
   return std::nullopt;
 }
 
-/// Two clocks of another rate seem to agree after a large rotation.
+/// True if the gyro explains the rotations with about the calibrated R_B_C. With clocks of different rates, a very
+/// different R_B_C may seem to fit.
 bool turns_as_calibrated(const CameraCheck& check) {
   constexpr double kMost_deg = 20.0;
   if (!check.sure() || !check.has_extrinsics) return check.sure();
@@ -76,11 +78,12 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
   const auto visual = s.cameras();
   if (!visual) return;
   const double cameras_s = to_seconds(visual->second - visual->first), ratio = s.imu_span_ratio();
-  const auto told = telling_ratio(s, cameras_s);
+  const auto known = known_span_ratio(s, cameras_s);
   const auto measured = std::ranges::find_if(cameras, [](const CameraCheck& c) { return c.clock.has_value(); });
   if (measured != cameras.end()) {
-    const bool as_lasts = told && std::abs(measured->clock->rate / *told - 1.0) < kSameLength;
-    const double rate = as_lasts ? *told : measured->clock->rate;  // the rotation of a few seconds is known to percents
+    const bool as_lasts = known && std::abs(measured->clock->rate / *known - 1.0) < kSameLength;
+    // A few seconds of rotation determine the rate to a few per cent only.
+    const double rate = as_lasts ? *known : measured->clock->rate;
     const std::string lengths = std::abs(ratio / rate - 1.0) < kSameLength && std::abs(rate - 1.0) > 0.1
                                     ? lengths_text(s, cameras_s) + ": "
                                     : "";
@@ -91,19 +94,19 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
         fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver",
                     rate));
   }
-  if (std::ranges::any_of(cameras, turns_as_calibrated) || !told ||
-      std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *told))
+  if (std::ranges::any_of(cameras, turns_as_calibrated) || !known ||
+      std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
     return;
-  const bool unit = *told > 10.0 || *told < 0.1;
+  const bool unit = *known > 10.0 || *known < 0.1;
   out.imu_unusable(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
-                                                      : fmt::format(": its clock runs at {:.1f} times theirs", *told)),
+                                                      : fmt::format(": its clock runs at {:.1f} times theirs", *known)),
                    unit ? "write all stamps in one unit"
                         : fmt::format("--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then mend "
                                       "the driver",
-                                      *told));
+                                      *known));
 }
 
-/// Gravity, constant in magnitude, is in the columns of the gyro and not in those of the accelerometer.
+/// True if gravity, which has a constant norm, is in the columns of the gyro and not in those of the accelerometer.
 bool columns_swapped(const ImuSurvey& imu) {
   const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
   return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&

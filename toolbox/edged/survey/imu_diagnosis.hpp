@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with an IMU: rate, gaps, clock, sensors that are dead, units.
+// Problems of an IMU: rate, gaps, clock, constant readings, units.
 #pragma once
 
 #include <vector>

@@ -12,15 +12,15 @@ namespace {
 constexpr Duration kPart = std::chrono::milliseconds(50);
 constexpr std::size_t kParts = 10;         // of a stretch
 constexpr std::size_t kFewestSamples = 2;  // of a part
-// Deviations of the parts at rest. The noisiest IMUs of phones reach 0.002 rad/s and 0.03 m/s^2, a hand that holds
-// still is three times as unsteady or more.
+// Limits of the deviations between parts at rest. The noisiest IMUs of phones reach 0.002 rad/s and 0.03 m/s^2. In a
+// hand at rest they are at least three times as large.
 constexpr double kRestGyro = 0.006, kRestAccel = 0.06;
-// Mean rates that may be a gyro's bias [rad/s], as a run takes them: more is a steady turn, and far less where the
-// picture moves.
+// Largest mean rates that a run takes for a gyro bias [rad/s]. Above them it is a steady rotation. While the image
+// moves, the limit is far lower.
 constexpr double kMostBias = 0.15, kMostBiasInMotion = 0.04;
-constexpr double kSameRest = 3.0;  // means of stretches of one rest differ by so many of the limits at most
+constexpr double kSameRest = 3.0;  // largest difference of the means of parts of one rest, in units of the limits
 
-/// Standard deviation of one axis, of three that are summed.
+/// Standard deviation per axis, from the sum of three axes.
 double deviation(double squares, const Eigen::Vector3d& sum, std::size_t count) {
   const auto n = static_cast<double>(count);
   return std::sqrt(std::max(0.0, squares / n - (sum / n).squaredNorm()) / 3);
@@ -120,7 +120,8 @@ ImuSurvey ImuSurveyor::result() const {
   if (longest_rest_) {
     const Sums &means = longest_rest_->means, &steps = longest_rest_->differences;
     const auto n = static_cast<double>(means.count);
-    // Differences of white noise have twice its variance; the density is the deviation times the root of the time.
+    // Differences of white noise have twice its variance. The density is the deviation times the square root of the
+    // time.
     const auto density = [&](double squares) {
       return std::sqrt(squares / (3 * static_cast<double>(steps.count)) / 2 * to_seconds(kPart));
     };

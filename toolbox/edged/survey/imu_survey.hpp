@@ -26,23 +26,23 @@ struct ImuRest {
   Duration length{0};
   double gyro_noise = 0.0;                          ///< [rad/s/sqrt(Hz)]
   double accel_noise = 0.0;                         ///< [m/s^2/sqrt(Hz)]
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< mean: the gyro's bias [rad/s]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< mean: the gyro bias [rad/s]
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean: upwards [m/s^2]
 };
 
 struct ImuSurvey {
-  std::optional<ImuCalm> calm;             ///< nothing where no half second has samples in all of its parts
-  std::optional<ImuRest> rest;             ///< nothing if it was never at rest: then motion hides the noise
+  std::optional<ImuCalm> calm;             ///< nothing if no half second has samples in all of its parts
+  std::optional<ImuRest> rest;             ///< nothing without rest, as motion hides the noise
   double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
   double mean_gyro = 0.0, max_gyro = 0.0;  ///< angular speed [rad/s]
   FrozenReadings gyro_frozen, accel_frozen;
 };
 
-/// Takes samples in time order. Memory is bounded.
+/// Samples must be in time order. Memory is bounded.
 class ImuSurveyor {
  public:
   void add(const ImuSample& sample);
-  /// The picture of a camera moves at present: a steady rate is a turn, then, not a bias.
+  /// To be called while the image of a camera moves: then a constant rate is a rotation, not a bias.
   void image_moves() { image_moves_ = true; }
   ImuSurvey result() const;
 
@@ -56,11 +56,11 @@ class ImuSurveyor {
     void add(const Eigen::Vector3d& w, const Eigen::Vector3d& a);
     void add(const Sums& other);
   };
-  /// Means over 50 ms that follow each other without a hole.
+  /// Consecutive means over 50 ms without a gap.
   struct Stretch {
     Timestamp begin, end;
     Sums means, differences;   ///< differences: of successive means
-    bool image_moves = false;  ///< at some time in it
+    bool image_moves = false;  ///< at some time in this stretch
   };
 
   void end_part();

@@ -41,7 +41,7 @@ Eigen::Vector3d direction_of(const Turn& turn, const Eigen::Matrix3d& R, double 
   return t;
 }
 
-/// spread: of the errors, beyond which a corner counts less (Cauchy).
+/// spread: the scale of the Cauchy loss of the errors.
 TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
   const Eigen::Vector3d t = direction_of(turn, R, spread), a = t.unitOrthogonal(), b = t.cross(a);
   Eigen::Matrix<double, 5, 5> H = 1e-12 * Eigen::Matrix<double, 5, 5>::Identity();
@@ -66,7 +66,7 @@ TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
   return terms;
 }
 
-/// The gyro's rotation in the camera's frame, and its derivatives by the parameters.
+/// The rotation of the gyro in the camera frame, and its derivatives with respect to the parameters.
 struct Predicted {
   Eigen::Vector3d phi_C;
   Eigen::Matrix3d R;
@@ -96,7 +96,7 @@ struct Normal {
   Parameters g = Parameters::Zero();
 };
 
-/// All turns at one mount.
+/// All rotations for one mount.
 struct Sums {
   std::array<Normal, kTimeBlocks> blocks;
   std::size_t turns = 0;
@@ -163,8 +163,7 @@ Information covariance_of(const Sums& sums, const GyroMount& mount, double varia
   return covariance;
 }
 
-/// The scale is estimated last, after all else: most gyros have the right one, and it should not affect the other
-/// estimates.
+/// The scale is estimated last: most gyros have a correct one, and it should not affect the other estimates.
 void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spread, RayFit& fit) {
   constexpr int kRounds = 5;
   GyroMount mount = fit.mount;
@@ -183,7 +182,7 @@ void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spr
 
 Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
   constexpr double kSpread = 1e-3;  // [rad]
-  constexpr double kAgree = 0.6;    // of the corners beyond those against: points lie in front of a camera
+  constexpr double kAgree = 0.6;    // least share of agreeing corners minus contradicting ones: points lie in front
   const Eigen::Vector3d t = direction_of(turn, R_begin_end, kSpread);
   double votes = 0.0;
   for (const auto& [from, to] : turn.rays) votes += (from - R_begin_end * to).dot(t) > 0.0 ? 1.0 : -1.0;

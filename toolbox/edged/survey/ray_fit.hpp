@@ -15,7 +15,7 @@ namespace edged {
 struct GyroMount {
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
   double shift_s = 0.0;                            ///< t_imu = t_cam + shift
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< as the gyro measures it
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< of the gyro, in its measurement
   double gyro_scale = 1.0;                         ///< measured over true angular speed
 };
 
@@ -23,19 +23,19 @@ struct RayFit {
   GyroMount mount;
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  ///< of R_B_C * Exp(error) [rad^2]
   double shift_sigma_s = 0.0;
-  double unexplained = 1.0;  ///< share of the cost that independent rotations would explain beyond those of the gyro
-  double scale_sigma = 0.0;  ///< of mount.gyro_scale, with which
-  double scale_unexplained = 1.0;  ///< unexplained share with it; all else assumes a scale of 1
+  double unexplained = 1.0;  ///< share of the cost that independent rotations explain, but those of the gyro do not
+  double scale_sigma = 0.0;  ///< of mount.gyro_scale
+  double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
 };
 
-/// Direction of translation in a rotation, R being that from its end to its begin: of length one, in the camera axes at
-/// the begin. Zero if the corners do not determine it.
+/// The unit direction of the translation during a rotation, in the camera axes at its begin. R: rotation from end to
+/// begin. Zero if the corners do not determine it.
 Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end);
 
-/// The mount for which the rays of all corners before and after each turn come closest to meeting, whatever the
-/// translation of the turn (Gauss-Newton of the cost of Kneip and Lynen, ICCV 2013, over all turns instead of one). A
-/// single rotation hardly separates rotation from translation with a narrow view or a flat scene; the common parameters
-/// of all are well determined. Nothing if rotations come without corners, or with too little rotation of the gyro.
+/// The mount with the smallest epipolar error of all corners, for any translation in each rotation (Gauss-Newton on the
+/// cost of Kneip and Lynen, ICCV 2013, summed over all rotations). With a narrow view or a flat scene, one pair of
+/// images hardly separates rotation from translation, but the common parameters of all pairs are well determined.
+/// Nothing without corners, or with too little rotation of the gyro.
 std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start);
 
 }  // namespace edged

@@ -18,13 +18,13 @@ namespace {
 
 constexpr int kCorners = 40;
 constexpr double kLeastRate = 0.15;                          // threshold of rotation [rad/s]
-constexpr double kNewest = 0.05;                             // weight of a sample in the gyro's present rate
+constexpr double kNewest = 0.05;                             // weight of a sample in the running mean of the gyro rate
 constexpr double kUnexplained = 0.5;                         // above it the comparison is unreliable
 constexpr Duration kEnough = std::chrono::seconds(3);        // duration of rotation after which more data adds little
-constexpr Duration kBurst = std::chrono::milliseconds(500);  // tracked for this time, then not for the same time
-constexpr int kOneOf = 4;                                    // such bursts, events and frames are surveyed
-constexpr Duration kPatience = std::chrono::seconds(6);      // with frames, before the events of their lens are used
-constexpr Duration kFirstUnits = std::chrono::seconds(5);    // until then a gyro can be checked against a camera
+constexpr Duration kBurst = std::chrono::milliseconds(500);  // tracking runs for this time, then pauses for it
+constexpr int kOneOf = 4;  // share 1 / kOneOf of the bursts of events and frames is surveyed
+constexpr Duration kPatience = std::chrono::seconds(6);  // with frames; then the events of the same lens are used, too
+constexpr Duration kFirstUnits = std::chrono::seconds(5);  // before it, units are checked by a camera only
 
 bool agrees(const std::optional<GyroAgreement>& found) { return found && found->unexplained < kUnexplained; }
 
@@ -40,9 +40,9 @@ double median_error(const std::vector<Turn>& turns, const GyroIntegral& gyro, co
   return median(std::move(errors));
 }
 
-/// Rotations too noisy to determine R_B_C still detect a grossly wrong one: then the best one explains clearly more.
-/// (Mirror recordings, two people in view included: correct calibrations reach 22 deg and 1.22 times the error, but not
-/// both; those wrong by 90 deg have at least 80 deg and 1.20 times.)
+/// Rotations that are too noisy to determine R_B_C still detect a grossly wrong one: the best rotation explains clearly
+/// more. (Mirror recordings, two people in view included: correct calibrations reach 22 deg and 1.22 times the error,
+/// but not both; those wrong by 90 deg have at least 80 deg and 1.20 times.)
 double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro, const RigCamera& given,
                        const GyroAgreement& found) {
   constexpr double kGross_deg = 45.0, kClearlyWorse = 1.15;
@@ -53,16 +53,16 @@ double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro,
   return median_error(turns, gyro, found, R) > kClearlyWorse * best ? off_deg : 0.0;
 }
 
-/// Duration of rotation for a verdict on a camera: with less, corners on images of events give arbitrarily wrong
-/// rotations, which resemble those of a mirrored gyro.
+/// The least duration of rotation for the check of a camera. With less, corners on images of events may give wrong
+/// rotations that resemble those of a mirrored gyro.
 Duration least_turning(const RigCamera& camera) {
   return std::chrono::seconds(camera.modality == Modality::Events ? 2 : 1);
 }
 
-/// The result for the doctor's limits, which are for more corners over a longer time: the scatter between parts of the
-/// recording does not contain errors common to few corners. (Mirror recordings, pieces of 8 s, calibrated right: events
-/// up to 14 deg off at a sigma of 1 deg and up to 100 ms, so that their time offset is left to the estimator; frames up
-/// to 12 deg at 0.8 deg in the dark.)
+/// Inflates the result for the limits of `edged doctor`, which assume more corners over a longer time. The scatter
+/// between parts of the recording does not contain common errors of few corners. (Mirror recordings, pieces of 8 s,
+/// calibrated right: events up to 14 deg off at a sigma of 1 deg and up to 100 ms, so that their time offset is left to
+/// the estimator; frames up to 12 deg at 0.8 deg in the dark.)
 GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
   constexpr double kLess = 2.0;
   const bool events = given.modality == Modality::Events;
@@ -78,7 +78,7 @@ GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
   return agreement;
 }
 
-/// Nothing more to check.
+/// True if the comparison is finished.
 bool confirms(const GyroAgreement& found, const RigCamera& given) {
   constexpr double kMostOff = 5.0 * kDegree, kSureOf = 2.0 * kDegree;  // [rad]
   return !found.mirrored && found.unexplained < kUnexplained && found.rotation_sigma < kSureOf &&
@@ -86,7 +86,7 @@ bool confirms(const GyroAgreement& found, const RigCamera& given) {
          Eigen::AngleAxisd(given.T_B_C.R().transpose() * found.R_B_C).angle() < kMostOff;
 }
 
-/// The text up to its numbers.
+/// The text before its colon, which contains no numbers of the result.
 std::string subject_of(const Finding& finding) { return finding.text.substr(0, finding.text.find(':')); }
 
 void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
@@ -129,7 +129,7 @@ void RunCheck::add(const Measurement& measurement) {
     note(first_imu_, imu_);
     accel_axes_.add(*sample);
     const bool all_told = std::ranges::all_of(cameras_, [](const Camera& camera) {
-      return camera.waits || (camera.done && agrees(camera.agreement));  // an IMU of another clock lags behind
+      return camera.waits || (camera.done && agrees(camera.agreement));  // an IMU on another clock may lag
     });
     if (all_told) return;
     gyro_.add(*sample);

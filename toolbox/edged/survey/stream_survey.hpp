@@ -30,7 +30,7 @@ struct StreamSurvey {
   }
 };
 
-/// Takes the stamps of one sensor in order. Memory is bounded.
+/// Stamps of one sensor, in order. Memory is bounded.
 class StreamSurveyor {
  public:
   /// longest_step: longer ones are gaps; by default 2.5 typical steps.

@@ -74,7 +74,8 @@ void Surveyor::add(const Measurement& measurement, Detail detail) {
   }
 }
 
-/// Against a frame some time ago: a turn of a few degrees changes more of it than noise and flicker do.
+/// True if the image moves, by comparison with an earlier frame: a rotation of a few degrees changes more pixels than
+/// noise and flicker.
 void Surveyor::watch_image(const Frame& frame) {
   constexpr Duration kApart = std::chrono::milliseconds(300);
   constexpr double kNoise = 4.0, kOfContrast = 0.15;  // grey levels; share of their standard deviation
@@ -89,7 +90,7 @@ void Surveyor::watch_image(const Frame& frame) {
   compared_at_ = frame.t;
 }
 
-/// Noise, flicker and walkers send fewer events than a turn does.
+/// True if the events show motion of the image. Noise, flicker and walkers cause fewer events than a rotation.
 void Surveyor::watch_image(const EventBatch& batch) {
   constexpr Duration kCounted = std::chrono::milliseconds(100);
   constexpr double kQuiet = 1.0;  // events a pixel and second

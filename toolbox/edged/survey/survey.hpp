@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The content of a recording, from one pass through it.
+// The content of a recording, determined in one pass.
 #pragma once
 
 #include <functional>
@@ -35,27 +35,27 @@ struct Survey {
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
 
-  /// Time that all present sensors cover; below zero: minus the gap between them.
+  /// Time that all present sensors cover; negative: minus the gap between them.
   Duration overlap() const;
   /// From the first to the last stamp of events and frames.
   std::optional<std::pair<Timestamp, Timestamp>> cameras() const;
-  /// How many times as long as these the IMU lasts; 0 where there are none.
+  /// Duration of the IMU over that of events and frames; 0 without these.
   double imu_span_ratio() const;
 };
 
-/// Takes a recording as it comes, in bounded memory.
+/// Surveys measurements in the order of the recording, in bounded memory.
 class Surveyor {
  public:
   explicit Surveyor(const DatasetInfo& info);
 
   enum class Detail {
     All,
-    Stamps,  ///< only stamps of events and frames: cheap; surveying a part of them with All suffices for the rest
+    Stamps,  ///< only the stamps of events and frames: cheap, if a part of them is surveyed with All
   };
   void add(const Measurement& measurement, Detail detail = Detail::All);
-  /// From the measurements so far: without ground truth and repairs.
+  /// The survey of the measurements so far, without ground truth and repairs.
   Survey so_far() const;
-  /// After the last measurement; truth: that of the dataset, which is slow to read.
+  /// The complete survey, after the last measurement. truth: that of the dataset, which is slow to read.
   Survey result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
 
  private:
@@ -72,7 +72,7 @@ class Surveyor {
   std::size_t measured_frames_ = 0;  ///< in that sum
   cv::Mat compared_;                 ///< the frame that later ones are compared with
   Timestamp compared_at_, counted_from_;
-  std::size_t counted_ = 0;  ///< events since then
+  std::size_t counted_ = 0;  ///< events since that frame
 };
 
 }  // namespace edged

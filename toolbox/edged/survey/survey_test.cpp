@@ -80,7 +80,7 @@ TEST(ImuSurveyor, EstimatesNoiseAtRestOfWhiteNoise) {
   EXPECT_NEAR(survey.mean_accel, 9.81, 0.05);
 }
 
-/// rate 1 kHz; a filter of first order at 40 Hz, as many IMUs have one.
+/// Rate 1 kHz, with a first-order filter at 40 Hz, as in many IMUs.
 TEST(ImuSurveyor, EstimatesTheNoiseOfAnImuThatFiltersIt) {
   constexpr double kDensity = 1e-4, kRate = 1000;
   std::mt19937_64 random(2);

@@ -11,15 +11,15 @@ namespace {
 
 constexpr std::size_t kFewestPairs = 12;
 constexpr std::size_t kMostTurns = 3000;                       // bounds time and memory
-constexpr double kEventsPerPixel = 0.3;                        // of a picture
-constexpr Duration kShortest = std::chrono::milliseconds(10);  // between pictures of events
+constexpr double kEventsPerPixel = 0.3;                        // in an image of events
+constexpr Duration kShortest = std::chrono::milliseconds(10);  // between images of events
 constexpr Duration kBaseline = std::chrono::milliseconds(80);  // least duration of a rotation: below it noise dominates
 constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is a gap
 
 TrackerConfig with_corners(int corners) {
   TrackerConfig config;
   config.detector.max_features = corners;
-  config.klt.window_px = 15;  // of events, too
+  config.klt.window_px = 15;  // for images of events, too
   return config;
 }
 
@@ -53,7 +53,7 @@ void VisualTurns::add(const Measurement& measurement) {
 }
 
 void VisualTurns::add_events(std::span<const Event> events) {
-  constexpr int kGrey = 60;  // of one event; a few make white
+  constexpr int kGrey = 60;  // grey level of one event; a few add up to white
   for (const Event& event : events) {
     if (event.x < event_image_.cols && event.y < event_image_.rows && tracker_.camera().uses(event.x, event.y)) {
       auto& pixel = event_image_.at<std::uint8_t>(event.y, event.x);

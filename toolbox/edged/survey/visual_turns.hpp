@@ -18,27 +18,27 @@
 
 namespace edged {
 
-/// Rotation vector of a camera between two instants of its clock.
+/// The rotation of a camera between two instants of its clock.
 struct Turn {
   Timestamp begin, end;
   Eigen::Vector3d phi_C = Eigen::Vector3d::Zero();  ///< R_W_C(end) = R_W_C(begin) * Exp(phi_C) [rad]
-  /// To each corner at begin and at end, of length one.
+  /// Unit vectors to each corner at begin and at end.
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays = {};
 };
 
-/// Rotation between two views of the same points, whatever the camera's translation: p_begin ~ R * (p_end - t). Points
-/// lie on the unit plane. Nothing where there are too few of them. (Kneip and Lynen, Direct Optimization of
+/// Rotation between two views of the same points, for any translation of the camera: p_begin ~ R * (p_end - t). Points
+/// lie on the unit plane. Nothing with too few points. (Kneip and Lynen, Direct Optimization of
 /// Frame-to-Frame Rotation, ICCV 2013; as in OpenGV.)
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
                                                 std::span<const Eigen::Vector2d> end);
 
-/// Tracks corners through standard frames, or through images of the newest events.
+/// Tracks corners in standard frames, or in images of the newest events.
 class VisualTurns {
  public:
-  /// corners: largest number of tracked ones; fewer are cheaper and less accurate.
+  /// corners: largest number of tracks; fewer are cheaper and less accurate.
   explicit VisualTurns(const RigCamera& camera, int corners = DetectorConfig().max_features);
 
-  /// Takes measurements of this camera; ignores others.
+  /// Adds a measurement. Those of other cameras are ignored.
   void add(const Measurement& measurement);
   const std::vector<Turn>& turns() const { return turns_; }
 
@@ -58,7 +58,7 @@ class VisualTurns {
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
   std::vector<Turn> turns_;
-  cv::Mat event_image_;  ///< of the events since the last one; its stamp is the middle of theirs
+  cv::Mat event_image_;  ///< of the events since the previous image; its stamp is the middle of their stamps
   std::optional<Timestamp> image_begin_;
   std::size_t events_ = 0, events_per_image_;
 };

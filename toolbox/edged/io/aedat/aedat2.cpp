@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// AEDAT 2.0 of a DAVIS: records of two big-endian words, an address that says what it is, and microseconds.
+// AEDAT 2.0 of a DAVIS: records of two big-endian words, an address that encodes the kind of the record, and
+// microseconds.
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
@@ -10,7 +11,6 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/aedat/aedat4_header.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
 #include "edged/io/streamed_dataset.hpp"
 
@@ -50,18 +50,18 @@ std::vector<Record> records_in(ByteSpan bytes) {
   return records;
 }
 
-/// A frame as its pixels come: the brightness is the reset level minus the signal level, of 10 bits. Its stamp is the
-/// middle of the exposures of its pixels.
+/// Assembles a frame from its pixels. The brightness is the reset level minus the signal level, of 10 bits. The stamp
+/// of the frame is the middle of the exposures of its pixels.
 class ApsFrame {
  public:
   explicit ApsFrame(cv::Size size) : size_(size) { clear(); }
 
-  /// The frame that the level completes, if it does; x and y within the size.
+  /// Returns the frame if this level completes it. x and y are within the size.
   std::optional<std::pair<Timestamp, cv::Mat>> add(const Record& record, int x, int y, Timestamp t) {
     const auto pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) + static_cast<std::size_t>(x);
     const unsigned kind = record.kind();
-    if (kind == 0 && reset_[pixel] >= 0) clear();  // the one before was not complete
+    if (kind == 0 && reset_[pixel] >= 0) clear();  // the previous frame was not complete
     if (kind == 0) {
       reset_[pixel] = record.level();
     } else if (reset_[pixel] >= 0 && !seen_[pixel]) {
@@ -93,11 +93,11 @@ class ApsFrame {
   }
 
   cv::Size size_;
-  std::vector<int> reset_;  ///< -1: not there yet
+  std::vector<int> reset_;  ///< -1: not received yet
   std::vector<bool> seen_;
   cv::Mat image_;
   std::size_t signals_ = 0;
-  std::array<double, 2> sum_ns_{};  ///< of the stamps of reset and signal levels, from the first on
+  std::array<double, 2> sum_ns_{};  ///< of the stamps of reset and signal levels, relative to the first stamp
   std::optional<Timestamp> first_;
 };
 
@@ -111,7 +111,7 @@ class Aedat2File final : public StreamedDataset {
   }
 
  private:
-  /// By the first records.
+  /// Determined from the first records.
   Merger::Streams streams_there() {
     constexpr std::size_t kTried = std::size_t{1} << 18U;
     Merger::Streams streams;
@@ -144,7 +144,7 @@ class Aedat2File final : public StreamedDataset {
     return !records.empty();
   }
 
-  /// The counter of 32 bits goes on beyond its end.
+  /// The counter of 32 bits, continued over wraps.
   Timestamp stamp_of(std::uint32_t time_us) {
     if (!last_us_) elapsed_us_ = static_cast<std::int32_t>(time_us);
     if (last_us_) elapsed_us_ += static_cast<std::int32_t>(time_us - *last_us_);
@@ -152,13 +152,13 @@ class Aedat2File final : public StreamedDataset {
     return timestamp_from_ns(elapsed_us_ * 1000);
   }
 
-  /// The sensor is read from its lower right corner, seen as the image is.
+  /// The sensor is read out from the lower right corner of the image.
   void take(const Record& record, std::vector<Event>& events) {
     const cv::Size size = info_.event_sensor;
     const Timestamp t = stamp_of(record.time_us);
     const int x = size.width - 1 - static_cast<int>(record.x()), y = size.height - 1 - static_cast<int>(record.y());
     if (record.of_dvs()) {
-      // Negative ones become large, and so lie outside of any sensor.
+      // Negative coordinates become large, which lies outside any sensor.
       if (!record.external())
         events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), record.on()});
     } else if (record.kind() == 3) {
@@ -169,7 +169,7 @@ class Aedat2File final : public StreamedDataset {
     }
   }
 
-  /// Seven records in order make a sample.
+  /// Seven consecutive records make a sample.
   void take_imu(const Record& record, Timestamp t) {
     if (record.imu_word() != imu_.size() || (!imu_.empty() && t != imu_t_)) {
       if (!imu_.empty() || record.imu_word() != 0)

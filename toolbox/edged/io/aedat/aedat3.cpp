@@ -7,7 +7,6 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/aedat/aedat4_header.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
 #include "edged/io/streamed_dataset.hpp"
 #include "edged/io/text_parsing.hpp"
@@ -28,21 +27,21 @@ struct Aedat3Packet {
   }
 };
 
-/// Throws Damage where no packet begins so.
+/// Throws Damage for a header that no packet has.
 Aedat3Packet packet_head(ByteSpan bytes) {
   ByteReader reader(bytes);
   Aedat3Packet head;
   head.kind = reader.number<std::int16_t>();
   head.source = reader.number<std::int16_t>();
   head.item_bytes = reader.number<std::int32_t>();
-  reader.number<std::int32_t>();  // where the stamp stands in an item, which the kind tells
+  reader.number<std::int32_t>();  // offset of the stamp in an item: given by the kind
   head.overflows = reader.number<std::int32_t>();
   reader.number<std::int32_t>();  // capacity in memory
   head.count = reader.number<std::int32_t>();
   const auto valid = reader.number<std::int32_t>();
   if (head.kind < 0 || head.item_bytes <= 0 || head.overflows < 0 || head.count < 0 || valid < 0 ||
       valid > head.count || head.body_bytes() > kMostBody)
-    throw Damage("no packet begins so");
+    throw Damage("not a valid packet header");
   return head;
 }
 
@@ -55,7 +54,7 @@ class Aedat3File final : public StreamedDataset {
   }
 
  private:
-  /// Of the heads of its first packets; the first source with events is the one that is read.
+  /// Determined from the first packet headers. The first source with events is read.
   Merger::Streams streams_there(std::uint64_t at) try {
     constexpr int kTried = 1000;
     Merger::Streams streams;
@@ -69,7 +68,7 @@ class Aedat3File final : public StreamedDataset {
     }
     return streams;
   } catch (const Damage&) {
-    return {true, true, true, "events"};  // read_on() counts it
+    return {true, true, true, "events"};  // read_on() counts the damage
   }
 
   bool read_on() override {
@@ -82,7 +81,7 @@ class Aedat3File final : public StreamedDataset {
       take(head, body);
       return true;
     } catch (const Damage& damage) {
-      repairs_.add("file: cut", fmt::format("{}: byte {}: {}; nothing behind it is read", name_, at_, damage.what()));
+      repairs_.add("file: cut", fmt::format("{}: byte {}: {}; the rest is not read", name_, at_, damage.what()));
       return false;
     }
   }
@@ -105,14 +104,14 @@ class Aedat3File final : public StreamedDataset {
     push_events(events);
   }
 
-  /// Microseconds of 31 bits, and how often they have begun anew.
+  /// Microseconds of 31 bits, and the number of their overflows.
   static Timestamp stamp_of(std::int32_t overflows, std::int32_t us) {
     const std::int64_t all_us = (std::int64_t{overflows} << 31U) + us;
-    if (us < 0 || all_us > kMaxStampNs / 1000) throw Damage("a stamp that cannot be");
+    if (us < 0 || all_us > kMaxStampNs / 1000) throw Damage("a stamp out of range");
     return timestamp_from_ns(all_us * 1000);
   }
 
-  /// Bit 0 says whether an item is valid.
+  /// Bit 0 is set for a valid item.
   static void take_event(ByteReader& item, std::int32_t overflows, std::vector<Event>& events) {
     const auto data = item.number<std::uint32_t>();
     const Timestamp t = stamp_of(overflows, item.number<std::int32_t>());
@@ -127,22 +126,22 @@ class Aedat3File final : public StreamedDataset {
     std::array<float, 6> v{};
     for (float& x : v) x = item.number<float>();
     const Eigen::Vector3d accel(v[0], v[1], v[2]), gyro(v[3], v[4], v[5]);
-    if (!accel.allFinite() || !gyro.allFinite()) throw Damage("an IMU sample that is no number");
+    if (!accel.allFinite() || !gyro.allFinite()) throw Damage("an IMU sample that is not finite");
     if (valid) push_imu({t, gyro * kDegree, accel * kStandardGravity});
   }
 
-  /// Pixels of 16 bits, of which the upper 8 are taken; stamped at the middle of the exposure.
+  /// Uses the upper 8 of 16 bits of each pixel. The stamp is the middle of the exposure.
   void take_frame(ByteReader& item, std::int32_t overflows) {
     const auto info = item.number<std::uint32_t>();
     item.take(8);  // begin and end of the frame
     const auto begin = item.number<std::int32_t>(), end = item.number<std::int32_t>();
     const auto width = item.number<std::int32_t>(), height = item.number<std::int32_t>();
-    item.take(8);  // its place
+    item.take(8);  // position of the frame on the sensor
     const unsigned channels = info >> 1U & 7U;
     if ((info & 1U) == 0) return;
     if (width <= 0 || height <= 0 || width > 65535 || height > 65535 ||
         (channels != 1 && channels != 3 && channels != 4))
-      throw Damage("an image that cannot be");
+      throw Damage("an image of an invalid size");
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const ByteSpan levels = item.take(2 * channels * pixels);
     cv::Mat image(height, width, CV_8UC1);

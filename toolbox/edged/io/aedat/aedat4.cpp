@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The file: header, packets, table at the end; and how to go on behind damage.
+// AEDAT4 files: header, packets and the table at the end. Reading continues after damage.
 #include "edged/io/aedat/aedat4.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kPacketHeadBytes = 8;
 
-/// The buffer of the header behind the version line and its length.
+/// The buffer of the header. It follows the version line and the length.
 Bytes read_header_buffer(BinaryFile& file) {
   const auto bytes = number_at<std::uint32_t>(file.read(kAedat4Magic.size(), 4), 0);
   if (bytes > kMostPacketBytes) throw Damage("ends too early");
@@ -46,7 +46,8 @@ class Aedat4File final : public Aedat4Dataset {
   }
 
  private:
-  /// The end of the recording and where its packets are. An interrupted recording has no table and is read to its end.
+  /// Reads the end of the recording and the offsets of its packets. An interrupted recording has no table and is read
+  /// to its end.
   void read_table() try {
     if (header_.table_at < 0 || static_cast<std::uint64_t>(header_.table_at) >= file_.size())
       throw Damage("is missing: the recording was interrupted");
@@ -76,7 +77,7 @@ class Aedat4File final : public Aedat4Dataset {
     std::size_t bytes = 0;
   };
 
-  /// Nothing where no packet can begin so.
+  /// Nothing for a header that no packet has.
   std::optional<PacketHead> packet_head(ByteSpan head, std::uint64_t at) const {
     if (head.size() < kPacketHeadBytes) return std::nullopt;
     const auto stream = number_at<std::int32_t>(head, 0), bytes = number_at<std::int32_t>(head, 4);
@@ -100,7 +101,7 @@ class Aedat4File final : public Aedat4Dataset {
     return true;
   }
 
-  /// To the next packet behind the last one that could be read: its length may be what is damaged.
+  /// Goes to the next packet after the last readable one, whose length may be damaged.
   bool go_on_behind_damage() {
     auto listed = std::ranges::upper_bound(packets_at_, last_at_);
     if (listed != packets_at_.end() && *listed == at_) ++listed;
@@ -110,17 +111,16 @@ class Aedat4File final : public Aedat4Dataset {
     } else if (listed != packets_at_.end()) {
       next = *listed;
     }
-    repairs_.add("file: cut",
-                 fmt::format("{}: no whole packet at byte {}; {}", name_, at_,
-                             next ? fmt::format("goes on at byte {}", *next) : "nothing behind it is read"));
+    repairs_.add("file: cut", fmt::format("{}: no whole packet at byte {}; {}", name_, at_,
+                                          next ? fmt::format("continues at byte {}", *next) : "the rest is not read"));
     if (!next) return false;
     at_ = last_at_ = *next;
     searched_to_ = *next + 1;
     return true;
   }
 
-  /// Where a packet of a known stream seems to begin: its body starts as its compression, or FlatBuffers, would have
-  /// it.
+  /// Searches for the beginning of a packet of a known stream: its body begins with the magic bytes of the compression
+  /// or with a FlatBuffers header.
   std::optional<std::uint64_t> search_packet(std::uint64_t from) {
     constexpr std::size_t kStep = 1 << 20, kLookAhead = 20;
     for (; from < end_; from += kStep) {
@@ -144,9 +144,9 @@ class Aedat4File final : public Aedat4Dataset {
   BinaryFile file_;
   Aedat4Header header_;
   TopicChoice choice_;
-  std::uint64_t at_, last_at_, end_;       ///< of the next packet and the one before; behind the last
-  std::uint64_t searched_to_ = 0;          ///< no packet is looked for before
-  std::vector<std::uint64_t> packets_at_;  ///< as the table has it, sorted
+  std::uint64_t at_, last_at_, end_;       ///< of the next and the previous packet; end of the packets
+  std::uint64_t searched_to_ = 0;          ///< the search for a packet begins here
+  std::vector<std::uint64_t> packets_at_;  ///< from the table, sorted
 };
 
 }  // namespace

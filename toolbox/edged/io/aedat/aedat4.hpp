@@ -11,8 +11,8 @@ namespace edged {
 /// From the first bytes of a file.
 bool is_aedat4(ByteSpan head);
 
-/// Cameras "events" and "frames"; stamps in Unix time. Of options: geometry of the event sensor, for files that do not
-/// say it, and topics, the names of streams where there are several of a type.
+/// Cameras "events" and "frames"; stamps in Unix time. Options used: the geometry of the event sensor, for files
+/// without one, and the topics: the names of streams, where several have the same type.
 Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

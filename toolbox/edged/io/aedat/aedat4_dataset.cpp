@@ -15,13 +15,13 @@
 namespace edged {
 namespace {
 
-/// Of microseconds. Throws Damage for what no recording reaches.
+/// From microseconds. Throws Damage for a stamp out of range.
 Timestamp stamp_of_us(std::int64_t us) {
-  if (us < 0 || us > kMaxStampNs / 1000) throw Damage("a stamp that cannot be");
+  if (us < 0 || us > kMaxStampNs / 1000) throw Damage("a stamp out of range");
   return timestamp_from_ns(us * 1000);
 }
 
-/// The middle of the exposure: said by its ends, else by the stamp of the frame.
+/// The middle of the exposure if its begin and end are given, else the stamp of the frame.
 Timestamp frame_stamp(const FlatTable& frame) {
   const auto begin = frame.number<std::int64_t>(3), end = frame.number<std::int64_t>(4);
   return stamp_of_us(begin > 0 && end >= begin ? begin + (end - begin) / 2 : frame.number<std::int64_t>(0));
@@ -33,7 +33,7 @@ cv::Mat grey_image(const FlatTable& frame) {
   const ByteSpan pixels = frame.bytes(10);
   if (width <= 0 || height <= 0 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4) ||
       pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * CV_ELEM_SIZE(type))
-    throw Damage("an image that cannot be");
+    throw Damage("an image of an invalid size or type");
   // cv::Mat wants a mutable pointer, but is only read from.
   const cv::Mat image(height, width, type, const_cast<std::uint8_t*>(pixels.data()));
   if (type == CV_8UC1) return image.clone();
@@ -74,7 +74,7 @@ void Aedat4Dataset::take_events(ByteSpan buffer) {
     const auto x = reader.number<std::int16_t>(), y = reader.number<std::int16_t>();
     const bool on = reader.number<std::uint8_t>() != 0;
     reader.take(3);
-    // Negative ones become large, and so lie outside of any sensor.
+    // Negative coordinates become large, which lies outside any sensor.
     events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
   }
   push_events(events);
@@ -93,7 +93,7 @@ void Aedat4Dataset::take_imu(ByteSpan buffer) {
     const auto three = [&sample](unsigned first) {
       const Eigen::Vector3d v(sample.number<float>(first), sample.number<float>(first + 1),
                               sample.number<float>(first + 2));
-      if (!v.allFinite()) throw Damage("an IMU sample that is no number");
+      if (!v.allFinite()) throw Damage("an IMU sample that is not finite");
       return v;
     };
     push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kDegree, three(2) * kStandardGravity});

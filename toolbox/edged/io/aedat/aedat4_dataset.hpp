@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What AEDAT4 packets hold, wherever they come from. Internal to io.
+// The content of AEDAT4 packets, from a file or a server. Internal to io.
 #pragma once
 
 #include "edged/io/aedat/aedat4_header.hpp"
@@ -8,14 +8,14 @@
 
 namespace edged {
 
-/// The buffer behind its length. Throws Damage when it is not of this type.
+/// The buffer after its length. Throws Damage if it is not of this type.
 ByteSpan flat_buffer(const Bytes& bytes, std::string_view type);
 
 class Aedat4Dataset : public StreamedDataset {
  protected:
   using StreamedDataset::StreamedDataset;
 
-  /// One packet of the stream that has this role. place: where it is, for messages. Damage is counted.
+  /// One packet of the stream with this role. place: its position, for messages. Damage is counted.
   void take_packet(Role role, std::string_view compression, ByteSpan packed, const std::string& place);
 
  private:

@@ -25,7 +25,7 @@ std::string_view aedat4_compression(std::int32_t number) {
     case 4:
       return "zstd";
     default:
-      throw Damage("compression of unknown number");
+      throw Damage("unknown compression");
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What an AEDAT4 file or server says of itself before its packets, and which of its streams are read. Internal to io.
+// The header of an AEDAT4 file or server, and the choice of the streams to read. Internal to io.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -15,9 +15,8 @@ namespace edged {
 
 inline constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n";
 inline constexpr std::size_t kMostPacketBytes = std::size_t{1} << 28U;
-inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]: what the files call g
 
-inline constexpr const char* kAedat4PoseFrame = "edgedPoseFrame";  ///< key in its xml that other programs pass over
+inline constexpr const char* kAedat4PoseFrame = "edgedPoseFrame";  ///< key in the xml, which other programs ignore
 
 struct Aedat4Stream {
   std::int32_t number = -1;
@@ -27,17 +26,18 @@ struct Aedat4Stream {
 };
 
 struct Aedat4Header {
-  std::string_view compression;  ///< as decompress() names it
-  std::int64_t table_at = -1;    ///< of the table at the end of the file; -1: it has none
+  std::string_view compression;  ///< a method of decompress()
+  std::int64_t table_at = -1;    ///< offset of the table at the end of the file; -1: no table
   std::vector<Aedat4Stream> streams;
-  std::string pose_frame = "body";  ///< of what was converted: the format holds no ground truth to tell it
+  std::string pose_frame = "body";  ///< of the recording before conversion; the format itself has no ground truth
 };
 
-/// From the buffer behind its length. Throws Damage.
+/// buffer: without its length. Throws Damage.
 Aedat4Header parse_aedat4_header(ByteSpan buffer);
 
-/// Which streams are events, frames and IMU, as indices of `streams`: the only one of its type or the one the user
-/// names. Streams of one name are told apart by their source, then by their number. Throws InputError that lists them.
+/// The streams of events, frames and IMU, as indices of `streams`: the only one of its type or the one that the user
+/// names. Streams of the same name are distinguished by their source, then by their number. Throws InputError that
+/// lists them.
 TopicChoice choose_streams(const std::vector<Aedat4Stream>& streams, const WantedTopics& wanted,
                            const std::string& file);
 

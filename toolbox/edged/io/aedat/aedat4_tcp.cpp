@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Each connection brings the header of a file without its version line, and then packets as in a file.
+// A connection sends the header of a file without the version line, then packets as in a file.
 #include "edged/io/aedat/aedat4_tcp.hpp"
 
 #include <poll.h>
@@ -23,7 +23,7 @@ constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMostLiveBytes = std::size_t{1} << 26U;  // in a packet: a frame of 20 megapixels in colour
 constexpr int kPollMs = 100;
 
-/// Waits a moment for any of the open connections and takes what has come.
+/// Waits a moment for any of the open connections and receives what has arrived.
 void receive_some(std::vector<TcpConnection*> connections) {
   std::erase_if(connections, [](const TcpConnection* c) { return !c->open(); });
   std::vector<pollfd> polled;
@@ -33,13 +33,13 @@ void receive_some(std::vector<TcpConnection*> connections) {
     if (polled[i].revents != 0) connections[i]->receive();
 }
 
-/// The header once it is there. Throws Damage where what has come is none.
+/// The header once it is complete. Throws Damage if the received bytes are not a header.
 std::optional<Aedat4Header> take_header(TcpConnection& connection) {
   if (as_text(connection.received()).starts_with(kAedat4Magic)) connection.drop(kAedat4Magic.size());
   const ByteSpan received = connection.received();
   if (received.size() < 4 + kLiveHeadBytes || kAedat4Magic.starts_with(as_text(received))) return std::nullopt;
   const auto bytes = number_at<std::uint32_t>(received, 0);
-  if (bytes < kLiveHeadBytes || bytes > kMostHeaderBytes) throw Damage("its length cannot be");
+  if (bytes < kLiveHeadBytes || bytes > kMostHeaderBytes) throw Damage("its length is invalid");
   if (flat_identifier(received.subspan(4)) != "IOHE") throw Damage("is of another type");
   if (received.size() < 4 + bytes) return std::nullopt;
   Aedat4Header header = parse_aedat4_header(received.subspan(4, bytes));
@@ -47,7 +47,7 @@ std::optional<Aedat4Header> take_header(TcpConnection& connection) {
   return header;
 }
 
-/// Throws InputError where no header comes.
+/// Throws InputError if no header arrives.
 Aedat4Header wait_for_header(TcpConnection& connection) {
   constexpr auto kPatience = std::chrono::seconds(5);
   const auto refuse = [&](const std::string& what) {
@@ -67,7 +67,7 @@ Aedat4Header wait_for_header(TcpConnection& connection) {
   }
 }
 
-/// A server, and what is read of it.
+/// A server, with the streams that are read from it.
 struct LiveStream {
   TcpConnection connection;
   Aedat4Header header;
@@ -86,7 +86,7 @@ class Aedat4Live final : public Aedat4Dataset {
   }
 
  private:
-  /// Waits for a packet. False when the servers have closed, or when interrupted.
+  /// Waits for a packet. False once all servers have closed the connection, or after an interrupt.
   bool read_on() override {
     while (!interrupted_ || !interrupted_()) {
       bool any = false, open = false;
@@ -107,7 +107,7 @@ class Aedat4Live final : public Aedat4Dataset {
     return false;
   }
 
-  /// False where none was whole.
+  /// False if no packet was complete.
   bool take_whole_packets(LiveStream& stream) {
     const ByteSpan received = stream.connection.received();
     std::size_t at = 0;
@@ -117,7 +117,7 @@ class Aedat4Live final : public Aedat4Dataset {
           std::ranges::any_of(stream.header.streams, [&](const Aedat4Stream& s) { return s.number == number; });
       if (!known || bytes <= 0 || static_cast<std::size_t>(bytes) > kMostLiveBytes)
         throw InputError::format(
-            "tcp://{}: a packet of stream {} and {} bytes cannot be: the stream is damaged; start again",
+            "tcp://{}: a packet of stream {} with {} bytes is invalid: the stream is damaged; start again",
             stream.connection.name(), number, bytes);
       const std::size_t body = at + kLiveHeadBytes, size = static_cast<std::size_t>(bytes);
       if (received.size() - body < size) break;
@@ -162,7 +162,7 @@ Recording open_aedat4_tcp(const std::string& address, const Rig* rig, const Reco
   const auto [host, ports] = parse_address(address);
   std::vector<LiveStream> streams;
   std::vector<Aedat4Stream> all;
-  std::vector<LiveStream*> owners;  // of `all`
+  std::vector<LiveStream*> owners;  // of the streams in `all`
   streams.reserve(ports.size());
   for (const std::string& port : ports) {
     TcpConnection connection(host, port);

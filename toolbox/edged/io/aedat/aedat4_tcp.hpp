@@ -13,8 +13,8 @@ namespace edged {
 inline constexpr std::string_view kTcpPrefix = "tcp://";
 
 /// address: "tcp://HOST:PORT", or "tcp://HOST:PORT,PORT,..." as such a server has a port for each stream. Connects and
-/// waits for what each has to say. next() blocks until there is something; it ends when all servers have closed or
-/// options.interrupted says so. Throws InputError where nobody listens or what comes is no AEDAT4.
+/// waits for the header of each. next() blocks until a measurement arrives. It ends once all servers have closed the
+/// connection or options.interrupted returns true. Throws InputError without a server or for data that are no AEDAT4.
 Recording open_aedat4_tcp(const std::string& address, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// AEDAT4 over TCP: from a server in this process that speaks as DV's do.
+// AEDAT4 over TCP, from a server in this process that behaves like one of DV.
 #include "edged/io/aedat/aedat4_tcp.hpp"
 
 #include <arpa/inet.h>
@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 const cv::Size kLiveSensor(346, 260);
 
-/// Sends some bytes to the first who comes, in pieces, and closes.
+/// Sends bytes to the first client, in pieces, and closes the connection.
 class Server {
  public:
   Server(std::string bytes, std::size_t piece, bool stays = false)
@@ -71,7 +71,7 @@ class Server {
   std::thread thread_;
 };
 
-/// 10000 events, so many in a packet, with an IMU sample and a frame now and then.
+/// 10000 events in packets of this size, with some IMU samples and frames.
 struct LiveTalk {
   explicit LiveTalk(std::ptrdiff_t packet_events) {
     Aedat4Encoder encoder(Aedat4Encoder::Compression::Lz4, kLiveSensor);
@@ -153,7 +153,7 @@ TEST(Aedat4Tcp, AnInterruptEndsTheWaiting) {
       open_recording(server.address(), nullptr, {.interrupted = [&enough] { return enough.load(); }});
   EXPECT_TRUE(recording.dataset->next());
   enough = true;
-  EXPECT_GT(read_all(*recording.dataset).all.size(), 0u);  // what had come
+  EXPECT_GT(read_all(*recording.dataset).all.size(), 0u);  // what had arrived before
 }
 
 TEST(Aedat4Tcp, RefusalsSayWhatIsWrong) {

@@ -39,7 +39,7 @@ struct SmallAedat4 {
     }
   }
 
-  /// As an interrupted recording leaves it: without a table at the end.
+  /// As after an interrupted recording: without a table at the end.
   std::string interrupted() const {
     std::string text;
     for (const std::string& part : parts) text += part;
@@ -72,7 +72,7 @@ TEST_P(Aedat4, GivesBackWhatWasWritten) {
   ASSERT_EQ(c.frames.size(), 10u);
   EXPECT_EQ(c.frames[3].image.size(), cv::Size(4, 2));
   EXPECT_EQ(c.frames[3].image.at<std::uint8_t>(1, 3), 3);
-  EXPECT_EQ(c.frames[3].t, events[3000].t);  // the middle of the exposure, not the frame's own stamp
+  EXPECT_EQ(c.frames[3].t, events[3000].t);  // the middle of the exposure, not the stamp of the frame
   ASSERT_EQ(c.imu.size(), 100u);
   EXPECT_EQ(c.imu[7].t, events[700].t);
   EXPECT_TRUE(c.imu[7].accel_B.isApprox(Eigen::Vector3d(0, 0, 9.80665)));
@@ -92,7 +92,7 @@ TEST_P(Aedat4, AnInterruptedRecordingIsReadToItsEnd) {
 TEST_P(Aedat4, GoesOnBehindADamagedLength) {
   TempFolder folder;
   const SmallAedat4 small(GetParam());
-  std::size_t at = 0;  // of the 21st packet of events
+  std::size_t at = 0;  // offset of the 21st packet of events
   for (std::size_t i = 0, events = 0; events < 21; at += small.parts[i++].size()) {
     EXPECT_LT(i, small.parts.size());
     if (small.parts[i + 1][0] == 0 && i > 0) ++events;
@@ -132,7 +132,7 @@ TEST_P(Aedat4, FlippedBitsAreRefusedOrMended) {
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     std::string damaged = whole;
-    // The header, where all depends on every bit, in every third file.
+    // In every third file, damages the header, where each bit matters.
     const std::size_t at = random() % (i % 3 == 0 ? 1000 : whole.size());
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto file = folder.write("a.aedat4", damaged);
@@ -162,7 +162,7 @@ TEST(Aedat4File, SeveralStreamsOfATypeAreAskedFor) {
   TempFolder folder;
   const SmallAedat4 small(1);
   std::string text = small.interrupted();
-  text.replace(text.find("FRME"), 4, "EVTS");  // of the header's stream 1, which now seems to be a second camera
+  text.replace(text.find("FRME"), 4, "EVTS");  // stream 1 of the header becomes a second event camera
   const auto file = folder.write("a.aedat4", text);
   EXPECT_THAT(input_error([&] { open_recording(file); }),
               HasSubstr("--topic ROLE=NAME (or ROLE=none); events: events, frames"));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// FlatBuffers of the format, built without generated code: six tables with numbered fields.
+// The FlatBuffers of the format: six tables with numbered fields, built without generated code.
 #include "edged/io/aedat/aedat4_writer.hpp"
 
 #include <flatbuffers/flatbuffers.h>
@@ -10,6 +10,7 @@
 
 #include <numbers>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_header.hpp"
 
@@ -61,7 +62,7 @@ std::string Aedat4Encoder::header(std::int64_t table_at) const {
   const auto xml = b.CreateString(header_xml(compression_, sensor_, pose_frame_));
   const auto start = b.StartTable();
   b.AddElement<std::int32_t>(slot(0), static_cast<std::int32_t>(compression_), 0);
-  b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default, so that the length stays
+  b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default value, so that the length of the header is constant
   b.AddOffset(slot(2), xml);
   return std::string(kAedat4Magic) + finished(b, start, "IOHE");
 }
@@ -92,7 +93,7 @@ std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure) {
   const auto pixels = b.CreateVector(image.data, image.total() * image.elemSize());
   const auto start = b.StartTable();
   const std::int64_t begin_us = to_us(frame.t - exposure / 2), end_us = to_us(frame.t + exposure / 2);
-  // The frame, its begin and end, the exposure's begin and end.
+  // Stamps: of the frame, of its begin and end, of the begin and end of the exposure.
   for (const unsigned field : {0U, 1U, 3U}) b.AddElement<std::int64_t>(slot(field), begin_us, 0);
   for (const unsigned field : {2U, 4U}) b.AddElement<std::int64_t>(slot(field), end_us, 0);
   b.AddElement<std::int8_t>(slot(5), static_cast<std::int8_t>(image.type()), 0);

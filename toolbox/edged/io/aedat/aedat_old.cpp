@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The lines at the begin of AEDAT 2.0 and 3.1 files.
+// The header lines of AEDAT 2.0 and 3.1 files.
 #include "edged/io/aedat/aedat_old.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::string_view kOldAedatMagic = "#!AER-DAT";
 constexpr std::string_view kHeaderEnd = "#!END-HEADER";
-constexpr std::size_t kMostOldHeaderBytes = std::size_t{8} << 20U;  // jAER puts all its preferences there
+constexpr std::size_t kMostOldHeaderBytes = std::size_t{8} << 20U;  // jAER writes all its preferences into the header
 
 struct ChipSize {
-  std::string_view name;  ///< begin of the name, in small letters
+  std::string_view name;  ///< first letters of the name, in lower case
   int width, height;
 };
 constexpr std::array kChips = {ChipSize{"davis128", 128, 128}, ChipSize{"davis208", 208, 192},
                                ChipSize{"davis240", 240, 180}, ChipSize{"davis346", 346, 260},
                                ChipSize{"davis640", 640, 480}, ChipSize{"dvs128", 128, 128}};
 
-/// The text line that starts at `at`; nothing where bytes of data begin.
+/// The text line that starts at `at`. Nothing if the data begin there.
 std::optional<std::string_view> text_line(std::string_view text, std::size_t at) {
   const std::size_t end = text.find('\n', at);
   if (at >= text.size() || text[at] != '#' || end == std::string_view::npos) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<double> full_scale(std::string_view line, std::string_view key) {
 }
 
 void take_chip(std::string_view name, OldAedatHeader& header) {
-  header.chip = FieldReader(name.substr(name.rfind('.') + 1)).next();  // without the packages of the class
+  header.chip = FieldReader(name.substr(name.rfind('.') + 1)).next();  // without the package of the class
   const std::string lower = lower_case(header.chip);
   for (const ChipSize& chip : kChips)
     if (lower.starts_with(chip.name)) header.sensor = cv::Size(chip.width, chip.height);
@@ -90,7 +90,7 @@ Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, cons
     throw InputError::format("{}: AEDAT {} is not read; 2.0, 3.1 and 4 are: convert it with DV", file.string(),
                              header.version);
   if (two && !lower_case(header.chip).starts_with("davis"))
-    throw InputError::format("{}: AEDAT 2.0 of the camera `{}` is not read, of a DAVIS it is: convert it with DV",
+    throw InputError::format("{}: AEDAT 2.0 of the camera `{}` is not read, only of a DAVIS: convert it with DV",
                              file.string(), header.chip.empty() ? "(not named)" : header.chip);
   const cv::Size sensor = event_sensor_size(file, options.geometry ? options.geometry : header.sensor, rig);
   return two ? open_aedat2(file, header, sensor) : open_aedat3(file, header, sensor);

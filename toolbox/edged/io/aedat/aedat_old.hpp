@@ -10,24 +10,24 @@
 
 namespace edged {
 
-/// From the first bytes of a file: any AEDAT before version 4.
+/// head: the first bytes of a file. True for all versions before 4.
 bool is_old_aedat(ByteSpan head);
 
-/// Cameras "events" and "frames"; stamps are those of the camera. Of options: geometry of the event sensor. Throws
-/// InputError for other versions and cameras.
+/// Cameras "events" and "frames"; stamps are those of the camera. Options used: the geometry of the event sensor.
+/// Throws InputError for other versions and cameras.
 Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
-/// What the lines of `#` at the begin of a file say.
+/// The content of the header lines, which begin with `#`.
 struct OldAedatHeader {
   std::uint64_t bytes = 0;
   std::string version;             ///< "2.0"
-  std::string chip;                ///< "DAVIS240C"; "" where nothing says it
+  std::string chip;                ///< "DAVIS240C"; "" if unknown
   std::optional<cv::Size> sensor;  ///< of that chip [px]
   double gyro_lsb_per_dps = 32.8;  ///< +-1000 deg/s, as of the MPU-6150 of these cameras
   double accel_lsb_per_g = 4096;   ///< +-8 g
 };
 
-/// head: the front of a file. Throws Damage where no line ends.
+/// head: the first bytes of a file. Throws Damage if they contain no line end.
 OldAedatHeader parse_old_aedat_header(ByteSpan head);
 
 Recording open_aedat2(const std::filesystem::path& file, const OldAedatHeader& header, cv::Size sensor);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// AEDAT 2.0 and 3.1: made files, a real one, and damage.
+// AEDAT 2.0 and 3.1: generated files, a real one, and damage.
 #include "edged/io/aedat/aedat_old.hpp"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ std::uint32_t address(int x, int y) {
   return static_cast<std::uint32_t>(kHeight - 1 - y) << 22U | static_cast<std::uint32_t>(kWidth - 1 - x) << 12U;
 }
 
-/// 100 events, 10 IMU samples and a frame of which pixel (x, y) is as bright as x.
+/// 100 events, 10 IMU samples and a frame in which pixel (x, y) has the grey level x.
 std::string made_aedat2() {
   std::string out =
       "#!AER-DAT2.0\r\n# AEChip: eu.seebetter.ini.chips.davis.DAVIS240C\r\n"
@@ -62,7 +62,7 @@ std::string aedat3_packet(std::int16_t kind, std::int32_t item_bytes, std::int32
   return out + body;
 }
 
-/// The same in AEDAT 3.1, with stamps behind one overflow of 31 bits, and an event that is not valid.
+/// The same in AEDAT 3.1, with stamps after one overflow of 31 bits, and an invalid event.
 std::string made_aedat3() {
   std::string events, imu, frame;
   for (std::uint32_t i = 0; i < 101; ++i) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// FlatBuffers read as they are, every access within the buffer: what the generated code of the library checks
-// beforehand.
+// Reads FlatBuffers without generated code. Each access is checked to lie within the buffer.
 #pragma once
 
 #include <optional>
@@ -19,12 +18,12 @@ T number_at(ByteSpan bytes, std::size_t offset) {
   return value;
 }
 
-/// The items of a vector: count of them from `at` on.
+/// A vector: `count` items from offset `at` on.
 struct FlatVector {
   std::size_t at = 0, count = 0;
 };
 
-/// One table of a buffer. Fields are numbered from 0 in the order of the schema; absent ones have their default.
+/// A table of a buffer. Fields are numbered from 0 in the order of the schema. Absent fields have their default value.
 class FlatTable {
  public:
   /// The root table of a buffer.
@@ -59,13 +58,13 @@ class FlatTable {
 
  private:
   FlatTable(ByteSpan buffer, std::size_t at) : buffer_(buffer), at_(at) {
-    // A distance back (or, if negative, ahead) from the table; unsigned, so that a wrong one ends beyond the buffer.
+    // The signed distance backwards from the table. As an unsigned offset, a wrong one lies beyond the buffer.
     const auto back = number_at<std::int32_t>(buffer_, at_);
     layout_ = at_ - static_cast<std::size_t>(static_cast<std::int64_t>(back));
     layout_bytes_ = number_at<std::uint16_t>(buffer_, layout_);
   }
 
-  /// Where a field is; 0 for an absent one.
+  /// Offset of a field; 0 for an absent one.
   std::size_t place(unsigned field) const {
     const std::size_t entry = 4 + 2 * std::size_t{field};
     if (entry + 2 > layout_bytes_) return 0;
@@ -75,11 +74,11 @@ class FlatTable {
 
   ByteSpan buffer_;
   std::size_t at_;            ///< of the table
-  std::size_t layout_;        ///< of the list of its fields' places
+  std::size_t layout_;        ///< of the list of the offsets of its fields
   std::size_t layout_bytes_;  ///< of that list
 };
 
-/// The four characters behind the root's offset that name the type of a buffer.
+/// The type of a buffer: the four characters after the offset of the root table.
 inline std::string_view flat_identifier(ByteSpan buffer) {
   if (buffer.size() < 8) throw Damage("ends too early");
   return as_text(buffer.subspan(4, 4));

@@ -49,7 +49,7 @@ void TcpConnection::receive() {
   received_.resize(before + kStep);
   const ssize_t got = ::recv(socket_, received_.data() + before, kStep, MSG_DONTWAIT);
   received_.resize(before + (got > 0 ? static_cast<std::size_t>(got) : 0));
-  // A server that dies resets the connection: the same as its end.
+  // A server that crashes resets the connection, which counts as its end.
   if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) open_ = false;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One TCP connection that only receives. Internal to io.
+// A TCP connection that only receives. Internal to io.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@ namespace edged {
 
 class TcpConnection {
  public:
-  /// Throws InputError when nobody listens there.
+  /// Throws InputError if no server accepts the connection.
   TcpConnection(const std::string& host, const std::string& port);
   ~TcpConnection();
   TcpConnection(TcpConnection&& other) noexcept;
   TcpConnection& operator=(TcpConnection&&) = delete;
 
   const std::string& name() const { return name_; }  ///< "HOST:PORT", for messages
-  int descriptor() const { return socket_; }         ///< to poll
+  int descriptor() const { return socket_; }         ///< for poll()
 
-  /// Appends what has come, some 64 kB at most, to received(). The end of the connection closes it.
+  /// Appends the bytes that have arrived, about 64 kB at most, to received(). Closes this end after the server has
+  /// closed the connection.
   void receive();
   const Bytes& received() const { return received_; }
-  /// Forgets the first bytes of received().
+  /// Removes the first bytes of received().
   void drop(std::size_t count);
   bool open() const { return open_; }
 

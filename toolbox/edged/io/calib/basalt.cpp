@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnitQuaternion = 1e-3;
 
-/// p_imu = T_imu_cam * p_cam: the same as ours.
+/// p_imu = T_imu_cam * p_cam: T_imu_cam is T_B_C.
 SE3 read_basalt_pose(const YamlReader& node) {
   const auto number = [&node](const char* key) { return node.at(key).number(); };
   const Eigen::Quaterniond q(number("qw"), number("qx"), number("qy"), number("qz"));
@@ -40,7 +40,7 @@ CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>
   return make_model(values, in);
 }
 
-/// The four cameras of TUM-VIE: left and right frames, left and right events. The file has no names.
+/// The cameras of TUM-VIE: left and right frames, left and right events. The file does not name them.
 bool is_tum_vie(const std::vector<Lens>& lenses) {
   const auto size_is = [&lenses](std::size_t i, int width, int height) {
     return lenses[i].model.width() == width && lenses[i].model.height() == height;
@@ -49,8 +49,8 @@ bool is_tum_vie(const std::vector<Lens>& lenses) {
          size_is(3, 1280, 720);
 }
 
-/// Basalt's *_std are densities in continuous time, as ours (it multiplies by sqrt(imu_update_rate) itself): the
-/// largest of the three axes.
+/// The *_std of basalt are densities in continuous time, as in ImuNoise: basalt itself multiplies them by
+/// sqrt(imu_update_rate). The largest of the three axes is used.
 std::optional<ImuNoise> read_basalt_noise(const YamlReader& value) {
   if (!value.find("gyro_noise_std")) return std::nullopt;
   const auto largest = [&value](const char* key) {
@@ -83,7 +83,7 @@ CalibrationFile read_basalt(const YamlReader& root) {
     lens.name = "cam" + std::to_string(i);
     lens.model = read_basalt_camera(intrinsics[i], size);
     lens.T_B_C = read_basalt_pose(poses[i]);
-    // Added to the stamps of images: t_imu = t_cam + cam_time_offset_ns, the same sign as ours.
+    // Added to the stamps of images: t_imu = t_cam + cam_time_offset_ns, the sign of time_offset.
     if (const auto offset = value.find("cam_time_offset_ns"))
       lens.time_offset = Duration(static_cast<std::int64_t>(std::clamp(offset->number(), -1e10, 1e10)));
     out.lenses.push_back(std::move(lens));

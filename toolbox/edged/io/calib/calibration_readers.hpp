@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The calibration formats behind load_calibration. Internal to io.
+// The readers of the calibration formats, for load_calibration. Internal to io.
 #pragma once
 
 #include <vector>
@@ -10,48 +10,48 @@
 
 namespace edged {
 
-/// The file of a folder that holds its calibration (docs/calibration.md). InputError where there is none, or several.
+/// The calibration file of a folder (docs/calibration.md). Throws InputError if it has none or several.
 SourcePath find_calibration(const SourcePath& folder);
-/// Of any format, found by content.
+/// Detects the format by the content.
 CalibrationFile read_calibration_file(const SourcePath& file);
 
 CalibrationFile read_own_yaml(const YamlReader& root);
 CalibrationFile read_ecd_calib(const SourcePath& file);
-/// A sensor.yaml of a camera; imu0/sensor.yaml is looked for two folders up.
+/// A sensor.yaml of a camera. imu0/sensor.yaml is searched two folders up.
 CalibrationFile read_euroc(const YamlReader& root);
 CalibrationFile read_vins(const YamlReader& root);
 CalibrationFile read_uslam(const YamlReader& root);
 CalibrationFile read_basalt(const YamlReader& root);
 CalibrationFile read_camera_info(const YamlReader& root);
-/// A lens in OpenCV's keys, camera_matrix and the like; what the file says of its distortion may stand elsewhere.
+/// A lens in the keys of OpenCV, such as camera_matrix. The name of the distortion model may be in another node.
 Lens read_opencv_lens(const YamlReader& root, const std::string& distortion);
 std::string opencv_distortion(const YamlReader& root);
 /// fx, fy, cx, cy of a 3x3 matrix.
 std::vector<double> read_camera_matrix(const YamlReader& matrix);
 
-/// iniVation's DV.
+/// DV of iniVation.
 bool is_dv_json(const YamlReader& root);
 CalibrationFile read_dv_json(const YamlReader& root);
 bool is_dv_xml(const YamlReader& root);
 CalibrationFile read_dv_xml(const YamlReader& root);
 
-/// Prophesee's Metavision.
+/// Metavision of Prophesee.
 bool is_metavision(const YamlReader& root);
 CalibrationFile read_metavision(const YamlReader& root);
 [[noreturn]] void refuse_metavision_extrinsics(const YamlReader& root);
 
 CalibrationFile read_kalibr(const YamlReader& root);
-/// Noise keys of EuRoC and Kalibr, which agree; also below `imu0`.
+/// The noise keys that EuRoC and Kalibr share, also in a map `imu0`.
 ImuNoise read_kalibr_noise(const YamlReader& root);
-/// Where this IMU sits and how its clock runs against the one of the camchain (T_i_b, time_offset; absent for one IMU):
-/// turns cameras and offsets to it.
+/// The pose and time offset of this IMU relative to the IMU of the camchain (T_i_b, time_offset; absent for a single
+/// IMU). Transforms the cameras and their time offsets to this IMU.
 void refer_to_imu(const YamlReader& imu, CalibrationFile& calibration);
 
-/// VECtor's extrinsics of one scale; the intrinsics are looked for beside it.
+/// The extrinsics of VECtor of one scale. The intrinsics are searched in the same folder.
 CalibrationFile read_vector(const YamlReader& root);
-/// A file with VECtor's extrinsics, by its keys.
+/// True for a file with extrinsics of VECtor, by its keys.
 bool is_vector(const YamlReader& root);
-/// The ones of a folder.
+/// The extrinsics file of a folder.
 std::vector<SourcePath> find_vector_files(const SourcePath& folder);
 
 }  // namespace edged

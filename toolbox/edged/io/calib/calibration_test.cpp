@@ -35,8 +35,8 @@ cameras:
     same_as: events
 )";
 
-// A camera 10 cm in front of the IMU (body x) that looks along it: T_B_C has t = (0.1, 0, 0); its inverse t = (0, 0,
-// -0.1).
+// A camera 10 cm in front of the IMU (along x of the body), with its axis along x: T_B_C has t = (0.1, 0, 0), its
+// inverse t = (0, 0, -0.1).
 constexpr const char* kKalibr = R"(cam0:
   T_cam_imu:
   - [0.0, -1.0, 0.0, 0.0]

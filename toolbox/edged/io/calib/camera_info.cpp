@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The intrinsics of one camera in the keys of OpenCV's samples, which many have: ROS's camera_calibration, VECtor, the
-// Metavision SDK before version 5, the first DV.
+// The intrinsics of one camera in the keys of the OpenCV samples. ROS camera_calibration, VECtor, the Metavision SDK
+// before version 5 and the first DV use them.
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
@@ -20,7 +20,7 @@ std::string opencv_distortion(const YamlReader& root) {
 
 Lens read_opencv_lens(const YamlReader& root, const std::string& distortion) {
   const YamlReader matrix = root.at("camera_matrix");
-  const auto image_size = root.find("image_size");  // Metavision's; the others have two keys
+  const auto image_size = root.find("image_size");  // of Metavision; the other formats have two keys
   const std::vector<double> size = image_size
                                        ? image_size->numbers()
                                        : std::vector{root.at("image_width").number(), root.at("image_height").number()};
@@ -36,7 +36,7 @@ CalibrationFile read_camera_info(const YamlReader& root) {
   Lens lens = read_opencv_lens(root, opencv_distortion(root));
   lens.name = root.text_or("camera_name", std::filesystem::path(root.file().name()).stem().string());
   lens.words = lens.name + " " + root.file().name();
-  if (root.find("n_kept_views")) lens.sees = Sees::Events;  // Metavision's
+  if (root.find("n_kept_views")) lens.sees = Sees::Events;  // of Metavision
   CalibrationFile out;
   out.has_extrinsics = false;
   out.lenses = {lens};

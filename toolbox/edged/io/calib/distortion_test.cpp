@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Coefficients that OpenCV pads with zeros, alike in every format.
+// Coefficients padded with zeros as by OpenCV, in each format.
 #include "edged/io/distortion.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations of iniVation's DV: the json of dv-processing's CalibrationSet, and the xml of earlier versions.
+// Calibrations of DV by iniVation: the json of CalibrationSet in dv-processing, and the xml of earlier versions.
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
@@ -29,7 +29,7 @@ Lens read_dv_camera(const YamlReader& node, const std::string& key) {
   return lens;
 }
 
-/// The first IMU of the file: there is one in a recording.
+/// The first IMU of the file: a recording has only one.
 std::optional<YamlReader> first_imu(const YamlReader& root) {
   const auto imus = root.find("imus");
   if (!imus || !imus->is_map()) return std::nullopt;
@@ -52,7 +52,7 @@ CalibrationFile read_dv_json(const YamlReader& root) {
   const SE3 T_B_C0 = imu ? imu->at("transformationToC0").transform().inverse() : SE3();  // p_C0 = T * p_IMU
   for (const auto& [key, node] : root.at("cameras").entries()) {
     Lens lens = read_dv_camera(node, key);
-    // p_Cn = T * p_C0, against its name: it is what OpenCV's stereoCalibrate gives for the second camera.
+    // p_Cn = T * p_C0, contrary to its name: the result of stereoCalibrate in OpenCV for the second camera.
     lens.T_B_C = T_B_C0 * node.at("transformationToC0").transform().inverse();
     // t_cam = t_imu - timeOffsetMicros.
     if (imu) lens.time_offset = imu->at("timeOffsetMicros").time_offset(kMicrosecond_s);
@@ -81,10 +81,10 @@ CalibrationFile read_dv_xml(const YamlReader& root) {
     out.lenses.push_back(std::move(lens));
   }
   const auto T_cam_imu = root.find("transformation_cam_imu");
-  out.has_extrinsics = T_cam_imu && out.lenses.size() == 1;  // of two cameras DV calibrates no IMU
+  out.has_extrinsics = T_cam_imu && out.lenses.size() == 1;  // DV does not calibrate the IMU of two cameras
   if (!out.has_extrinsics) return out;
   Lens& lens = out.lenses.front();
-  lens.T_B_C = T_cam_imu->transform().inverse();  // Kalibr's
+  lens.T_B_C = T_cam_imu->transform().inverse();  // in the convention of Kalibr
   for (const char* key : {"time_offset_cam_imu", "time_offset_cam_imu__t_imu_equals_t_cam_plus_shift"})
     if (const auto offset = root.find(key)) lens.time_offset = offset->time_offset();
   return out;

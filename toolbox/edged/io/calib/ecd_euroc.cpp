@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The calibrations that come with Event-Camera Dataset and EuRoC folders.
+// The calibrations in folders of the Event-Camera Dataset and of EuRoC.
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/dataset_folders.hpp"
@@ -57,9 +57,9 @@ CalibrationFile read_euroc(const YamlReader& root) {
   const SourcePath folder = root.file().parent_path();
   Lens lens;
   lens.name = folder.name();
-  lens.sees = guess_sees(lens.name, 0, 0).value_or(Sees::Frames);  // the format knows nothing else
+  lens.sees = guess_sees(lens.name, 0, 0).value_or(Sees::Frames);  // the format has frame cameras only
   lens.model = read_model(root, "distortion_model", "distortion_coefficients");
-  lens.T_B_C = root.at("T_BS").transform();  // p_B = T_BS * p_S: the same as ours while the IMU is the body
+  lens.T_B_C = root.at("T_BS").transform();  // p_B = T_BS * p_S: T_BS is T_B_C, as the IMU is the body
 
   CalibrationFile out;
   const SourcePath mav0 = folder.parent_path();

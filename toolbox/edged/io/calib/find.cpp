@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which file of a folder holds the calibration, and which format a file has.
+// Finds the calibration file of a folder, and the format of a file.
 #include <functional>
 #include <sstream>
 
@@ -24,7 +24,7 @@ std::vector<SourcePath> files_where(const SourcePath& folder, const std::functio
 
 bool is_camchain(const std::string& name) { return name.starts_with("camchain") && name.ends_with(".yaml"); }
 
-/// basalt: camera-calibrationA.json, calibration.json; mocap-imu-calibrationA.json is something else. DV: json, xml.
+/// basalt: camera-calibrationA.json, calibration.json, but not mocap-imu-calibrationA.json. DV: json, xml.
 /// Metavision: intrinsics.json.
 bool is_named_calibration(const std::string& name) {
   if (name == "intrinsics.json") return true;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The formats of others: which way their transforms point, what their clocks mean, what their cameras see.
+// Formats of other programs: direction of transforms, sign of time offsets, modality of cameras.
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// In all of them: a camera 10 cm in front of the IMU (body x) that looks along it.
+// All have a camera 10 cm in front of the IMU (along x of the body), with its axis along x.
 constexpr const char* kInline = R"(%YAML:1.0
 ---
 imu_topic: "/davis_left/imu"
@@ -327,7 +327,7 @@ TEST_F(CalibrationFormats, VectorIsReadFromItsFolder) {
 TEST_F(CalibrationFormats, WordsAndSizesTellWhatACameraSees) {
   EXPECT_EQ(guess_sees("/davis/left/image_raw", 346, 260), Sees::Both);
   EXPECT_EQ(guess_sees("/dvs/image_raw", 240, 180), Sees::Both);
-  EXPECT_EQ(guess_sees("/dvs/image_raw", 640, 480), Sees::Events);  // no DAVIS: an image made of events
+  EXPECT_EQ(guess_sees("/dvs/image_raw", 640, 480), Sees::Events);  // no DAVIS: an image rendered from events
   EXPECT_EQ(guess_sees("/davis/left/events", 640, 480), Sees::Events);
   EXPECT_EQ(guess_sees("dvs", 346, 260), Sees::Events);
   EXPECT_EQ(guess_sees("Prophesee_Gen3", 640, 480), Sees::Events);
@@ -370,7 +370,7 @@ TEST_F(CalibrationFormats, DamagedFilesAreReadOrRefusedButNothingElse) {
       try_it(flipped);
     }
   }
-  EXPECT_GT(read, 3u);  // the whole ones at least, but for basalt's, which has no names
+  EXPECT_GT(read, 3u);  // at least the complete ones, except basalt, which has no names
 }
 
 }  // namespace

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Kalibr: camchains and the noise of its IMUs. EuRoC and OpenVINS name things alike.
+// Kalibr: camchains and the noise of the IMUs. EuRoC and OpenVINS use the same keys.
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {
 
-// Further apart than these, T_cam_imu and the chain T_cn_cnm1 tell different stories.
+// Beyond these differences, T_cam_imu contradicts the chain of T_cn_cnm1.
 constexpr double kChainRotation = 0.01;     // [rad]
 constexpr double kChainTranslation = 0.01;  // [m]
 
-/// p_cam = T_cam_imu * p_imu, the inverse of ours; OpenVINS turns it round. p_cn = T_cn_cnm1 * p_cnm1.
+/// p_cam = T_cam_imu * p_imu: the inverse of T_B_C. OpenVINS gives the inverse, T_imu_cam. p_cn = T_cn_cnm1 * p_cnm1.
 std::optional<SE3> read_kalibr_pose(const YamlReader& node, const std::optional<SE3>& before) {
   std::optional<SE3> T_B_C, chained;
   if (const auto T_imu_cam = node.find("T_imu_cam")) T_B_C = T_imu_cam->transform();
@@ -31,10 +31,10 @@ Lens read_kalibr_camera(const YamlReader& node, const std::string& name) {
   Lens lens;
   lens.name = node.text_or("name", name);
   lens.model = read_model(node, "distortion_model", "distortion_coeffs");
-  // t_imu = t_cam + timeshift_cam_imu: the same as ours.
+  // t_imu = t_cam + timeshift_cam_imu: the sign of time_offset.
   if (const auto shift = node.find("timeshift_cam_imu")) lens.time_offset = shift->time_offset();
   lens.words = lens.name + " " + node.text_or("rostopic", "");
-  if (const auto modality = node.find("modality")) {  // ours, unknown to Kalibr
+  if (const auto modality = node.find("modality")) {  // an extension of this program, not a key of Kalibr
     lens.sees = parse_sees(modality->text());
     if (!lens.sees) modality->fail("must be events, frames or both");
   }
@@ -76,7 +76,7 @@ void refer_to_imu(const YamlReader& root, CalibrationFile& calibration) {
   const YamlReader imu = root.find("imu0").value_or(root);
   const auto T_i_b = imu.find("T_i_b"), offset = imu.find("time_offset");
   for (Lens& lens : calibration.lenses) {
-    if (T_i_b) lens.T_B_C = T_i_b->transform() * lens.T_B_C;  // p_i = T_i_b * p_b, b: the camchain's IMU
+    if (T_i_b) lens.T_B_C = T_i_b->transform() * lens.T_B_C;  // p_i = T_i_b * p_b, b: the IMU of the camchain
     if (offset) lens.time_offset -= offset->time_offset();    // t_b = t_i + time_offset
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Kalibr's camchains: chains of cameras, a second IMU, models, and what its cameras see.
+// Camchains of Kalibr: chains of cameras, a second IMU, models, modality of cameras.
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 

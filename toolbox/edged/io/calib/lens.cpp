@@ -37,7 +37,7 @@ Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePat
   return guess ? *guess : *options.otherwise;
 }
 
-/// `events` and `frames` for the first lens that sees both, cam1_events and cam1_frames for the next.
+/// Names of cameras: `events` and `frames` for the first lens of both, cam1_events and cam1_frames for the next.
 void add_cameras(Rig& rig, const Lens& lens, Sees sees) {
   RigCamera camera{lens.name, Modality::Events, lens.model, lens.T_B_C, lens.time_offset};
   if (sees != Sees::Both) {

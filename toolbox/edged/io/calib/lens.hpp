@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a calibration file says of a lens, and how lenses become the cameras of a rig. Internal to io.
+// Lenses from calibration files, and the cameras of a rig made from them. Internal to io.
 #pragma once
 
 #include <array>
@@ -14,49 +14,49 @@
 
 namespace edged {
 
-/// A lens with the pixels behind it.
+/// A lens with its sensor. It becomes one camera of a rig, or two for events and frames.
 struct Lens {
   std::string name;
   CameraModel model;
   SE3 T_B_C;
   Duration time_offset = Duration(0);
-  std::optional<Sees> sees;  ///< where the format says it
-  std::string words = {};    ///< names and topics that it goes by, for guess_sees
+  std::optional<Sees> sees;  ///< if the format states it
+  std::string words = {};    ///< its names and topics, for guess_sees
 };
 
-/// What one calibration file (with those it points to) holds.
+/// The content of a calibration file and of the files that it names.
 struct CalibrationFile {
-  std::string name;  ///< of the rig; "": the file has none
+  std::string name;  ///< of the rig; "" if the file has none
   std::vector<Lens> lenses;
   bool has_extrinsics = true;
   std::optional<ImuNoise> imu;
   std::vector<std::string> warnings;
 };
 
-/// Intrinsics as the formats have them.
+/// Intrinsics in the terms of the formats.
 struct Intrinsics {
   double width, height;              ///< [px]
   std::vector<double> projection;    ///< fx, fy, cx, cy [px]
-  std::string distortion = "none";   ///< any of the formats' names
-  std::vector<double> coefficients;  ///< those that the model has not must be zero
+  std::string distortion = "none";   ///< in the naming of any format
+  std::vector<double> coefficients;  ///< those beyond the model must be zero
 };
 
-/// The model of the projection with the coefficients of the distortion. `place` is where complaints point to.
-/// InputError for models and coefficients that are not supported, by name.
+/// The camera model with its distortion. Errors name the file and line of `place`. Throws InputError for models and
+/// coefficients that are not supported.
 CameraModel make_model(const YamlReader& place, const Intrinsics& intrinsics);
 
-/// The model of a camera in the keys that ours, Kalibr and EuRoC share (camera_model, resolution, intrinsics) and
-/// these.
+/// The camera model in the keys that this program, Kalibr and EuRoC share (camera_model, resolution, intrinsics), and
+/// in the given keys of the distortion.
 CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,
                        const std::string& coefficients_key);
 
-/// From the words that a camera goes by and the size of its image; nothing where they do not tell:
+/// Guesses from the names of a camera and the size of its image. Nothing if they do not determine it:
 /// - both: it is called davis, or named as an event camera with a topic of images, and has the size of a DAVIS;
 /// - events: named as an event camera or its maker (event, dvs, davis, prophesee, evk, ...);
 /// - frames: named as what frames come from (image, frame, standard, regular, rgb, mono, gray, ...).
 std::optional<Sees> guess_sees(std::string_view words, int width, int height);
 
-/// Decides what each lens sees (options, the file, its words, in this order) and names the cameras.
+/// Determines the modality of each lens (by the options, the file, its words, in this order) and names the cameras.
 Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions& options, const SourcePath& path);
 
 }  // namespace edged

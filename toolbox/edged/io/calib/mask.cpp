@@ -21,7 +21,7 @@ std::size_t pixels_of(const CameraModel& camera) {
 }  // namespace
 
 std::vector<std::uint8_t> read_mask(const YamlReader& picture, const CameraModel& camera) {
-  constexpr std::uint8_t kWhite = 128;  // from there on
+  constexpr std::uint8_t kWhite = 128;  // used from this grey level on
   const std::string name = picture.text();
   const SourcePath file = std::filesystem::path(name).is_absolute() ? SourcePath(std::filesystem::path(name))
                                                                     : picture.file().parent_path() / name;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of a camera that are to be ignored: as the picture that a user draws, and as text, so that a calibration that
-// is written anew stays one file. Internal to io.
+// The mask of a camera: as a picture drawn by the user, and as text, so that a written calibration is one file.
+// Internal to io.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace edged {
 
-/// Of the picture that the value names, relative to its file: 0 where it is darker than middle grey. InputError where
-/// it is missing, no picture, or not of the camera's size.
+/// The mask from a picture, whose name is relative to the calibration file: 0 where it is darker than middle grey.
+/// Throws InputError if the picture is missing, unreadable, or not of the size of the camera.
 std::vector<std::uint8_t> read_mask(const YamlReader& picture, const CameraModel& camera);
 
-/// The same of numbers of pixels, used and ignored by turns, beginning with used ones, row by row.
+/// The mask from run lengths: alternately numbers of used and ignored pixels, row by row, beginning with used ones.
 std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraModel& camera);
-/// What read_mask_runs takes, in lines of bounded length.
+/// The run lengths for read_mask_runs, in lines of bounded length.
 std::string mask_runs(const CameraModel& camera);
 
-/// Of all pixels of the camera.
+/// The share of all pixels of the camera.
 double ignored_share(const CameraModel& camera);
 
 }  // namespace edged

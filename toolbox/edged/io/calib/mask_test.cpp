@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of pixels to ignore: read, written again, refused.
+// Masks from pictures: read, written as text, refused.
 #include <gmock/gmock.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -29,7 +29,7 @@ class MaskOfACamera : public ::testing::Test {
   std::string refusal(const std::string& lines) {
     return input_error([&] { load_calibration(calibration(lines)); });
   }
-  /// White but for a circle's outside and a bar.
+  /// White inside a circle, except for a bar.
   void draw(const std::string& name, int width = 240, int height = 180) {
     cv::Mat picture(height, width, CV_8UC1, cv::Scalar(255));
     for (int y = 0; y < height; ++y)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The intrinsics of Prophesee's Metavision SDK from version 5 on; those before are read as OpenCV's (camera_info.cpp).
+// The intrinsics of the Metavision SDK from version 5 on. Earlier versions use the keys of OpenCV (camera_info.cpp).
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
@@ -25,7 +25,7 @@ void refuse_metavision_extrinsics(const YamlReader& root) {
   root.at("T_slave_master")
       .fail(
           "Metavision's extrinsics are of two cameras to each other, not to an IMU: give the intrinsics.json of the "
-          "camera, and what it is to the IMU in a file of `edged calib intrinsics.json --out head.yaml`");
+          "camera, and write its extrinsics to the IMU into a file of `edged calib intrinsics.json --out head.yaml`");
 }
 
 }  // namespace edged

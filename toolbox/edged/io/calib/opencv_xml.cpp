@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-/// Words in quotes are one text, whatever is in them.
+/// A text in quotes is one item.
 YAML::Node leaf(std::string_view text) {
   const std::size_t quote = text.find('"'), end = text.rfind('"');
   if (quote != end) return YAML::Node(std::string(text.substr(quote + 1, end - quote - 1)));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The xml of OpenCV's FileStorage, which DV writes, as the yaml that FileStorage would have written. Internal to io.
+// Converts the xml of FileStorage in OpenCV, which DV writes, to its yaml. Internal to io.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -9,11 +9,11 @@
 
 namespace edged {
 
-/// By its beginning.
+/// True if the text begins as xml.
 bool is_xml(std::string_view text);
 
-/// Elements are keys, those called `_` items of a list; numbers side by side are a list. Throws Damage with the line
-/// where the text is no xml.
+/// Elements become keys, elements `_` become items of a list, a sequence of numbers becomes a list. Throws Damage, with
+/// the line, if the text is no xml.
 YAML::Node parse_opencv_xml(std::string_view text);
 
 }  // namespace edged

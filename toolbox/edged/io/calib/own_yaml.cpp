@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Our own format: docs/calibration.md.
+// The calibration format of this program: docs/calibration.md.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +37,7 @@ Sees read_modality(const YamlReader& value) {
   return *sees;
 }
 
-/// The camera above that `same_as` names.
+/// The earlier camera that `same_as` names.
 Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
   for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "max_angle", "T_B_C", "T_C_B",
                           "q_B_C", "time_offset", "mask", "mask_runs"})
@@ -48,8 +48,8 @@ Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vec
   return *base;
 }
 
-/// A matrix does not give back the quaternion that it was made of to the last bit, and a run repeats only with these.
-/// Who writes another T_B_C means that one.
+/// The quaternion q_B_C, which a matrix does not reproduce to the last bit. A run is repeatable only with the same
+/// bits. A T_B_C that differs from q_B_C takes precedence.
 void take_last_bits(const YamlReader& node, SE3& T_B_C) {
   constexpr double kSame = 1e-12;
   const std::vector<double> q = node.numbers();
@@ -104,7 +104,7 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   return lens;
 }
 
-/// As a yaml string.
+/// A yaml string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -129,7 +129,7 @@ std::string pose_yaml(const RigCamera& camera) {
                            format_seconds(Timestamp(camera.time_offset)));
 }
 
-/// Where only the lens is known.
+/// For a lens without extrinsics.
 constexpr const char* kPoseToFillIn =
     "    # Camera to IMU, p_B = T_B_C * p_C: columns are the camera's x (right), y (down) and z (forward) axes in the\n"
     "    # IMU's, then its place in metres. T_C_B instead is the inverse.\n"
@@ -140,7 +140,7 @@ constexpr const char* kPoseToFillIn =
     "      - [0.0, 0.0, 0.0, 1.0]\n"
     "    time_offset: 0.0  # s: t_imu = t_cam + time_offset\n";
 
-/// As somebody wrote it, up to nine decimals, so that it reads back to the last bit.
+/// Degrees rounded to nine decimals. An angle that a user wrote with up to nine decimals reads back to the last bit.
 double plain_degrees(double angle_rad) { return std::round(1e9 * kDegreesPerRadian * angle_rad) / 1e9; }
 
 std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {

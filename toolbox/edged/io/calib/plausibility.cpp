@@ -12,15 +12,15 @@
 namespace edged {
 namespace {
 
-constexpr double kLongArm = 0.5;        // [m]
-constexpr double kMillimetreArm = 2.0;  // [m] beyond what heads have: read as metres what was in millimetres
-constexpr double kMinView = 1.0, kMaxView = 172.0;       // [deg] across the diagonal: no lens of this model
+constexpr double kLongArm = 0.5;                    // [m]
+constexpr double kMillimetreArm = 2.0;              // [m] longer than on any sensor head: millimetres read as metres
+constexpr double kMinView = 1.0, kMaxView = 172.0;  // [deg] across the diagonal: no lens of this model
 constexpr double kNarrowView = 10.0, kWideView = 160.0;  // [deg] rare
-constexpr double kMaxWideView = 250.0;  // [deg] across the shorter side of a lens that sees behind itself
-constexpr double kOffCentre = 0.15;     // of the image's size, of the principal point to its middle
-constexpr double kPixelAspect = 0.05;   // of fx against fy
+constexpr double kMaxWideView = 250.0;  // [deg] across the shorter side of a lens with a view of more than 180 deg
+constexpr double kOffCentre = 0.15;     // distance of the principal point from the middle, as a share of the image size
+constexpr double kPixelAspect = 0.05;   // relative difference of fx and fy
 
-/// How far the principal point is from the middle of an image of this size, as a share of its width or height.
+/// Distance of the principal point from the middle of an image of this size, as a share of its width or height.
 double off_centre(const CameraModel& m, int width, int height) {
   return std::max(std::abs(m.cx() / width - 0.5), std::abs(m.cy() / height - 0.5));
 }
@@ -44,7 +44,7 @@ class Judge {
   void field(const RigCamera& camera) {
     const CameraModel& m = camera.model;
     const FieldOfView fields = field_of_view(m);
-    const bool wide = m.view_limit().has_value();  // the corners of its image may lie outside of its circle
+    const bool wide = m.view_limit().has_value();  // the corners of the image may lie outside the image circle
     const double view = (wide ? std::min(fields.horizontal, fields.vertical) : fields.diagonal) * kDegreesPerRadian;
     if (!(view >= kMinView && view <= (wide ? kMaxWideView : kMaxView)))
       throw InputError::format(
@@ -75,7 +75,7 @@ class Judge {
     }
   }
 
-  /// One lens has one image size.
+  /// Cameras of one lens have one image size.
   void sizes(const RigCamera& a, const RigCamera& b) {
     const CameraModel &m = a.model, &n = b.model;
     const bool same_lens = m.fx() == n.fx() && m.fy() == n.fy() && m.cx() == n.cx() && m.cy() == n.cy();
@@ -103,7 +103,7 @@ std::vector<std::string> implausibilities(const Calibration& calibration, const 
   const auto& cameras = calibration.rig.cameras;
   for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
     for (auto before = cameras.begin(); before != camera; ++before) judge.sizes(*before, *camera);
-    // A lens that gives events and frames is judged once.
+    // A lens of events and frames is checked once.
     if (std::any_of(cameras.begin(), camera, [&](const RigCamera& c) { return is_same_lens(c, *camera); })) continue;
     judge.field(*camera);
     judge.centre(*camera);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What cannot be, or hardly, in a calibration that is well-formed. Internal to io.
+// Checks a well-formed calibration for impossible and implausible values. Internal to io.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace edged {
 
-/// One line for all that looks wrong, with the remedy: lever arms (long; metres that were millimetres), fields of view,
-/// principal points, image sizes. Throws InputError for a field of view that no lens has.
+/// One line with the remedy for each implausible value: lever arms (long, or millimetres instead of metres), fields of
+/// view, principal points, image sizes. Throws InputError for a field of view that no lens has.
 std::vector<std::string> implausibilities(const Calibration& calibration, const SourcePath& path);
 
 }  // namespace edged

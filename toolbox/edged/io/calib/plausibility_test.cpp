@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations that are well-formed and still wrong.
+// Calibrations that are well-formed, but wrong.
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// A calibration in our format, whole but for what a test changes.
+/// A valid calibration in the format of this program, with one change by a test.
 struct Own {
   std::string size = "[346, 260]", intrinsics = "[250, 250, 173, 130]", rotation_x = "1, 0, 0", at = "0.1";
 

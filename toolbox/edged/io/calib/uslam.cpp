@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The rig files of Ultimate SLAM (ze_oss): cameras with T_B_C, the same direction as ours; no clock, no noise.
+// The rig files of Ultimate SLAM (ze_oss): cameras with T_B_C. They contain no time offset and no IMU noise.
 #include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The calibration of the VECtor data set, spread over a folder: an intrinsics file per camera, what the cameras are to
-// each other (SCALE_joint_camera_extrinsic_results.yaml), what they are to the IMU
-// (SCALE_camera_imu_extrinsic_results1.yaml), where SCALE is small_scale or large_scale, and the IMU's noise.
+// The calibration of the VECtor data set, a folder of several files: the intrinsics of each camera, the extrinsics
+// between the cameras (SCALE_joint_camera_extrinsic_results.yaml), those to the IMU
+// (SCALE_camera_imu_extrinsic_results1.yaml), where SCALE is small_scale or large_scale, and the noise of the IMU.
 #include <algorithm>
 
 #include "edged/core/check.hpp"
@@ -26,7 +26,7 @@ constexpr VectorCamera kVectorCameras[] = {{"frames", "left_regular_camera_intri
                                            {"events", "left_event_camera_intrinsic_results", Sees::Events},
                                            {"events_right", "right_event_camera_intrinsic_results", Sees::Events}};
 
-/// Files whose names begin so and are yaml (some archives say .yaml twice), sorted.
+/// The yaml files whose names begin so, sorted. Some archives repeat the extension .yaml.
 std::vector<SourcePath> vector_files(const SourcePath& folder, const std::string& begin) {
   std::vector<SourcePath> out;
   for (const std::string& name : folder.names())
@@ -41,7 +41,7 @@ std::string vector_scale(const SourcePath& file) {
   return end == std::string::npos ? "" : name.substr(0, end);
 }
 
-/// A file beside root's; fails naming what it would hold.
+/// A file in the folder of root. Throws InputError, with the missing content, if there is none.
 YamlReader need_vector_file(const YamlReader& root, const std::string& begin, const std::string& what) {
   const SourcePath folder = root.file().parent_path();
   const std::vector<SourcePath> found = vector_files(folder, begin);
@@ -68,9 +68,9 @@ std::vector<SourcePath> find_vector_files(const SourcePath& folder) {
 CalibrationFile read_vector(const YamlReader& root) {
   const std::string scale = vector_scale(root.file());
   const SourcePath folder = root.file().parent_path();
-  const YamlReader joint = need_vector_file(root, scale + kJoint, "what the cameras are to each other");
-  const YamlReader to_imu = need_vector_file(root, scale + kToImu, "what they are to the IMU");
-  const SE3 T_B_cam0 = to_imu.at("cam0").at("T_cam_imu").transform().inverse();  // as Kalibr's
+  const YamlReader joint = need_vector_file(root, scale + kJoint, "the extrinsics between the cameras");
+  const YamlReader to_imu = need_vector_file(root, scale + kToImu, "the extrinsics from the cameras to the IMU");
+  const SE3 T_B_cam0 = to_imu.at("cam0").at("T_cam_imu").transform().inverse();  // in the convention of Kalibr
   CalibrationFile out;
   out.name = "vector_" + (scale.empty() ? "rig" : scale.substr(0, scale.size() - 1));
   for (std::size_t i = 0; i < std::size(kVectorCameras); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations as the makers of event cameras write them: iniVation's DV, Prophesee's Metavision.
+// Calibration formats of the makers of event cameras: DV of iniVation, Metavision of Prophesee.
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// In all of them with a pose: a camera 10 cm in front of the IMU (body x) that looks along it.
+// Those with a pose have a camera 10 cm in front of the IMU (along x of the body), with its axis along x.
 constexpr const char* kDvJson = R"({
     "version": "2.0",
     "cameras": {
@@ -143,8 +143,8 @@ TEST_F(VendorsCalibrations, ThePoseOfDvsImuIsTurnedRoundAndItsOffsetIsOurs) {
 
 TEST_F(VendorsCalibrations, TheSecondCameraOfDvStandsWhereTheFirstSeesIt) {
   const RigCamera right = load(kDvJson, "calibration.json").rig.cameras[1];
-  EXPECT_EQ(right.name, "events");  // a DAVIS gives both
-  // 5 cm to the right in the image of the first, which is the body's -y.
+  EXPECT_EQ(right.name, "events");  // a DAVIS has events and frames
+  // 5 cm to the right in the image of the first camera, which is -y of the body.
   EXPECT_TRUE(right.T_B_C.translation().isApprox(Eigen::Vector3d(0.1, -0.05, 0), 1e-12));
 }
 

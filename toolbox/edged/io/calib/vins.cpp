@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The configuration files of VINS and of what descends from it: VINS-Mono and SuperEIO (the camera in the same file),
+// The configuration files of VINS and its descendants: VINS-Mono and SuperEIO (the camera in the same file),
 // VINS-Fusion (cam0_calib) and ESVIO (cam_left_calib, event_left_calib).
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
@@ -8,14 +8,14 @@
 namespace edged {
 namespace {
 
-/// One camera that such a file may describe, by its keys. body_T: a pose of 4 x 4, always camera to IMU; else
-/// extrinsicRotation and extrinsicTranslation, camera to IMU too, unless the flag is 1, which turns them round.
+/// The keys of one camera in such a file. body_T: a transform of 4 x 4 from camera to IMU. Without it,
+/// extrinsicRotation and extrinsicTranslation: from camera to IMU, or from IMU to camera if the flag is 1.
 struct VinsCamera {
   const char* name;
   const char* calib;  ///< names the file with the intrinsics
   const char* topic;
-  const char* body_T;    ///< "": has none
-  const char* suffix;    ///< of extrinsicRotation and extrinsicTranslation; null: has none
+  const char* body_T;    ///< "": none
+  const char* suffix;    ///< of extrinsicRotation and extrinsicTranslation; null: none
   const char* inverted;  ///< the flag
   std::optional<Sees> sees;
 };
@@ -29,7 +29,7 @@ const VinsCamera kCameras[] = {
     {"cam1", "cam1_calib", "image1_topic", "body_T_cam1", nullptr, "", std::nullopt},
 };
 
-/// camodocal's models: PINHOLE is radtan, KANNALA_BRANDT equidistant with other names.
+/// The models of camodocal: PINHOLE is radtan, KANNALA_BRANDT is equidistant.
 CameraModel read_camodocal(const YamlReader& root) {
   const std::string type = root.text_or("model_type", "PINHOLE");
   const bool fisheye = type == "KANNALA_BRANDT";
@@ -82,7 +82,8 @@ Lens read_vins_lens(const YamlReader& root, const VinsCamera& camera, const Yaml
   } else {
     out.has_extrinsics = false;
   }
-  if (const auto td = root.find("td")) lens.time_offset = td->time_offset();  // t_imu = t_cam + td: the same as ours
+  if (const auto td = root.find("td"))
+    lens.time_offset = td->time_offset();  // t_imu = t_cam + td: the sign of time_offset
   return lens;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Access to yaml with good complaints.
+// Access to yaml, with errors that name file, line and key.
 #include "edged/io/calib/yaml_reader.hpp"
 
 #include <Eigen/LU>
@@ -15,11 +15,11 @@
 namespace edged {
 namespace {
 
-constexpr double kRotationTolerance = 1e-3;  // beyond: refused
-constexpr double kRotationRounding = 1e-5;   // beyond: a warning; six digits are within it
+constexpr double kRotationTolerance = 1e-3;  // beyond it: an error
+constexpr double kRotationRounding = 1e-5;   // beyond it: a warning; six digits are accurate enough
 constexpr std::size_t kMaxFileBytes = 16 << 20;
 constexpr std::size_t kMaxNumbers = 64;  // no value of any format has more
-constexpr int kMaxNesting = 4;           // of lists; a list may hold itself by an anchor
+constexpr int kMaxNesting = 4;           // of lists: by an anchor, a list can contain itself
 constexpr double kMaxLength = 1e6;       // [m] of a translation
 constexpr double kMaxOffset = 10.0;      // [s]
 
@@ -29,7 +29,7 @@ std::string read_small_file(const SourcePath& file) try {
   throw InputError::format("{}: {}", file.string(), damage.what());
 }
 
-/// A frequent mistake that yaml reports in words of its own: the rows of a matrix as lists without a list around them.
+/// The explanation of a frequent mistake: the rows of a matrix without brackets around all of them.
 std::string hint(const std::string& text, int line) {
   std::size_t begin = 0;
   for (int i = 0; i < line && begin != std::string::npos; ++i) begin = text.find('\n', begin + (i > 0));
@@ -120,7 +120,7 @@ double YamlReader::positive() const {
 Duration YamlReader::time_offset(double unit_s) const {
   const double seconds = number() * unit_s;
   if (std::abs(seconds) > kMaxOffset)
-    fail(fmt::format("a clock off by {:g} s; at most {:g} s is believed: is it in seconds?", seconds, kMaxOffset));
+    fail(fmt::format("a clock off by {:g} s; at most {:g} s is accepted: is it in seconds?", seconds, kMaxOffset));
   return duration_from_seconds(seconds);
 }
 
@@ -142,7 +142,7 @@ std::vector<double> YamlReader::numbers() const {
   collect(data ? data->node_ : node_, 0, out);
   if (!data) return out;
   const auto rows = find("rows"), cols = find("cols");
-  // Rows of distortion coefficients are often counted one short of those that follow.
+  // Files often state one row fewer than there are distortion coefficients.
   if (rows && cols && rows->number() * cols->number() > static_cast<double>(out.size()))
     fail(fmt::format("{} rows of {} need more than the {} numbers of data", rows->text(), cols->text(), out.size()));
   return out;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A chunk is one word (count and packing), the first stamp, then the stamps, rows, columns and polarities, each packed
-// for itself: stamps and rows as runs of equal values, columns as steps of up to five neighbours. Where runs do not
-// pay, columns and polarities (12 bits) or rows too (24 bits) lie side by side, four events in three words.
+// separately: stamps and rows as runs of equal values, columns as steps of up to five neighbours. If runs are longer,
+// columns and polarities (12 bits), or these with the rows (24 bits), are stored for four events in three words.
 #include "edged/io/hdf5/ecf.hpp"
 
 #include <array>
@@ -18,7 +18,7 @@ struct EcfRun {
   std::size_t count;
 };
 
-/// next() gives run after run until all events have been assigned to.
+/// Calls next() for one run after the other until all events are assigned.
 template <typename Next, typename Assign>
 void expand_runs(std::vector<EcfEvent>& events, const Next& next, const Assign& assign) {
   for (std::size_t i = 0; i < events.size();) {
@@ -28,8 +28,8 @@ void expand_runs(std::vector<EcfEvent>& events, const Next& next, const Assign& 
   }
 }
 
-/// A byte holds how far the stamp steps (high half) and how many events share it; 15 in the low half: the count
-/// follows in two bytes. 15 in the high half: the low half is four more bits of a longer step, lowest first.
+/// A byte holds the step of the stamp (high half) and the number of its events (low half). 15 in the low half: the
+/// count follows in two bytes. 15 in the high half: the low half is four more bits of a longer step, lowest first.
 void expand_stamps(ByteReader& in, std::vector<EcfEvent>& events) {
   constexpr unsigned kEscape = 15;
   auto t = in.number<std::uint64_t>();
@@ -60,7 +60,7 @@ void expand_rows(ByteReader& in, std::vector<EcfEvent>& events) {
   expand_runs(events, next_run, [](EcfEvent& e, std::uint16_t y) { e.y = y; });
 }
 
-/// Two bytes hold a column and which of the next five columns have an event too, the nearest in the highest bit.
+/// Two bytes hold a column, and one bit for an event in each of the next five columns, the nearest in the highest bit.
 void expand_columns(ByteReader& in, std::vector<EcfEvent>& events) {
   for (std::size_t i = 0; i < events.size();) {
     const auto word = in.number<std::uint16_t>();
@@ -81,8 +81,8 @@ void expand_polarities(ByteReader& in, std::vector<EcfEvent>& events) {
   expand_runs(events, next_run, [](EcfEvent& e, bool p) { e.p = p ? 1 : 0; });
 }
 
-/// Four events in three words, three quarters of a word each: what the first and second leave of theirs are the low
-/// bits of the second and third.
+/// Four events in three words, three quarters of a word each. The rest of the first word is the low bits of the second
+/// event, the rest of the second word those of the third.
 template <typename Word, typename Assign>
 void expand_side_by_side(ByteReader& in, std::vector<EcfEvent>& events, const Assign& assign) {
   constexpr unsigned kQuarter = sizeof(Word) * 2;  // [bits]

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// ECF, the packing of events in the HDF5 files of Prophesee's Metavision.
+// ECF, the packing of events in HDF5 files of Metavision by Prophesee.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// One event as a row of /CD/events lies in memory.
+/// One event in the memory layout of a row of /CD/events.
 struct EcfEvent {
   std::uint16_t x = 0, y = 0;  ///< [px]
   std::int16_t p = 0;          ///< 1: brighter
@@ -21,7 +21,7 @@ struct EcfEvent {
 };
 static_assert(sizeof(EcfEvent) == 16);
 
-/// One chunk of events. Throws Damage when it ends too early, contradicts itself or says to hold more than max_events.
+/// Decodes one chunk of events. Throws Damage if it ends too early, is inconsistent or states more than max_events.
 std::vector<EcfEvent> decode_ecf(ByteSpan packed, std::size_t max_events);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// ECF: bytes written out by hand from the description of the format, generated events, damage.
+// ECF: bytes encoded by hand from the description of the format, generated events, damage.
 #include "edged/io/hdf5/ecf.hpp"
 
 #include <gtest/gtest.h>

@@ -40,7 +40,7 @@ class EcfPacker {
     out_.insert(out_.end(), bytes, bytes + sizeof(T));
   }
 
-  /// How many events from i on give the same value.
+  /// The number of events from i on with the same value.
   template <typename Value>
   std::size_t run(std::size_t i, const Value& value) const {
     std::size_t end = i;

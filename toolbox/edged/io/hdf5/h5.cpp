@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Rows by hyperslabs, with the sizes checked that a damaged file could state.
+// Reads rows by hyperslabs. All sizes are checked, as those in a damaged file may be wrong.
 #include "edged/io/hdf5/h5.hpp"
 
 #include <zlib.h>
@@ -16,10 +16,10 @@ namespace edged {
 namespace {
 
 constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;
-constexpr std::size_t kUsualCacheBytes = std::size_t{1} << 20U;  // of the library, for each data set
-constexpr std::uint64_t kMostRatio = 20'000;                     // no data are packed better than that
+constexpr std::size_t kUsualCacheBytes = std::size_t{1} << 20U;  // default of the library for each data set
+constexpr std::uint64_t kMostRatio = 20'000;                     // no compression reaches this ratio
 
-/// Bytes of a chunk as it was before it was packed; 0 where there are no chunks.
+/// Bytes of an uncompressed chunk; 0 without chunks.
 std::size_t chunk_bytes_of(hid_t data) {
   const H5Handle creation(H5Dget_create_plist(data), H5Pclose);
   std::array<hsize_t, H5S_MAX_RANK> sides;
@@ -29,19 +29,19 @@ std::size_t chunk_bytes_of(hid_t data) {
   if (rank < 0 || !type) throw Damage("a data set without a layout");
   std::uint64_t bytes = H5Tget_size(type.get());
   for (int i = 0; i < rank; ++i) {
-    if (sides[i] > kMostChunkBytes / std::max<std::uint64_t>(bytes, 1)) throw Damage("chunks beyond all bounds");
+    if (sides[i] > kMostChunkBytes / std::max<std::uint64_t>(bytes, 1)) throw Damage("chunks that are too large");
     bytes *= sides[i];
   }
   return bytes;
 }
 
-/// Opens for reading, past the check of the end if need be: then `cut` becomes true.
+/// Opens for reading. If the check of the end of the file fails, opens without it and sets `cut`.
 H5Handle open_for_reading(const std::filesystem::path& file, bool& cut) {
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access.get(), false, true);  // others may have it open, or the disk may be read-only
+  H5Pset_file_locking(access.get(), false, true);  // another program may have it open, or the disk may be read-only
   H5Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (opened) return opened;
-  // What the library's own tool h5clear sets to mend files.
+  // The setting with which h5clear, a tool of the library, repairs files.
   const hbool_t skip = true;
   if (H5Pset(access.get(), "skip_eof_check", &skip) < 0) return opened;
   cut = true;
@@ -52,7 +52,7 @@ H5Handle open_for_reading(const std::filesystem::path& file, bool& cut) {
 
 void prepare_h5() {
   static const bool prepared = [] {
-    H5dont_atexit();  // after a file that could not be closed, the disk being full, it follows freed memory
+    H5dont_atexit();  // the handler uses freed memory after a file that could not be closed because of a full disk
     H5open();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     register_h5_filters();
@@ -75,12 +75,12 @@ H5Array::H5Array(H5Handle data, std::string path) : data_(std::move(data)), path
   const std::size_t value_bytes = std::max<std::size_t>(H5Tget_size(type.get()), 1);
   for (std::size_t i = 1; i < shape_.size(); ++i) {
     if (shape_[i] > kMostChunkBytes / value_bytes / std::max<std::size_t>(columns_, 1))
-      throw Damage("rows beyond all bounds");
+      throw Damage("rows that are too large");
     columns_ *= shape_[i];
   }
   const std::uint64_t held = H5Dget_storage_size(data_.get());
   if (rows() / kMostRatio > (held + kMostChunkBytes) / std::max<std::size_t>(columns_ * value_bytes, 1))
-    throw Damage("says to hold far more than there is");
+    throw Damage("its stated size is far larger than its data");
   chunk_bytes_ = chunk_bytes_of(data_.get());
   if (chunk_bytes_ == 0) return;
   const H5Handle creation(H5Dget_create_plist(data_.get()), H5Pclose);
@@ -103,12 +103,12 @@ bool H5Array::has_fields(std::initializer_list<const char*> names) const {
 
 std::size_t H5Array::checked_size(std::uint64_t first, std::uint64_t count) const {
   if (first > rows() || count > rows() - first) throw Damage(path_ + " ends too early");
-  if (columns_ > 0 && count > kMostChunkBytes / columns_) throw Damage(path_ + " has rows beyond all bounds");
+  if (columns_ > 0 && count > kMostChunkBytes / columns_) throw Damage(path_ + " has rows that are too large");
   return count * columns_;
 }
 
-/// The library reads beyond the end of a chunk that a damaged file says is shorter than it should be: such chunks are
-/// found before it sees them.
+/// Detects chunks that are shorter than the layout requires, before the library reads them: it would read beyond their
+/// end.
 void H5Array::check_chunks(std::uint64_t first, std::uint64_t count) const {
   if (chunk_shape_.empty() || first + count <= checked_rows_) return;
   const hsize_t rows = chunk_shape_.front();
@@ -129,9 +129,9 @@ void H5Array::check_chunks(std::uint64_t first, std::uint64_t count) const {
 void H5Array::check_chunk(const std::vector<hsize_t>& offset) const {
   const auto too_short = [&] { return Damage(fmt::format("{} has a damaged chunk at row {}", path_, offset.front())); };
   hsize_t bytes = 0;
-  std::uint32_t skipped = 0;  // filters that were not applied
+  std::uint32_t skipped = 0;  // mask of filters that were not applied
   if (!filtered_) {
-    // Looks through all chunks, which is too slow for very many of them.
+    // This searches all chunks, which is too slow for very many.
     constexpr std::uint64_t kMostLookedThrough = 20'000;
     haddr_t address = 0;
     if (rows() / chunk_shape_.front() > kMostLookedThrough) return;
@@ -147,7 +147,7 @@ void H5Array::check_chunk(const std::vector<hsize_t>& offset) const {
   if (skipped != 0) {
     if (bytes < chunk_bytes_) throw too_short();
   } else if (deflated_) {
-    Bytes plain(chunk_bytes_ + 64);  // a checksum may have been added first
+    Bytes plain(chunk_bytes_ + 64);  // a checksum may follow the data
     auto plain_bytes = static_cast<uLongf>(plain.size());
     if (uncompress(plain.data(), &plain_bytes, packed.data(), packed.size()) != Z_OK || plain_bytes < chunk_bytes_)
       throw too_short();
@@ -167,7 +167,7 @@ void H5Array::read_as(hid_t memory_type, std::uint64_t first, std::uint64_t coun
     extent.front() = count;
     H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
   }
-  // In memory the shape of what is selected: into any other the library copies one element after the other.
+  // The memory has the shape of the selection. Otherwise the library copies element by element.
   const H5Handle memory(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
   if (H5Dread(data_.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, to) < 0)
     throw Damage(fmt::format("{} cannot be read at rows {} to {}", path_, first, first + count));
@@ -193,7 +193,7 @@ H5Handle H5File::open_data(const std::string& path, std::size_t cache_bytes) con
 std::optional<H5Array> H5File::find(const std::string& path) const try {
   H5Handle data = open_data(path, kUsualCacheBytes);
   if (!data) return std::nullopt;
-  // A chunk that does not fit is unpacked again for each block of it.
+  // A chunk that exceeds the cache is decompressed again for each block of rows.
   const std::size_t chunk_bytes = chunk_bytes_of(data.get());
   if (chunk_bytes > kUsualCacheBytes) {
     data = H5Handle();
@@ -246,7 +246,7 @@ std::vector<std::string> H5File::list(std::size_t most) const {
     std::size_t links = 0;
   } visit{*this, most, {}};
   const auto note = [](hid_t, const char* name, const H5L_info_t*, void* context) -> herr_t {
-    constexpr std::size_t kMostLinks = 1000, kLongestName = 1000;  // a damaged file may go in circles
+    constexpr std::size_t kMostLinks = 1000, kLongestName = 1000;  // links of a damaged file may form a cycle
     auto& v = *static_cast<Visit*>(context);
     if (++v.links > kMostLinks || std::strlen(name) > kLongestName) return 1;
     const auto array = v.file.find(std::string("/") + name);
@@ -260,7 +260,7 @@ std::vector<std::string> H5File::list(std::size_t most) const {
 
 bool is_hdf5(ByteSpan head) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  // Behind a block of the user's, if any, whose size is a power of two from 512 on.
+  // A user block may precede it. Its size is a power of two from 512 on.
   const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
   if (text.starts_with(kSignature)) return true;
   for (std::size_t at = 512; at < text.size(); at *= 2)

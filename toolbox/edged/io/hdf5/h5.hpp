@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reading of HDF5 files by rows: the C library behind handles that close themselves and errors that are ours.
+// Reads HDF5 files by rows. Wraps the C library in handles that close themselves, with Damage and InputError as errors.
 #pragma once
 
 #include <hdf5.h>
@@ -18,7 +18,7 @@
 
 namespace edged {
 
-/// An object of the library, closed with this one. False where it could not be opened.
+/// An object of the library, which the destructor closes. False if it could not be opened.
 class H5Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -43,7 +43,7 @@ class H5Handle {
   Close close_ = nullptr;
 };
 
-/// Registers our filters and silences the library's own printing of errors. Called by whoever opens or makes files.
+/// Registers the filters and disables error messages of the library. To be called before a file is opened or created.
 void prepare_h5();
 
 template <typename T>
@@ -57,10 +57,10 @@ hid_t h5_native_type() {
   return std::is_signed_v<T> ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64;
 }
 
-/// A data set of a file, read by rows: the values with one first index.
+/// A data set of a file, read by rows. A row is the values of one first index.
 class H5Array {
  public:
-  /// Takes an open data set over. Throws Damage for one that cannot be read at all.
+  /// Takes ownership of an open data set. Throws Damage for one that is not readable at all.
   H5Array(H5Handle data, std::string path);
 
   const std::string& path() const { return path_; }
@@ -70,19 +70,19 @@ class H5Array {
   std::size_t columns() const { return columns_; }
   bool floating() const { return type_ == H5T_FLOAT; }
   bool compound() const { return type_ == H5T_COMPOUND; }
-  /// Whole numbers that cannot be negative.
+  /// True for unsigned integers.
   bool unsigned_integer() const { return unsigned_; }
-  /// Of a compound type.
+  /// True for a compound type with these fields.
   bool has_fields(std::initializer_list<const char*> names) const;
 
-  /// Rows [first, first + count) as T, whatever the file holds (limited to what T holds). Throws Damage.
+  /// Rows [first, first + count), converted to T and clamped to its range. Throws Damage.
   template <typename T>
   std::vector<T> read(std::uint64_t first, std::uint64_t count) const {
     std::vector<T> values(checked_size(first, count));
     read_as(h5_native_type<T>(), first, count, values.data());
     return values;
   }
-  /// Into memory that holds count rows of a type of the library.
+  /// Reads into memory for count rows of a type of the library.
   void read_as(hid_t memory_type, std::uint64_t first, std::uint64_t count, void* to) const;
 
  private:
@@ -97,7 +97,7 @@ class H5Array {
   std::size_t chunk_bytes_ = 0;       ///< 0: not in chunks
   std::vector<hsize_t> chunk_shape_;  ///< empty: not in chunks
   bool filtered_ = false, deflated_ = false;
-  mutable std::uint64_t checked_rows_ = 0;  ///< the chunks before this row are what they should be
+  mutable std::uint64_t checked_rows_ = 0;  ///< the chunks before this row have been checked
   H5T_class_t type_ = H5T_NO_CLASS;
   bool unsigned_ = false;
 };
@@ -105,19 +105,19 @@ class H5Array {
 /// An HDF5 file open for reading.
 class H5File {
  public:
-  /// Throws InputError when the library cannot open it. A file that was cut is opened as far as it goes: what lies
-  /// behind its end reads as zeros, or not at all where it was compressed.
+  /// Throws InputError if the library cannot open the file. A cut file is opened, too: data after its end read as
+  /// zeros, and compressed ones throw Damage.
   explicit H5File(const std::filesystem::path& file);
 
-  /// Nothing where there is no such data set, or none that can be read.
+  /// Nothing if there is no such data set or it is not readable.
   std::optional<H5Array> find(const std::string& path) const;
   bool has(const std::string& path) const;
 
-  /// The text or whole number that an object has as attribute.
+  /// An attribute of an object: a text or an integer.
   std::optional<std::string> text_attribute(const std::string& object, const std::string& name) const;
   std::optional<std::int64_t> number_attribute(const std::string& object, const std::string& name) const;
 
-  /// The data sets with their shapes, "/events/t (1000)", the first `most` of them.
+  /// The first `most` data sets with their shapes: "/events/t (1000)".
   std::vector<std::string> list(std::size_t most) const;
 
   const std::filesystem::path& path() const { return path_; }
@@ -131,7 +131,7 @@ class H5File {
   bool cut_ = false;
 };
 
-/// These are the first bytes of an HDF5 file.
+/// True for the first bytes of an HDF5 file.
 bool is_hdf5(ByteSpan head);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One callback for each filter around functions that know nothing of the library.
+// A callback for each filter, and functions that are independent of the library.
 #include "edged/io/hdf5/h5_filters.hpp"
 
 #include <blosc.h>
@@ -17,7 +17,7 @@
 namespace edged {
 namespace {
 
-thread_local std::size_t chunk_bytes_read = 0;  // 0: outside of a scope
+thread_local std::size_t chunk_bytes_read = 0;  // 0 outside a scope
 
 Bytes undo_blosc(ByteSpan packed, std::size_t max_bytes) {
   std::size_t bytes = 0;
@@ -51,7 +51,7 @@ Bytes undo_ecf(ByteSpan packed, std::size_t max_bytes) {
   return out;
 }
 
-/// Gives the library `bytes` in place of its buffer. Returns their number, 0 (failed) for none.
+/// Replaces the buffer of the library by `bytes`. Returns their number, which is 0 on failure.
 std::size_t hand_over(const Bytes& bytes, std::size_t* buffer_size, void** buffer) {
   void* fresh = bytes.empty() ? nullptr : H5allocate_memory(bytes.size(), false);
   if (!fresh) return 0;
@@ -72,7 +72,7 @@ Bytes apply_blosc(ByteSpan plain, std::size_t parameter_count, const unsigned* p
   return packed;
 }
 
-/// Called by the library, which is C: nothing may be thrown. 0 says that it failed.
+/// Called by the library, which is C: must not throw. Returns 0 on failure.
 template <H5Filter filter>
 std::size_t filter_callback(unsigned flags, std::size_t parameter_count, const unsigned* parameters, std::size_t bytes,
                             std::size_t* buffer_size, void** buffer) noexcept try {
@@ -94,7 +94,7 @@ void register_filter(const char* name) {
 }  // namespace
 
 Bytes undo_h5_filter(H5Filter filter, ByteSpan packed, std::size_t chunk_bytes) {
-  constexpr std::size_t kSlack = 64;  // a checksum that was added first
+  constexpr std::size_t kSlack = 64;  // for a checksum after the data
   if (chunk_bytes == 0 || packed.empty()) throw Damage("an empty chunk");
   const std::size_t most = chunk_bytes + kSlack;
   Bytes out = filter == H5Filter::Blosc  ? undo_blosc(packed, most)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The compressions of HDF5 that are no part of the library, so that files open without plugins to install.
+// Compression filters of HDF5 that are not part of the library, so that no plugins are needed.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace edged {
 
-/// Their numbers as registered with the HDF Group.
+/// The numbers of the filters, as registered with the HDF Group.
 enum class H5Filter : int { Lzf = 32000, Blosc = 32001, Zstd = 32015, Ecf = 0x8ecf };
 
-/// A chunk as it was before the filter. chunk_bytes: the size of a chunk as the data set has it. Throws Damage for
-/// anything that is not at least as long and for what is far longer.
+/// Decompresses a chunk. chunk_bytes: the size of a chunk of the data set. Throws Damage if the result is shorter or
+/// far longer.
 Bytes undo_h5_filter(H5Filter filter, ByteSpan packed, std::size_t chunk_bytes);
 
-/// Makes the filters known to the library, once. Blosc packs and unpacks, the others only unpack.
+/// Registers the filters with the library, once. Blosc compresses and decompresses, the others only decompress.
 void register_h5_filters();
 
-/// Tells the filters how long the chunks are that this thread reads, as the library does not check what they return.
-/// A filter refuses to unpack outside of such a scope.
+/// Sets the size of the chunks that this thread reads, as the library does not check what the filters return. Outside
+/// such a scope, filters fail.
 class H5ChunkScope {
  public:
   explicit H5ChunkScope(std::size_t chunk_bytes);
@@ -30,7 +30,7 @@ class H5ChunkScope {
   H5ChunkScope& operator=(const H5ChunkScope&) = delete;
 };
 
-/// The parameters of Blosc for values of so many bytes: Zstandard behind a shuffle of bytes.
+/// The parameters of Blosc for values of this many bytes: a byte shuffle, then Zstandard.
 std::array<unsigned, 7> blosc_parameters(std::size_t value_bytes, std::size_t chunk_bytes);
 
 }  // namespace edged

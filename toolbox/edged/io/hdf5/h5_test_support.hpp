@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Makes HDF5 files for the tests, with every compression that we read.
+// Creates HDF5 files for the tests, with all compressions that are read.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace edged {
 
 enum class H5Pack { None, Deflate, Blosc, Zstd, Lzf, Ecf };
 
-/// A chunk as the filter of the pack would have packed it.
+/// A chunk, compressed as by the filter.
 inline Bytes pack_h5_chunk(H5Pack pack, ByteSpan plain) {
   if (pack == H5Pack::Ecf) {
     std::vector<EcfEvent> events(plain.size() / sizeof(EcfEvent));
@@ -42,7 +42,7 @@ class H5Maker {
     file_ = H5Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   }
 
-  /// A data set of numbers; shape: {rows, ...}, {} for a single number. In chunks of chunk_rows where those are given.
+  /// A data set of numbers; shape: {rows, ...}, {} for a single number. In chunks of chunk_rows, if given.
   template <typename T>
   void array(const std::string& path, const std::vector<T>& values, std::vector<hsize_t> shape,
              H5Pack pack = H5Pack::None, hsize_t chunk_rows = 0) {
@@ -118,7 +118,7 @@ class H5Maker {
   H5Handle file_;
 };
 
-/// x, y, t [us] and p of events below `group`, as DSEC, VECtor, TUM-VIE, M3ED and EDS have them.
+/// x, y, t [us] and p of events in `group`, as in DSEC, VECtor, TUM-VIE, M3ED and EDS.
 inline void put_event_columns(H5Maker& file, const std::string& group, const std::vector<Event>& events,
                               std::int64_t offset_us = 0, H5Pack pack = H5Pack::None, hsize_t chunk_rows = 0) {
   std::vector<std::uint16_t> x, y;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Poses as seven numbers or as matrices, made T_W_X.
+// Poses as seven numbers or as matrices, converted to T_W_X.
 #include "edged/io/hdf5/h5_truth.hpp"
 
 #include <array>
@@ -30,7 +30,7 @@ std::optional<SE3> pose_of_matrix(const double* v) {
   return SE3(R, T.topRightCorner<3, 1>());
 }
 
-/// Where poses are and what they are.
+/// The place and the meaning of poses.
 struct H5Poses {
   fs::path file;
   std::string poses, stamps;
@@ -79,7 +79,7 @@ std::optional<GroundTruth> read_truth(const H5Poses& where, Repairs& repairs) tr
   return std::nullopt;
 }
 
-/// The files that the sets lay beside that of the events.
+/// The ground truth files that the data sets have in the folder of the event file.
 std::vector<H5Poses> candidates(const H5File& file, const Hdf5Layout& layout) {
   const fs::path folder = fs::absolute(file.path()).parent_path();
   std::string stem = file.path().stem().string();

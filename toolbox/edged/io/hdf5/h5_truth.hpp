@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Ground truth that is HDF5 itself: in the file of the events, or in one beside it (MVSEC, M3ED).
+// Ground truth in HDF5: in the file of the events, or in another file of its folder (MVSEC, M3ED).
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@
 
 namespace edged {
 
-/// Ground truth that is read when it is asked for.
+/// Ground truth, read on demand.
 struct TruthSource {
   std::string frame = "body";                                     ///< X of its T_W_X
-  std::function<std::optional<GroundTruth>(Repairs&)> read = {};  ///< empty where there is none
+  std::function<std::optional<GroundTruth>(Repairs&)> read = {};  ///< empty without ground truth
 };
 
 TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout);

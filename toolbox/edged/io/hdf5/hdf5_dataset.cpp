@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One reader for all layouts: sources of events, frames and IMU samples, of which the one that lags is read on.
+// The reader of all layouts. Of the sources of events, frames and IMU samples, it reads the one that lags most.
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct H5Images {
   H5Stamps stamps;
 };
 
-/// IMU samples of a file: angular velocity and specific force, both in the first where there is no second.
+/// IMU samples of a file: angular velocity and specific force. Without the second array, both are in the first.
 struct H5Imu {
   H5Array first;
   std::optional<H5Array> second;
@@ -55,10 +55,11 @@ std::optional<H5Imu> find_imu(const H5File& file, const Hdf5Layout& layout) {
 cv::Mat h5_image(const H5Array& pixels, std::uint64_t row, bool cut) {
   const auto& shape = pixels.shape();
   const int channels = shape.size() == 4 ? static_cast<int>(shape[3]) : 1;
-  if (shape[1] > 16384 || shape[2] > 16384 || (channels != 1 && channels != 3)) throw Damage("images that cannot be");
+  if (shape[1] > 16384 || shape[2] > 16384 || (channels != 1 && channels != 3))
+    throw Damage("images of an invalid size");
   auto bytes = pixels.read<std::uint8_t>(row, 1);
   if (cut && std::ranges::all_of(bytes, [](std::uint8_t b) { return b == 0; }))
-    throw Damage("nothing behind the end of a cut file");
+    throw Damage("data after the end of a cut file");
   const cv::Mat image(static_cast<int>(shape[1]), static_cast<int>(shape[2]), CV_8UC(channels), bytes.data());
   cv::Mat grey;
   if (channels == 1) return image.clone();
@@ -66,7 +67,7 @@ cv::Mat h5_image(const H5Array& pixels, std::uint64_t row, bool cut) {
   return grey;
 }
 
-/// Width and height as the file says them.
+/// Width and height from the file.
 std::optional<cv::Size> stated_sensor(const H5File& file, const Hdf5Layout& layout) {
   const auto pair = [](double width, double height) -> std::optional<cv::Size> {
     if (!(width >= 1 && width <= 16384 && height >= 1 && height <= 16384)) return std::nullopt;
@@ -125,7 +126,7 @@ class Hdf5Dataset final : public StreamedDataset {
   }
 
  private:
-  /// Reads a part of one sensor's stream, sets the stamp it has come to; false at its end.
+  /// Reads a part of the stream of one sensor and sets the stamp that it has reached. False at its end.
   struct Source {
     std::function<bool(Timestamp&)> read;
     Timestamp reached = Timestamp::min();
@@ -138,8 +139,8 @@ class Hdf5Dataset final : public StreamedDataset {
     return true;
   }
 
-  /// A source of items with stamps. refill() reads some into an empty vector, false at the end. What it reads may span
-  /// more time than the merger waits for other streams: it is pushed in short steps.
+  /// A source of items with stamps. refill() reads items into an empty vector and returns false at the end. They may
+  /// span more time than the merger waits for other streams, so they are pushed in short steps.
   template <typename T>
   void add_source(std::function<bool(std::vector<T>&)> refill, std::function<void(std::span<const T>)> push) {
     sources_.push_back({[refill = std::move(refill), push = std::move(push), items = std::vector<T>(),
@@ -152,7 +153,7 @@ class Hdf5Dataset final : public StreamedDataset {
       }
       const auto first = items.begin() + static_cast<std::ptrdiff_t>(next);
       auto end = std::find_if(first, items.end(), [&](const T& item) { return item.t >= reached + kStep; });
-      if (end == first) ++end;  // behind a gap, or a wrong stamp: the next one tells
+      if (end == first) ++end;  // after a gap or a wrong stamp, which the next item decides
       push(std::span<const T>(first, end));
       next = static_cast<std::size_t>(end - items.begin());
       reached = end == items.end() ? std::prev(end)->t : std::min(std::prev(end)->t, end->t);
@@ -160,8 +161,8 @@ class Hdf5Dataset final : public StreamedDataset {
     }});
   }
 
-  /// Calls read(first, count); where that throws Damage, again with both halves, so that no more than `smallest` rows
-  /// are left out around what is damaged.
+  /// Calls read(first, count). If it throws Damage, reads both halves separately, so that at most `smallest` rows
+  /// around the damage are left out.
   template <typename Read>
   void read_parts(std::uint64_t first, std::uint64_t count, std::uint64_t smallest, const char* subject,
                   const Read& read) {
@@ -179,7 +180,7 @@ class Hdf5Dataset final : public StreamedDataset {
 
   bool is_stamp(Timestamp t, const char* subject) {
     if (t != Timestamp::min()) return true;
-    repairs_.add(std::string(subject) + ": stamp that cannot be", fmt::format("{}: a stamp of the {}", name_, subject));
+    repairs_.add(std::string(subject) + ": stamp out of range", fmt::format("{}: a stamp of the {}", name_, subject));
     return false;
   }
 
@@ -259,11 +260,11 @@ class Hdf5Dataset final : public StreamedDataset {
 
   bool is_finite(const ImuSample& sample) {
     if (sample.gyro_B.allFinite() && sample.accel_B.allFinite()) return true;
-    repairs_.add("imu: not finite", name_ + ": an IMU sample that is no number");
+    repairs_.add("imu: not finite", name_ + ": an IMU sample is not finite");
     return false;
   }
 
-  /// Of rows with both, whose order no document states: gravity tells which three are the specific force.
+  /// For rows with both sensors in an undocumented order. The three columns with gravity are the specific force.
   static bool is_accel_first(const H5Array& rows) try {
     constexpr double kGravity = 9.81;
     const std::uint64_t count = std::min(kSamplesAtOnce, rows.rows());
@@ -351,7 +352,7 @@ std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
     for (const fs::path& p : with_events) names += (names.empty() ? "" : ", ") + p.string();
     throw InputError::format("{}: events in several files: give one of {}", folder.string(), names);
   }
-  // A file without events is refused where it is opened, with what it holds.
+  // A file without events is refused when it is opened, with its content in the message.
   return with_events.empty() ? all.front() : with_events.front();
 }
 

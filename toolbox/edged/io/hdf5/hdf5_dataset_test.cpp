@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Each layout and compression of HDF5 recordings, what lies beside them, damage, the real sample.
+// Each layout and compression of HDF5 recordings, their other files, damage, the real sample.
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 
-/// For the leak sanitizer: the library itself loses a few hundred bytes with some damaged files.
+/// For the leak sanitizer: the library itself leaks a few hundred bytes with some damaged files.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }  // NOLINT
 
 namespace edged {

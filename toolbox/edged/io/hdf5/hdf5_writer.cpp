@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Data sets that grow by whole chunks.
+// Writes data sets that grow by whole chunks.
 #include "edged/io/hdf5/hdf5_writer.hpp"
 
 #include <span>
@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-/// What of the library fails is what of the disk fails.
+/// Errors of the library here are errors of the disk.
 void check_written(bool good, const std::string& file) {
   if (!good) throw InputError::format("{}: cannot be written: is the disk full?", file);
 }
@@ -203,7 +203,7 @@ class Hdf5Writer final : public RecordingWriter {
     if (imu_) imu_->flush();
     write_offset();
     check_written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, name_);
-    // The file is only closed, and others may open it, once its last data set is.
+    // The file is closed, so that other programs can open it, only after its last data set.
     events_.reset(), frames_.reset(), imu_.reset();
     file_ = H5Handle();
   }
@@ -218,9 +218,9 @@ class Hdf5Writer final : public RecordingWriter {
     check_written(H5Dwrite(data.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &offset) >= 0, name_);
   }
 
-  /// The event to come is the first one at or after each millisecond up to its own.
+  /// The next event is the first at or after each millisecond up to its own stamp.
   void index(std::int64_t us) {
-    constexpr std::int64_t kMostIndexed = 24LL * 3600 * 1000;  // [ms]; a stamp far off must not fill the disk
+    constexpr std::int64_t kMostIndexed = 24LL * 3600 * 1000;  // [ms]; a wrong stamp must not fill the disk
     for (; next_ms_ * 1000 <= us && next_ms_ < kMostIndexed; ++next_ms_) events_->ms_to_idx.add(event_count_);
   }
 
@@ -232,7 +232,7 @@ class Hdf5Writer final : public RecordingWriter {
   std::unique_ptr<ImuArrays> imu_;
   std::optional<std::int64_t> offset_us_;  ///< stamp of the first event
   std::uint64_t event_count_ = 0;
-  std::int64_t next_ms_ = 0;  ///< not yet indexed
+  std::int64_t next_ms_ = 0;  ///< first millisecond without an index
 };
 
 }  // namespace

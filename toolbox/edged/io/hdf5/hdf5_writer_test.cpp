@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What is written is what DSEC's tools expect, and comes back. Events of all formats: write_recording_test.
+// Written files have the layout that the tools of DSEC expect, and read back. Events of all formats:
+// write_recording_test.cpp.
 #include "edged/io/hdf5/hdf5_writer.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The table of layouts, and events from each kind of them.
+// The table of layouts, and the events of each of them.
 #include "edged/io/hdf5/layouts.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ constexpr std::array kLayouts = {
                .width = 346,
                .height = 260},
     Hdf5Layout{.name = "metavision", .events = "/CD/events"},
-    // DSEC, VECtor and TUM-VIE, which differ in the files beside; frames, IMU and truth are what our writer adds.
+    // DSEC, VECtor and TUM-VIE, which differ in their other files. hdf5_writer adds frames, IMU and ground truth.
     Hdf5Layout{.name = "dsec",
                .events = "/events",
                .offset = "/t_offset",
@@ -64,11 +64,11 @@ Timestamp stamp_of(double value, std::int64_t unit_ns) {
 
 Timestamp shifted(Timestamp t, Duration offset) {
   if (t == kNoStamp) return t;
-  const std::int64_t ns = to_ns(t + offset);  // both are far from overflowing
+  const std::int64_t ns = to_ns(t + offset);  // neither can overflow
   return ns < -kMaxStampNs || ns > kMaxStampNs ? kNoStamp : t + offset;
 }
 
-/// Of an array of stamps by its name and type; of the last stamp where floating numbers may be either.
+/// The unit of stamps by the name and type of the array. For floating-point numbers, the last stamp decides.
 std::int64_t unit_of(const H5Array& array) {
   constexpr std::int64_t kMicroseconds = 1000, kSeconds = 1'000'000'000;
   if (array.path().ends_with("_ns")) return 1;
@@ -86,7 +86,7 @@ std::uint16_t pixel(double v) { return v >= 0 && v < 65535 ? static_cast<std::ui
 std::uint16_t pixel(std::int32_t v) { return v >= 0 && v < 65535 ? static_cast<std::uint16_t>(v) : 65535; }
 
 std::vector<std::uint16_t> read_pixels(const H5Array& array, std::uint64_t first, std::uint64_t count) {
-  // What is too large becomes 65535 on its way, as it should; what is negative would become 0.
+  // The conversion clamps large values to 65535, as wanted, but negative ones to 0.
   if (array.unsigned_integer()) return array.read<std::uint16_t>(first, count);
   std::vector<std::uint16_t> pixels(count);
   std::ranges::transform(array.read<std::int32_t>(first, count), pixels.begin(),
@@ -94,7 +94,7 @@ std::vector<std::uint16_t> read_pixels(const H5Array& array, std::uint64_t first
   return pixels;
 }
 
-/// EcfEvent as a type of the library.
+/// The type of the library for EcfEvent.
 H5Handle fields_type() {
   H5Handle type(H5Tcreate(H5T_COMPOUND, sizeof(EcfEvent)), H5Tclose);
   H5Tinsert(type.get(), "x", offsetof(EcfEvent, x), H5T_NATIVE_UINT16);
@@ -174,7 +174,7 @@ std::vector<Event> H5Events::read(std::uint64_t first, std::uint64_t count) cons
                               : kind_ == Kind::Rows  ? read_rows(first, count)
                                                      : read_fields(first, count);
   if (cut_ && std::ranges::all_of(events, [](const Event& e) { return e.x == 0 && e.y == 0; }))
-    throw Damage("nothing behind the end of a cut file");
+    throw Damage("data after the end of a cut file");
   for (Event& event : events) event.t = shifted(event.t, offset_);
   return events;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Where the data sets that come as HDF5 keep what, and their events whatever the layout.
+// The layouts of data sets in HDF5, and their events independent of the layout.
 #pragma once
 
 #include <optional>
@@ -14,30 +14,30 @@
 
 namespace edged {
 
-/// Paths within a file; "" for what a layout has not. Stamps are whole microseconds, or seconds where they have
-/// fractions, or nanoseconds where the name ends with _ns.
+/// Paths within a file; "" for data that a layout does not have. Stamps are integers in microseconds, floating-point
+/// numbers in seconds, or nanoseconds if the name ends with _ns.
 struct Hdf5Layout {
   std::string_view name;
   /// A group with x, y, t, p, or one data set: rows of (x, y, t, p) or with fields of these names.
   std::string_view events;
   std::string_view offset = "";                     ///< one stamp, added to those of the events
   std::string_view images = "", image_stamps = "";  ///< (n, height, width[, channels])
-  std::string_view gyro = "", accel = "";           ///< (n, 3) each [rad/s, m/s^2]; no accel: both in one of (n, 6)
+  std::string_view gyro = "", accel = "";           ///< (n, 3) each [rad/s, m/s^2]; no accel: gyro is (n, 6) with both
   std::string_view imu_stamps = "";
   std::string_view poses = "", pose_stamps = "";  ///< (n, 7): x y z [m] qx qy qz qw
   std::string_view sensor = "";                   ///< width and height of the event sensor
-  int width = 0, height = 0;                      ///< of the event sensor in all recordings of the set; 0: it differs
+  int width = 0, height = 0;  ///< of the event sensor in all recordings of the data set; 0: not constant
 };
 
 std::span<const Hdf5Layout> hdf5_layouts();
 
-/// Stamps as a file counts them, made nanoseconds: exactly where they are whole numbers.
+/// The stamps of a file in nanoseconds, exact for integers.
 class H5Stamps {
  public:
   explicit H5Stamps(H5Array array);
 
   std::uint64_t rows() const { return array_.rows(); }
-  /// Timestamp::min() for what cannot be a stamp. Throws Damage.
+  /// Timestamp::min() for a stamp out of range. Throws Damage.
   std::vector<Timestamp> read(std::uint64_t first, std::uint64_t count) const;
   std::optional<Timestamp> last() const;
 
@@ -49,14 +49,14 @@ class H5Stamps {
 /// The events of a file in one of the layouts.
 class H5Events {
  public:
-  /// Nothing where the file has no such events.
+  /// Nothing if the file has no events in this layout.
   static std::optional<H5Events> find(const H5File& file, const Hdf5Layout& layout);
 
   std::uint64_t rows() const { return rows_; }
-  /// The arrays of x, y, t and p are not of one length.
+  /// True if the arrays of x, y, t and p differ in length.
   bool ragged() const { return ragged_; }
-  /// As they are in the file: stamps that cannot be are Timestamp::min(), pixels that cannot be lie at 65535. Throws
-  /// Damage.
+  /// Events in the order of the file. A stamp out of range is Timestamp::min(), a coordinate out of range is 65535.
+  /// Throws Damage.
   std::vector<Event> read(std::uint64_t first, std::uint64_t count) const;
   std::optional<Timestamp> last() const;
 
@@ -69,7 +69,7 @@ class H5Events {
   std::vector<Event> read_fields(std::uint64_t first, std::uint64_t count) const;
 
   Kind kind_;
-  std::vector<H5Array> arrays_;  ///< x, y, p, or the one
+  std::vector<H5Array> arrays_;  ///< x, y and p, or one array of all
   std::optional<H5Stamps> stamps_;
   Duration offset_;
   bool cut_, ragged_ = false;

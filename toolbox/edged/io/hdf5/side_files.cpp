@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The names of each data set, and how its lines read. Images are those of a folder in the order of their names, one
-// for each line of the stamps.
+// The file names of each data set, and the formats of their lines. The images of a folder in the order of their names
+// belong to the lines of the stamps.
 #include "edged/io/hdf5/side_files.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::optional<fs::path> first_file(const std::vector<fs::path>& candidates) {
   return found == candidates.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The images of the first folder that has any, by name.
+/// The images of the first folder with images, sorted by name.
 std::vector<fs::path> images_in(const std::vector<fs::path>& folders) {
   std::vector<fs::path> images;
   for (const fs::path& folder : folders) {
@@ -40,7 +40,7 @@ std::vector<fs::path> images_in(const std::vector<fs::path>& folders) {
   return images;
 }
 
-/// Line k of `stamps` is of image k; parse gives its stamp.
+/// Line k of `stamps` belongs to image k. parse returns its stamp.
 StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::string layout, std::vector<fs::path> images,
                                               std::function<std::optional<Timestamp>(std::string_view)> parse) {
   const auto parse_entry = [images = std::move(images), parse = std::move(parse),
@@ -54,7 +54,7 @@ StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::strin
   return {stamps, "frames", std::move(layout), LastLine::MayLackEnd, parse_entry};
 }
 
-/// The stamp of a line, in microseconds unless the heading says otherwise.
+/// The stamp of a line, in microseconds unless the heading names another unit.
 std::function<std::optional<Timestamp>(std::string_view)> microseconds_in(const fs::path& file) {
   static const ColumnRoles roles{
       {"timestamp"},
@@ -79,7 +79,7 @@ std::optional<Timestamp> middle_of_exposure(std::string_view line) {
   return *start + (*end - *start) / 2;
 }
 
-/// Angular velocity first, as all these sets have it, unless the heading says otherwise.
+/// Angular velocity first, as in all these data sets, unless the heading names another order.
 StampedLines<ImuSample>::Spec imu_of(const fs::path& file, TimeUnit unit) {
   return documented_imu_lines(file, gyro_first(unit));
 }
@@ -132,7 +132,7 @@ SideFiles vector_files(const fs::path& events, const std::string& prefix, bool o
 }
 
 /// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images
-/// are those of the start of the exposure, whose length [us] is in a list of its own.
+/// are those of the start of the exposure, whose length [us] is in another list.
 SideFiles tum_vie_files(const fs::path& events, const std::string& prefix, bool own_imu) {
   SideFiles files{.set = "tum-vie", .sensor = cv::Size(1280, 720)};
   const fs::path folder = fs::absolute(events).parent_path();
@@ -173,7 +173,7 @@ SideFiles eds_files(const fs::path& events, bool own_imu) {
   return files;
 }
 
-/// What of a file's name comes before one of these, if it has any.
+/// The part of a file name before one of these texts, if it contains one.
 std::optional<std::string> name_before(const fs::path& file, std::initializer_list<std::string_view> marks) {
   const std::string name = file.filename().string();
   for (const std::string_view mark : marks)

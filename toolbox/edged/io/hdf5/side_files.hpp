@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What data sets keep in files beside that of their events: images, IMU samples, ground truth.
+// The files of data sets beside the event file: images, IMU samples, ground truth.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +15,15 @@
 namespace edged {
 
 struct SideFiles {
-  std::string set = {};                 ///< "dsec", "vector", "tum-vie", "eds"; "" where no set is recognised
-  std::optional<cv::Size> sensor = {};  ///< of the event camera [px], as all recordings of the set have it
+  std::string set = {};                 ///< "dsec", "vector", "tum-vie", "eds"; "" if no data set is recognised
+  std::optional<cv::Size> sensor = {};  ///< of the event camera [px] in all recordings of the data set
   std::optional<StampedLines<FrameEntry>::Spec> frames = {};
   std::optional<StampedLines<ImuSample>::Spec> imu = {};
   TruthSource truth = {};
 };
 
-/// Of a file whose events are laid out as those of DSEC ("dsec") or EDS ("eds"), by the names of what lies around it.
-/// own_imu: false leaves the IMU file closed.
+/// The files around an event file in the layout of DSEC ("dsec") or EDS ("eds"), found by their names. own_imu: false
+/// to leave the IMU file unopened.
 SideFiles find_side_files(const std::filesystem::path& events_file, std::string_view layout, bool own_imu = true);
 
 }  // namespace edged

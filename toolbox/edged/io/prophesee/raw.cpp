@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Header lines `% key value`, and blocks of the file through the decoder.
+// Reads the header lines `% key value` and decodes the file in blocks.
 #include "edged/io/prophesee/raw.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -35,8 +35,8 @@ void add_field(HeaderFields& fields, std::string_view text, char separator) {
   fields.emplace(text.substr(0, cut), cut < text.size() ? text.substr(cut + 1) : "");
 }
 
-/// Lines that begin with "% ", up to `% end` or the first other line; then `bytes` is where they end. Old files have no
-/// `% end`: events that happen to begin like a line are told by characters no line has.
+/// Reads lines that begin with "% ", up to `% end` or the first other line. `bytes` is the offset of their end. Old
+/// files have no `% end`: events that begin like a line are recognised by characters that no line has.
 HeaderFields header_fields(std::string_view head, std::size_t& bytes) {
   HeaderFields fields;
   for (bytes = 0; head.substr(bytes).starts_with("% ");) {
@@ -52,7 +52,7 @@ HeaderFields header_fields(std::string_view head, std::size_t& bytes) {
   return fields;
 }
 
-/// `EVT3;height=720;width=1280`: the parts behind the first join the fields.
+/// `EVT3;height=720;width=1280`: adds the parts after the first to the fields.
 void split_format(HeaderFields& fields) {
   const std::string whole(field_or_empty(fields, "format"));
   for (std::size_t begin = whole.find(';'); begin != std::string::npos; begin = whole.find(';', begin + 1))
@@ -60,7 +60,7 @@ void split_format(HeaderFields& fields) {
   if (!whole.empty()) fields["format"] = whole.substr(0, whole.find(';'));
 }
 
-/// The encoding as the header names it, or "DAT".
+/// The name of the encoding in the header, or "DAT".
 std::string_view encoding_name(const HeaderFields& fields) {
   if (const auto format = field_or_empty(fields, "format"); !format.empty()) return format;
   const std::string_view evt = field_or_empty(fields, "evt");
@@ -99,7 +99,7 @@ Duration header_time_offset(const HeaderFields& fields) {
   return std::chrono::microseconds(std::clamp(us, -kMaxStampNs / 1000, kMaxStampNs / 1000));
 }
 
-/// Events alone, block by block.
+/// Reads events only, block by block.
 class PropheseeDataset final : public StreamedDataset {
  public:
   PropheseeDataset(const std::filesystem::path& file, const PropheseeHeader& header, cv::Size geometry)
@@ -139,7 +139,7 @@ class PropheseeDataset final : public StreamedDataset {
           now.unknown);
   }
 
-  /// From the last block; nothing where the counter may have wrapped before it (EVT 3: 17 s, DAT: 72 min).
+  /// The end by the last block. Nothing if the counter may have wrapped before it (EVT 3: 17 s, DAT: 72 min).
   std::optional<Timestamp> last_stamp_of(const PropheseeHeader& header, cv::Size geometry) {
     if (header.format == EvtFormat::Evt3 || header.format == EvtFormat::Dat) return std::nullopt;
     const std::uint64_t blocks = (file_.size() - header.bytes) / kEventBlockBytes;
@@ -170,7 +170,7 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
   if (name == "EVT2") {
     header.format = EvtFormat::Evt2;
   } else if (name == "EVT21" || name == "EVT21ME") {
-    // Cameras that send whole words say so.
+    // Cameras that send whole words state it in the header.
     const bool little = name == "EVT21" && field_or_empty(fields, "endianness") == "little";
     header.format = little ? EvtFormat::Evt21 : EvtFormat::Evt21Legacy;
   } else if (name == "EVT3") {

@@ -11,20 +11,20 @@
 
 namespace edged {
 
-/// What the text lines at the beginning of such a file say.
+/// The content of the text lines at the beginning of a file.
 struct PropheseeHeader {
   EvtFormat format = EvtFormat::Evt2;
-  std::optional<cv::Size> geometry;  ///< sensor [px], said or known from the name of the camera
-  Duration time_offset{0};           ///< to be added to all stamps; in files of ours only
-  std::size_t bytes = 0;             ///< events begin here
+  std::optional<cv::Size> geometry;  ///< sensor [px], from the header or by the name of the camera
+  Duration time_offset{0};           ///< to be added to all stamps; only in files of this program
+  std::size_t bytes = 0;             ///< offset of the events
 };
 
-/// From the first bytes of a file. Throws InputError, naming `file`, when it has no events of a known encoding.
+/// Parses the first bytes of a file. Throws InputError, with `file`, if it has no events of a known encoding.
 PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file);
 
-/// From the first bytes of a file.
+/// head: the first bytes of a file.
 bool is_prophesee_file(ByteSpan head);
-/// Of options: geometry of the sensor.
+/// Options used: the geometry of the sensor.
 Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

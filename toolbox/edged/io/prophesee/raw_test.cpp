@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Prophesee files: headers old and new, damage, the real one.
+// Prophesee files: old and new headers, damage, the real one.
 #include "edged/io/prophesee/raw.hpp"
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ TEST_P(PropheseeFile, GivesBackEveryEvent) {
   EXPECT_EQ(info.begin, events.front().t);
   EXPECT_EQ(info.end.value_or(events.back().t), events.back().t);
   const bool wraps = GetParam().format == EvtFormat::Evt3 || GetParam().format == EvtFormat::Dat;
-  EXPECT_EQ(info.end.has_value(), !wraps);  // where the counter may have wrapped, the end is not known beforehand
+  EXPECT_EQ(info.end.has_value(), !wraps);  // if the counter may have wrapped, the end is unknown
   const Contents c = read_all(*recording.dataset);
   EXPECT_TRUE(c.events == events);
   EXPECT_TRUE(recording.dataset->repairs().empty());
@@ -85,7 +85,7 @@ TEST_P(PropheseeFile, FlippedBitsAreSurvived) {
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     std::string damaged = whole;
-    // The header in every third file, which may make it another file altogether.
+    // In every third file, damages the header, which may change the format.
     const std::size_t from = i % 3 == 0 ? 0 : GetParam().header.size(), room = (i % 3 == 0 ? 200 : whole.size() - from);
     const std::size_t at = from + random() % room;
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
@@ -141,7 +141,7 @@ TEST(PropheseeRaw, ReadsTheRealGen3Recording) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no data";
   const Recording recording = open_recording(file);
   const Contents c = read_all(*recording.dataset);
-  EXPECT_EQ(c.events.size(), 521'252u);  // every word of types 0 and 1, as counted without this decoder
+  EXPECT_EQ(c.events.size(), 521'252u);  // the number of words of types 0 and 1, counted without this decoder
   EXPECT_TRUE(recording.dataset->repairs().empty());
   EXPECT_NEAR(to_seconds(c.events.back().t - c.events.front().t), 0.096, 0.002);
 }

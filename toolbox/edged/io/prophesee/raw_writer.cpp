@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Header and words of RAW and DAT files.
+// Writes the header and the words of RAW and DAT files.
 #include "edged/io/prophesee/raw_writer.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -56,7 +56,7 @@ class EvtFileWriter final : public RecordingWriter {
     file_.write(text);
   }
 
-  /// A step of more than half the counter's range would look like one back.
+  /// A step of more than half the range of the counter would decode as a step backwards.
   void refuse_long_silence(std::span<const Event> events) {
     constexpr Duration kLongest = std::chrono::microseconds(std::int64_t{7} << 28);
     for (const Event& event : events) {

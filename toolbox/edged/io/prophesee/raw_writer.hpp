@@ -7,11 +7,11 @@
 
 namespace edged {
 
-/// Header line of our own: microseconds to be added to all stamps, as the counters of EVT 3 (16.8 s) and DAT (71 min)
-/// cannot hold a time of day. Other programs pass it over and see stamps from the counter's beginning.
+/// Key of a header line that only this program knows: microseconds to be added to all stamps, as the counters of EVT 3
+/// (16.8 s) and DAT (71 min) cannot hold a time of day. Other programs ignore it and read stamps that begin at zero.
 inline constexpr std::string_view kTimeOffsetKey = "edged_time_offset_us";
 
-/// Events as EVT 3.0, at whole microseconds.
+/// Events as EVT 3.0, with stamps in whole microseconds.
 std::unique_ptr<RecordingWriter> write_raw(const WriterSetup& setup);
 /// Events as DAT records of 8 bytes.
 std::unique_ptr<RecordingWriter> write_dat(const WriterSetup& setup);

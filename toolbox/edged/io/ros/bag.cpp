@@ -10,7 +10,7 @@
 
 namespace edged {
 
-/// `name=value` of a record's header.
+/// A field `name=value` of the header of a record.
 class BagFields {
  public:
   explicit BagFields(ByteSpan bytes) {
@@ -46,9 +46,9 @@ namespace {
 
 constexpr std::uint64_t kFirstRecord = kBagMagic.size();
 constexpr std::uint32_t kLongestHeader = 1U << 20U;  // longer ones are damage
-constexpr std::uint32_t kLargestChunk = 1U << 30U;   // as recorded; usual are 768 kB
+constexpr std::uint32_t kLargestChunk = 1U << 30U;   // uncompressed; 768 kB are usual
 
-/// Where a record of the file is. Its data may reach beyond the end of a cut file.
+/// The position of a record in the file. Its data may extend beyond the end of a cut file.
 struct BagRecord {
   Bytes header;
   std::uint64_t data = 0;
@@ -90,7 +90,7 @@ void Bag::read_index() {
   }
 }
 
-/// Makes the records of a chunk, or a record outside chunks, those that are being read.
+/// Loads the records of a chunk, or a record outside chunks, for reading.
 bool Bag::load_record() {
   const std::uint64_t begin = at();
   const BagRecord record = locate_record(file(), begin);
@@ -135,7 +135,7 @@ void Bag::add_connection(const BagFields& header, ByteSpan data) {
       describe_topic(header.text("topic"), fields.text("type"), fields.text("message_definition"));
 }
 
-/// Where a chunk is, from when to when, and how many messages it has of each connection.
+/// The position of a chunk, its time span, and its number of messages of each connection.
 void Bag::add_chunk_info(const BagFields& header, ByteSpan data) {
   extend(header.time("start_time"));
   extend(header.time("end_time"));

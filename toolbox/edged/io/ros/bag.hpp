@@ -9,10 +9,10 @@
 
 namespace edged {
 
-/// Its records have a header with named fields, and data.
+/// A record has a header with named fields, and data.
 class Bag final : public RecordSource {
  public:
-  /// Throws InputError when there is nothing to read.
+  /// Throws InputError for a bag without messages.
   Bag(const std::filesystem::path& path, Repairs* repairs);
 
   Wire wire() const override { return Wire::Ros1; }

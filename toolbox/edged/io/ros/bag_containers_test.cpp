@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Every container of messages: whole, compressed, split, without index and damaged.
+// Each container of messages: complete, compressed, split, without index and damaged.
 #include <bzlib.h>
 #include <gmock/gmock.h>
 
@@ -96,7 +96,7 @@ TEST_P(BagContainers, FlippedBitsAreRefusedOrMended) {
   EXPECT_GT(read_events, bag.events.size() * kRounds / 2);
 }
 
-/// The messages of a topic, whole, and what had to be repaired for them.
+/// The complete messages of a topic, and the repairs.
 std::vector<std::string> messages_of(const fs::path& file, std::size_t topic, bool alone, Repairs& repairs) {
   std::vector<std::string> found;
   const auto source = open_messages(file, &repairs);
@@ -108,7 +108,7 @@ std::vector<std::string> messages_of(const fs::path& file, std::size_t topic, bo
 TEST_P(BagContainers, GiveTheMessagesOfOneTopicAlone) {
   SmallBag bag = small_bag();
   auto& poses = bag.topics[3].messages;
-  poses.erase(poses.begin(), poses.end() - 3);  // which begin late
+  poses.erase(poses.begin(), poses.end() - 3);  // the poses begin late
   const fs::path file = write(bag);
   Repairs repairs;
   for (std::size_t topic = 0; topic < bag.topics.size(); ++topic) {
@@ -175,7 +175,7 @@ TEST(BagContainer, AnMcapWithoutItsSummaryIsReadThrough) {
   TempFolder folder;
   const SmallBag bag(Wire::Cdr);
   std::string text = read_text(write_bag(folder, kBagContainers[4], bag.topics));
-  // The footer: where the summary is, 28 bytes before the magic at the end.
+  // The footer with the offset of the summary, 28 bytes before the magic at the end.
   text.replace(text.size() - 8 - 20, 8, 8, '\0');
   const Recording r = open_recording(folder.write("open.mcap", text));
   EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
@@ -206,8 +206,8 @@ std::string pack_bz2(std::string_view bytes) {
   return packed;
 }
 
-/// The first chunk of an uncompressed bag, packed: the rest of the file, whose index does not fit any more, is left
-/// out.
+/// An uncompressed bag, cut after its first chunk, which is then compressed. The rest is left out, as its index is no
+/// longer valid.
 TEST(BagContainer, ChunksCompressedByBzip2AreRead) {
   TempFolder folder;
   const SmallBag bag(Wire::Ros1);
@@ -287,7 +287,7 @@ TEST(BagFolder, UnpacksFilesThatTheRecorderCompressedAndLeavesNothingBehind) {
   EXPECT_TRUE(fs::is_empty(scratch));
   EXPECT_TRUE(read_all(*r.dataset).events == bag.events);
   EXPECT_TRUE(r.dataset->repairs().empty());
-  // Cut: the tables of SQLite may be gone, but it is said, and nothing worse.
+  // After a cut, the tables of SQLite may be missing: that is reported, and nothing else fails.
   const std::string packed = read_text(recording / "rec_1.db3.zstd");
   folder.write("rec/rec_1.db3.zstd", packed.substr(0, packed.size() / 2));
   std::map<std::string, std::size_t> repairs;

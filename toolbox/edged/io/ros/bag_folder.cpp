@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Parts of a bag, one after the other.
+// Bags in several files.
 #include "edged/io/ros/bag_folder.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-/// "NAME_12.bag" as "NAME_", 12 and ".bag".
+/// Splits "NAME_12.bag" into "NAME_", 12 and ".bag".
 struct PartName {
   std::string front, back;
   int number = 0;
@@ -85,13 +85,13 @@ std::vector<std::string> missing_parts(const std::vector<std::filesystem::path>&
   std::set<std::string> there;
   for (const std::filesystem::path& file : parts) {
     there.insert(file.filename().string());
-    if (file.extension() == ".zstd") there.insert(file.stem().string());  // listed by either name
+    if (file.extension() == ".zstd") there.insert(file.stem().string());  // metadata.yaml lists either name
   }
   const auto is_there = [&there](const std::string& name) {
     return there.contains(name) || there.contains(std::filesystem::path(name).stem().string());
   };
   const std::vector<std::string> listed = listed_parts(parts.front().parent_path() / "metadata.yaml");
-  if (std::ranges::any_of(listed, is_there)) {  // else it is of files that have been renamed
+  if (std::ranges::any_of(listed, is_there)) {  // otherwise the files have been renamed
     for (const std::string& name : listed)
       if (!is_there(name)) missing.insert(name);
     return {missing.begin(), missing.end()};
@@ -126,7 +126,7 @@ std::optional<Message> BagFolder::next() {
   for (; current_ < parts_.size(); ++current_) {
     const Part& part = parts_[current_];
     while (const auto message = part.source->next())
-      if (message->topic < part.topics.size())  // the index of a damaged file may lack topics that turn up later
+      if (message->topic < part.topics.size())  // the index of a damaged file may lack topics that are found later
         return Message{part.topics[message->topic], message->data};
   }
   return std::nullopt;

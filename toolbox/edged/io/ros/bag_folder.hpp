@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bags in several files that follow each other: folders of ROS 2, and the parts of `rosbag record --split`.
+// Bags in several consecutive files: folders of ROS 2, and the parts of `rosbag record --split`.
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,18 @@
 
 namespace edged {
 
-/// The .db3 or .mcap files of a folder, also compressed as .zstd, in the order of their numbers; empty where there are
-/// none. metadata.yaml, which crashed recorders do not write, says nothing that the files do not.
+/// The .db3 or .mcap files of a folder, also compressed as .zstd, in the order of their numbers. Empty if there are
+/// none. metadata.yaml is not needed: crashed recorders do not write it, and the files contain the same information.
 std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder);
 
-/// The files that make one bag with the first of them, NAME_0.bag, NAME_1.bag and so on, in this order; that file alone
-/// where it is no first part.
+/// The files of the bag whose first part is given, NAME_0.bag, NAME_1.bag and so on, in this order. Only the given file
+/// if it is no first part.
 std::vector<std::filesystem::path> split_bag_parts(const std::filesystem::path& first);
 
-/// Names of the files that a bag in these parts lacks: as the metadata.yaml beside them lists them,
-/// else by their numbers.
+/// Names of the missing files of a bag in these parts, by the list in metadata.yaml, else by their numbers.
 std::vector<std::string> missing_parts(const std::vector<std::filesystem::path>& parts);
 
-/// The messages of one file after those of the other.
+/// Reads the messages of several files, one file after the other.
 class BagFolder final : public MessageSource {
  public:
   explicit BagFolder(std::vector<std::unique_ptr<MessageSource>> parts);
@@ -39,7 +38,7 @@ class BagFolder final : public MessageSource {
  private:
   struct Part {
     std::unique_ptr<MessageSource> source;
-    std::vector<std::size_t> topics;  ///< its topics among those of all
+    std::vector<std::size_t> topics;  ///< index of each of its topics among those of all parts
   };
   std::vector<Part> parts_;
   std::vector<Topic> topics_;

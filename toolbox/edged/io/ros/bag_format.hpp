@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Facts of the ROS 1 bag format 2.0 that its reader and its writer share.
+// Constants of the ROS 1 bag format 2.0, for its reader and its writer.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which CameraInfo is that of which camera.
+// Assigns CameraInfo topics to cameras.
 #include "edged/io/ros/bag_intrinsics.hpp"
 
 #include <spdlog/fmt/fmt.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a bag tells of its cameras.
+// Reads the intrinsics of the cameras in a bag.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,9 @@
 
 namespace edged {
 
-/// Intrinsics of "events" and "frames" from the CameraInfo beside their topics (/dvs/camera_info of /dvs/events);
-/// nothing where there are none that can be used. Reads up to the first of each: source is to be a fresh one.
+/// Intrinsics of "events" and "frames" from the CameraInfo in the namespace of their topics (/dvs/camera_info of
+/// /dvs/events). Nothing without usable ones. Reads up to the first message of each, so source must be at its
+/// beginning.
 std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const TopicChoice& choice);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bags to read, in every container.
+// Creates bags in each container.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 
 namespace edged {
 
-/// A ROS 2 bag in SQLite, its messages packed one by one by `compression`.
+/// A ROS 2 bag in SQLite, whose messages are compressed one by one with `compression`.
 class Db3Writer final : public MessageSink {
  public:
   explicit Db3Writer(const std::filesystem::path& file, std::string_view compression = "none")
@@ -91,7 +91,7 @@ inline const BagContainer kBagContainers[] = {
 
 inline const cv::Size kBagSensor(346, 260);
 
-/// One a microsecond, as many as asked for.
+/// `count` events, one per microsecond.
 inline EventBatch bag_events(Timestamp begin, int count, unsigned seed) {
   std::mt19937 random(seed);
   EventBatch batch{"events", {}};
@@ -110,7 +110,7 @@ struct TestTopic {
   MessageDefinition definition = {};
 };
 
-/// All topics' messages in the order of their stamps.
+/// The messages of all topics in the order of their stamps.
 inline std::filesystem::path write_bag(const std::filesystem::path& file, MessageSink& sink,
                                        const std::vector<TestTopic>& topics) {
   std::vector<std::size_t> ids, next(topics.size(), 0);
@@ -178,7 +178,7 @@ inline std::string twist_message(Wire wire, Timestamp stamp, const Eigen::Vector
   return out.message();
 }
 
-/// A whole small recording: 40 event messages, 8 images, 40 IMU samples and 40 poses in 0.2 s from 100 s on.
+/// A complete small recording: 40 event messages, 8 images, 40 IMU samples and 40 poses in 0.2 s from 100 s on.
 struct SmallBag {
   std::vector<Event> events;
   std::vector<TestTopic> topics;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The records of a bag, with the index that ROS tools want.
+// The records of a bag, with the index that ROS tools require.
 #include "edged/io/ros/bag_writer.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBagHeadBytes = 4096;  // of the first record, padded
 
 std::uint64_t bag_time(Timestamp t) {
-  // Tools take the time zero for one that is not set.
+  // For tools, the time zero means that it is not set.
   const auto ns = static_cast<std::uint64_t>(std::max<std::int64_t>(to_ns(t), 1));
   return ns / 1'000'000'000 | (ns % 1'000'000'000) << 32U;
 }
@@ -67,7 +67,7 @@ BagWriter::BagWriter(const std::filesystem::path& file, const ChunkOptions& opti
   write_head(0);
 }
 
-/// Without index_place, as long as the bag is unfinished, it says that there is no index.
+/// Without index_place, while the bag is unfinished, the header states that there is no index.
 void BagWriter::write_head(std::uint64_t index_place) {
   BagHeader header(kBagHeader);
   header.field("index_pos", index_place)

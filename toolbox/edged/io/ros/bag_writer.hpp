@@ -33,7 +33,7 @@ class BagWriter final : public MessageSink {
   };
   struct Connection {
     std::string record;
-    bool written = false;  ///< is in a chunk
+    bool written = false;  ///< its record is in a chunk
   };
 
   void write_head(std::uint64_t index_place);

@@ -17,7 +17,7 @@ std::string_view column_text(sqlite3_stmt* statement, int column) {
   return text ? std::string_view(text) : std::string_view();
 }
 
-/// What SQLite reads as zeros, as it takes for written what the first page says was.
+/// True if the file ends before the last page that its first page states. SQLite reads the missing pages as zeros.
 bool is_cut(const std::filesystem::path& file) {
   BinaryFile bytes(file);
   const Bytes head = bytes.read(0, 100);
@@ -27,9 +27,9 @@ bool is_cut(const std::filesystem::path& file) {
     return value;
   };
   if (head.size() < 100) return true;
-  const std::uint64_t said = big_endian(16, 2), page_bytes = said == 1 ? 65536 : said;
-  const bool pages_told = big_endian(24, 4) == big_endian(92, 4);
-  return pages_told && big_endian(28, 4) * page_bytes > bytes.size();
+  const std::uint64_t stated = big_endian(16, 2), page_bytes = stated == 1 ? 65536 : stated;
+  const bool page_count_valid = big_endian(24, 4) == big_endian(92, 4);
+  return page_count_valid && big_endian(28, 4) * page_bytes > bytes.size();
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void Db3::Close::operator()(sqlite3* database) const { sqlite3_close(database); 
 void Db3::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 Db3::Db3(const std::filesystem::path& file, Repairs* repairs) : name_(file.string()), repairs_(repairs) {
-  // Immutable: a recording in a folder that cannot be written to opens, too, and its journal is left alone.
+  // Immutable: also opens a recording in a read-only folder, and does not change its journal.
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string())
     uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", c) : std::string(1, c);

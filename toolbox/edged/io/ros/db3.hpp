@@ -16,7 +16,7 @@ namespace edged {
 
 class Db3 final : public MessageSource {
  public:
-  /// Throws InputError when it has no table of messages that can be read.
+  /// Throws InputError without a readable table of messages.
   Db3(const std::filesystem::path& file, Repairs* repairs);
 
   Wire wire() const override { return Wire::Cdr; }
@@ -32,7 +32,7 @@ class Db3 final : public MessageSource {
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
 
   Statement prepare(const char* query);
-  /// False at the end; damage is counted and ends it, too.
+  /// False at the end, or after damage, which is counted.
   bool step(sqlite3_stmt* statement);
 
   std::string name_;

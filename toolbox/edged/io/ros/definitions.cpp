@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Fields of messages. The two generations differ in their headers, their times and the names of a few fields.
+// Fields of messages. ROS 1 and ROS 2 differ in headers, times and the names of a few fields.
 #include "edged/io/ros/definitions.hpp"
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace edged {
 namespace {
 
-/// `TIME` stands for each generation's own type of a stamp.
+/// `TIME` is replaced by the type of stamps in ROS 1 or ROS 2.
 struct Fields {
   std::string_view type;
-  std::string_view md5;  ///< of those that are messages of a topic
+  std::string_view md5;  ///< of types that are messages of a topic
   std::string_view text;
 };
 
@@ -110,7 +110,7 @@ std::string text_of(std::string_view type, Wire wire) {
   return text;
 }
 
-/// Types of the fields that are messages, in the order in which they occur, and theirs.
+/// Types of the fields that are messages themselves, recursively, in the order of their occurrence.
 void add_inner_types(std::string_view text, Wire wire, std::vector<std::string>& types) {
   for (std::size_t begin = 0; begin < text.size(); begin = text.find('\n', begin) + 1) {
     const std::string_view type = text.substr(begin, text.find_first_of(" [", begin) - begin);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What messages consist of that are written, or that ROS itself hands over, as its tools want it told.
+// Definitions of message types, for writing bags and for messages received from ROS.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 namespace edged {
 
 struct MessageDefinition {
-  std::string text;  ///< fields, then those of every message in it, as ROS 1 or 2 puts them
-  std::string md5;   ///< by which ROS 1 knows versions of a message; empty for CDR
+  std::string text;  ///< its fields, then those of each contained message, in the form of ROS 1 or 2
+  std::string md5;   ///< by which ROS 1 identifies the version of a message; empty for CDR
 };
 
-/// type: "dvs_msgs/EventArray" or another one that is known here (CheckError for any other).
+/// type: "dvs_msgs/EventArray" or another one of the table. Throws CheckError for other types.
 MessageDefinition definition_of(std::string_view type, Wire wire);
 
-/// The md5 by which ROS 1 knows the type; empty for one that is not known here.
+/// The md5 by which ROS 1 identifies the type. Empty for a type that is not in the table.
 std::string_view ros1_md5_of(std::string_view type);
 
 }  // namespace edged

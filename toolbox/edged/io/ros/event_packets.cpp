@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The encodings of event packets.
+// Decodes the encodings of event packets.
 #include "edged/io/ros/event_packets.hpp"
 
 #include "edged/io/text_parsing.hpp"
@@ -48,8 +48,8 @@ std::vector<Event> decode_libcaer(const EventPacket& packet) {
   return events;
 }
 
-/// Words of 16 bits: kind 4, value 12. Times are microseconds since the time base, which is on the clock of the stamps;
-/// a column goes on until the next. Events come one by one, or as bits for eight rows from a base row on.
+/// Words of 16 bits: kind 4, value 12. Times are microseconds since the time base, which is on the clock of the stamps.
+/// A column is valid until the next one. Events are single, or bits for eight rows from a base row on.
 std::vector<Event> decode_libcaer_cmp(const EventPacket& packet, std::uint16_t& column) {
   enum Kind : std::uint8_t { TimeHigh, TimeLow, Column, Row, BaseRow, EightRows };
   check_time_base(packet);
@@ -115,7 +115,7 @@ std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
     throw Damage("encoding `" + std::string(packet.encoding) + "` is none of evt3, mono, libcaer and libcaer_cmp");
   }
   if (events.empty()) return events;
-  // The stamp is that of the first event; mono says from where it counts.
+  // The stamp is that of the first event; the times of mono are relative to its time base.
   const Timestamp begin =
       packet.encoding == "mono" ? timestamp_from_ns(static_cast<std::int64_t>(packet.time_base)) : events.front().t;
   if (!sensor_to_stamps_) sensor_to_stamps_ = packet.stamp - begin;

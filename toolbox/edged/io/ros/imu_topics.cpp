@@ -29,7 +29,7 @@ Filled filled_in(const std::filesystem::path& bag, std::size_t topic) {
       filled.gyro |= imu.has_gyro;
       filled.accel |= imu.has_accel;
     } catch (const Damage&) {
-      // The next one tells as well.
+      // Skips a damaged message: the next one is as good.
     }
   }
   return filled;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Several topics of sensor_msgs/Imu: drivers may send gyro and accelerometer apart, each with the other left empty.
+// Chooses among several topics of sensor_msgs/Imu. Some drivers send gyro and accelerometer in separate topics, each
+// with the other sensor left empty.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +13,16 @@
 namespace edged {
 
 struct ImuTopics {
-  std::optional<std::size_t> imu;    ///< nothing: as choose_topics says
-  std::optional<std::size_t> accel;  ///< where `imu` has the gyro alone: its accelerometer
+  std::optional<std::size_t> imu;    ///< nothing: choose_topics decides
+  std::optional<std::size_t> accel;  ///< the topic of the accelerometer, if `imu` has the gyro only
 };
 
-/// By what the first messages of each fill in: the only topic that has both sensors, else the only one with a gyro and
-/// the only one with an accelerometer. Nothing where the user has chosen, or where that does not decide.
+/// Chooses by the content of the first messages of each topic: the only topic with both sensors, else the only one with
+/// a gyro and the only one with an accelerometer. Nothing if the user has chosen, or if the choice is not unique.
 ImuTopics choose_imu_topics(const std::filesystem::path& bag, const std::vector<Topic>& topics,
                             const WantedTopics& wanted);
 
-/// What the user wants, and that choice.
+/// The wishes of the user, extended by that choice.
 WantedTopics with_imu_topic(WantedTopics wanted, const std::vector<Topic>& topics, const ImuTopics& chosen);
 
 }  // namespace edged

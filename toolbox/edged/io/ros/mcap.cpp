@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The records of an MCAP file.
+// Reads the records of an MCAP file.
 #include "edged/io/ros/mcap.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -60,7 +60,7 @@ void Mcap::read_index() {
 }
 
 void Mcap::take_statistics(ByteReader& record) {
-  record.take(8 + 2 + 4 + 4 + 4 + 4);  // how many messages, schemas, channels, attachments, metadata, chunks
+  record.take(8 + 2 + 4 + 4 + 4 + 4);  // counts of messages, schemas, channels, attachments, metadata, chunks
   extend(mcap_time(record));
   extend(mcap_time(record));
   for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
@@ -71,14 +71,14 @@ void Mcap::take_statistics(ByteReader& record) {
 }
 
 void Mcap::take_chunk_index(ByteReader& record) {
-  record.take(8 + 8);  // from when to when
+  record.take(8 + 8);  // first and last time
   const auto place = record.number<std::uint64_t>();
-  record.take(8);  // its length
+  record.take(8);  // length of the chunk
   std::vector<std::size_t> topics;
   for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
     const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-    record.take(8);                                                       // where its messages are listed
-    if (channel == topic_of_channel_.end()) return add_chunk(place, {});  // it may be described later
+    record.take(8);                                                       // offsets of its message indices
+    if (channel == topic_of_channel_.end()) return add_chunk(place, {});  // the channel may be described later
     topics.push_back(channel->second);
   }
   add_chunk(place, std::move(topics));
@@ -89,7 +89,7 @@ void Mcap::forget() {
   topic_of_channel_.clear();
 }
 
-/// Makes the records of a chunk, or a record outside chunks, those that are being read.
+/// Loads the records of a chunk, or a record outside chunks, for reading.
 bool Mcap::load_record() {
   const std::uint64_t begin = at();
   const Bytes head = file().read(begin, kRecordHead);
@@ -114,9 +114,9 @@ bool Mcap::load_record() {
 }
 
 void Mcap::load_chunk(ByteReader chunk) {
-  chunk.take(8 + 8);  // from when to when
+  chunk.take(8 + 8);  // first and last time
   const auto unpacked_size = chunk.number<std::uint64_t>();
-  chunk.take(4);  // checksum: optional, and a damaged chunk shows
+  chunk.take(4);  // checksum: optional, and damage of a chunk is detected without it
   const std::string_view method = mcap_text(chunk);
   const auto packed_size = chunk.number<std::uint64_t>();
   if (unpacked_size > kLargestRecord) throw Damage("chunk too long");
@@ -134,7 +134,7 @@ std::optional<Message> Mcap::take_message() {
   const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
   record.take(4);  // sequence
   const Timestamp t = mcap_time(record);
-  record.take(8);                                               // when it was published
+  record.take(8);                                               // time of publication
   if (channel == topic_of_channel_.end()) return std::nullopt;  // of no known type
   extend(t);
   return Message{channel->second, record.take(record.left())};

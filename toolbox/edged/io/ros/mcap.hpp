@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The messages of MCAP files: those of ROS, and topics of others by name.
+// The messages of MCAP files: those of ROS. Other topics are listed by name only.
 #pragma once
 
 #include <map>
@@ -9,10 +9,10 @@
 
 namespace edged {
 
-/// Its records are an opcode, a length and their content.
+/// A record is an opcode, a length and its content.
 class Mcap final : public RecordSource {
  public:
-  /// Throws InputError when there is nothing to read.
+  /// Throws InputError for a file without messages.
   Mcap(const std::filesystem::path& path, Repairs* repairs);
 
   Wire wire() const override { return wire_; }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// ROS 2 messages into an MCAP file.
+// Writes ROS 2 messages to an MCAP file.
 #pragma once
 
 #include "edged/io/mcap_writer.hpp"

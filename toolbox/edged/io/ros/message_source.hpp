@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The messages of a bag, whatever its container: ROS 1 bag, SQLite or MCAP.
+// The interface for reading the messages of a container: ROS 1 bag, SQLite or MCAP.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// How numbers and texts of a message are laid out.
+/// The serialization of a message.
 enum class Wire { Ros1, Cdr };
 
 struct Message {
@@ -21,23 +21,23 @@ struct Message {
   ByteSpan data;          ///< valid until the next call
 };
 
-/// Messages in file order, which is about the order of their recording. Damage is passed over and counted; what is
-/// whole before it is given.
+/// Messages in file order, which is approximately that of their recording. Damage is skipped and counted. Complete
+/// messages before the damage are returned.
 class MessageSource {
  public:
   virtual ~MessageSource() = default;
   virtual Wire wire() const = 0;
   virtual const std::vector<Topic>& topics() const = 0;
-  /// From the first to the last message, by the recorder's clock.
+  /// From the first to the last message, by the clock of the recorder.
   virtual Duration length() const = 0;
-  /// Of the first message, by the recorder's clock, where the container tells it.
+  /// Stamp of the first message by the clock of the recorder, if the container states it.
   virtual std::optional<Timestamp> begin_stamp() const { return std::nullopt; }
   virtual std::optional<Message> next() = 0;
-  /// The next of that topic alone. What lies before it is not read, as far as an index tells that.
+  /// The next message of that topic. With an index, the messages before it are not read.
   virtual std::optional<Message> next_of(std::size_t topic);
 };
 
-/// Index of the topic of that name and type, which is added where it is new. "pkg/msg/Name" becomes "pkg/Name".
+/// Index of the topic of that name and type, which is added if it is new. "pkg/msg/Name" becomes "pkg/Name".
 std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
                         std::string_view definition = {});
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Field by field, as the definitions of the messages have them.
+// Reads messages field by field, in the order of their definitions.
 #include "edged/io/ros/messages.hpp"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::uint32_t kLargestSide = 32768;  // of an image or sensor [px]
 
-/// How an image's encoding turns into grey; conversion < 0: it is grey. Words of 16 bits are pairs of bytes: their rows
-/// may begin anywhere.
+/// The conversion of an encoding to grey; conversion < 0: none needed. Words of 16 bits are read as pairs of bytes, as
+/// rows may begin at any address.
 struct Encoding {
   std::string_view name;
   int type;
@@ -66,30 +66,31 @@ StampedPose pose_from(Timestamp t, WireReader& message) {
   return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
 }
 
-/// ICAO standard atmosphere below 11 km, with the pressure at sea level that it assumes: heights have a zero of their
-/// own.
+/// Height by the ICAO standard atmosphere below 11 km, with its standard pressure at sea level. So the zero of the
+/// heights is arbitrary.
 HeightSample height_of_pressure(Timestamp t, double pressure_pa, double variance_pa2) {
   constexpr double kSeaLevel_pa = 101325.0, kScale_m = 44330.77, kExponent = 0.190263;
-  if (!(pressure_pa > 2e4 && pressure_pa < 1.2e5)) throw Damage("no pressure of the air in Pa");
+  if (!(pressure_pa > 2e4 && pressure_pa < 1.2e5)) throw Damage("not an air pressure in Pa");
   const double part = std::pow(pressure_pa / kSeaLevel_pa, kExponent);
   const double m_per_pa = kScale_m * kExponent * part / pressure_pa;
   return {t, kScale_m * (1.0 - part), variance_pa2 > 0.0 ? m_per_pa * std::sqrt(variance_pa2) : 0.0};
 }
 
-/// The linear velocity, and of its covariance the diagonal; 0 there: unknown. Behind the header.
+/// The linear velocity after the header, and the diagonal of its covariance, where 0 means unknown.
 VelocitySample read_twist(std::string_view type, Timestamp t, WireReader& message) {
   if (type == "nav_msgs/Odometry") {
     message.text();            // child_frame_id
     message.vector<7 + 36>();  // pose and its covariance
   }
   VelocitySample sample{t, message.vector<3>()};
-  message.vector<3>();  // angular: the gyro knows better
+  message.vector<3>();  // angular velocity: the gyro is more accurate
   if (type == "geometry_msgs/TwistStamped") return sample;
   const Eigen::Matrix<double, 36, 1> covariance = message.vector<36>();
   for (int axis = 0; axis < 3; ++axis) {
     const double variance = covariance[7 * axis];
     sample.sigma[axis] = variance > 0.0 ? std::sqrt(variance) : 0.0;
-    if (variance >= 1e3) sample.sigma[axis] = std::numeric_limits<double>::infinity();  // how drivers say: not measured
+    if (variance >= 1e3)
+      sample.sigma[axis] = std::numeric_limits<double>::infinity();  // the convention of drivers for: not measured
   }
   return sample;
 }
@@ -100,7 +101,7 @@ WireReader::WireReader(Wire wire, ByteSpan message) : wire_(wire), reader_(messa
   if (wire == Wire::Ros1) return;
   ByteReader kind(message);
   kind.take(1);
-  if (kind.number<std::uint8_t>() != 1) throw Damage("its CDR is not the plain little-endian one");
+  if (kind.number<std::uint8_t>() != 1) throw Damage("not plain little-endian CDR");
   kind.take(2);
   reader_ = ByteReader(message.subspan(4));
 }
@@ -154,7 +155,7 @@ EventPacket read_event_packet(WireReader message) {
   packet.sequence = message.number<std::uint64_t>();
   packet.time_base = message.number<std::uint64_t>();
   packet.encoding = message.text();
-  message.number<std::uint8_t>();  // of the computer that recorded; the encodings have their own
+  message.number<std::uint8_t>();  // byte order of the recording computer; the encodings define their own
   packet.events = message.bytes();
   return packet;
 }
@@ -182,7 +183,7 @@ ImuSample read_imu(WireReader message) {
 CameraModel read_camera_info(WireReader message) try {
   message.header();
   const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
-  if (width > kLargestSide || height > kLargestSide) throw Damage("no size of an image");
+  if (width > kLargestSide || height > kLargestSide) throw Damage("the size of the image is invalid");
   const std::string name(message.text());
   std::vector<double> coefficients(message.list(sizeof(double)));
   for (double& k : coefficients) k = message.number<double>();
@@ -226,7 +227,7 @@ GrayImage read_image(WireReader message) try {
 
 GrayImage read_compressed_image(WireReader message) try {
   GrayImage out{message.header(), {}};
-  message.text();  // format: the data tell it themselves
+  message.text();  // format: detected from the data
   const ByteSpan data = message.bytes();
   if (data.empty()) throw Damage("no image");
   const cv::Mat raw(1, static_cast<int>(data.size()), CV_8UC1, const_cast<std::uint8_t*>(data.data()));

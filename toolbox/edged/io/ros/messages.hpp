@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The messages that matter here, out of either wire format. All throw Damage for bytes that make no sense.
+// Parses messages of either wire format. All functions throw Damage for invalid bytes.
 #pragma once
 
 #include <string_view>
@@ -35,7 +35,7 @@ class WireReader {
   Timestamp time();
   /// The stamp of a std_msgs/Header.
   Timestamp header();
-  /// Length of a list whose items take at least that many bytes.
+  /// Length of a list whose items have at least that many bytes.
   std::uint32_t list(std::size_t item_bytes);
 
  private:
@@ -50,7 +50,7 @@ struct EventArray {
 };
 EventArray read_event_array(WireReader message);
 
-/// event_camera_msgs/EventPacket: events as the sensor coded them.
+/// event_camera_msgs/EventPacket: events in the encoding of the sensor.
 struct EventPacket {
   Timestamp stamp;
   std::uint32_t width = 0, height = 0;
@@ -71,10 +71,10 @@ struct ImuMessage {
 ImuMessage read_imu_message(WireReader message);
 ImuSample read_imu(WireReader message);
 
-/// sensor_msgs/CameraInfo. Damage also where the camera is not calibrated or its distortion is none of ours.
+/// sensor_msgs/CameraInfo. Throws Damage also if the camera is not calibrated or its distortion is not supported.
 CameraModel read_camera_info(WireReader message);
 
-/// Any 8 or 16 bit encoding, as grey.
+/// An image of any encoding of 8 or 16 bits, as grey.
 struct GrayImage {
   Timestamp t;
   cv::Mat image;  ///< CV_8UC1
@@ -82,11 +82,12 @@ struct GrayImage {
 GrayImage read_image(WireReader message);
 GrayImage read_compressed_image(WireReader message);
 
-/// Of FluidPressure by the standard atmosphere, of Range (downwards) and of any twist, by the type of the message.
+/// An external sample by the type of the message: FluidPressure (by the standard atmosphere), Range (downwards) or any
+/// twist.
 ExternalSample read_external(std::string_view type, WireReader message);
 
 StampedPose read_pose_stamped(WireReader message);
-/// TransformStamped and Odometry, which name the frame whose pose it is.
+/// The pose of TransformStamped and Odometry, which name its frame.
 struct NamedPose {
   StampedPose pose;
   std::string_view frame;

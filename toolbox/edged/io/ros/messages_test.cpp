@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Every family of messages in both wire formats, and the choice among topics.
+// Each family of messages in both wire formats, and the choice of topics.
 #include "edged/io/ros/messages.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ class Messages : public ::testing::TestWithParam<Wire> {
   Recording open(const std::vector<TestTopic>& topics, const RecordingOptions& options = {}) const {
     return open_recording(write_bag(folder_, container(), topics), nullptr, options);
   }
-  /// The events of packets of an encoding, each with what `encode` makes of 300 events.
+  /// The events of packets in an encoding. `encode` encodes 300 events per packet.
   template <typename Encode>
   void expect_packets_read(std::string_view encoding, const Encode& encode) const;
 
@@ -134,7 +134,7 @@ TEST_P(Messages, ImagesOfEveryEncodingBecomeGrey) {
     bool big_endian;
     int expected;
   };
-  // A grey of 77 in each, and in colour the pure red of a pixel order that must not be mixed up.
+  // Grey level 77 in each encoding, and pure red in colours, to detect a wrong order of channels.
   for (const Case& c :
        {Case{"mono8", CV_8UC1, false, 77}, Case{"8UC1", CV_8UC1, false, 77}, Case{"mono16", CV_16UC1, false, 77},
         Case{"mono16", CV_16UC1, true, 77}, Case{"bgr8", CV_8UC3, false, 29}, Case{"rgb8", CV_8UC3, false, 76},

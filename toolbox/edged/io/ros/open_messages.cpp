@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which container a file is.
+// Detects the container of a file.
 #include "edged/io/ros/open_messages.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -50,7 +50,7 @@ std::unique_ptr<MessageSource> open_container(const std::filesystem::path& file,
   throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.string());
 }
 
-/// Files whose names only look like parts were recorded at other times.
+/// Files that have only the names of parts were recorded at other times.
 bool follows(const MessageSource& part, const MessageSource& before) {
   constexpr Duration kOverlap = std::chrono::seconds(5), kGap = std::chrono::seconds(10);
   if (!part.begin_stamp() || !before.begin_stamp()) return true;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bags opened, the container found by content.
+// Opens bags, and detects the container by the content.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,12 @@
 
 namespace edged {
 
-/// Whether a file that begins so is a bag, or compressed as ROS 2 compresses whole bags.
+/// True for the first bytes of a bag, or of a bag that ROS 2 compressed as a whole.
 bool is_bag(ByteSpan head);
-/// Whether the folder is that of a ROS 2 bag.
+/// True for the folder of a ROS 2 bag.
 bool is_bag_folder(const std::filesystem::path& folder);
 
-/// Opens a file or folder that is a bag; throws InputError where it is none. repairs may be null: then nothing is
-/// counted.
+/// Opens a bag: a file or folder. Throws InputError if it is no bag. repairs may be null: then damage is not counted.
 std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Going through the records of a file, past those that are damaged.
+// Reads the records of a file, and skips damaged ones.
 #include "edged/io/ros/record_source.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void RecordSource::read_through() {
   repair("no index",
          "its index is missing or damaged (a recorder that crashed?): reading all of it to find its topics");
   while (const auto message = next()) ++topics_[message->topic].count;
-  repairs_ = nullptr;  // the next pass meets the same damage: it is counted already
+  repairs_ = nullptr;  // the next pass meets the same damage, which is already counted
   rewind();
 }
 

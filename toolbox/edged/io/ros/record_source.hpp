@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What ROS 1 bags and MCAP files have in common.
+// The common part of ROS 1 bags and MCAP files.
 #pragma once
 
 #include <map>
@@ -11,8 +11,8 @@
 
 namespace edged {
 
-/// A file of records, most of them in chunks that may be compressed. An index at the end tells topics and counts; where
-/// it is missing or damaged (a recorder that crashed), the file is read through once.
+/// A file of records, most of them in chunks that may be compressed. An index at the end holds topics and counts. If
+/// it is missing or damaged, as after a crash of the recorder, the whole file is read once.
 class RecordSource : public MessageSource {
  public:
   const std::vector<Topic>& topics() const final { return topics_; }
@@ -22,35 +22,35 @@ class RecordSource : public MessageSource {
   std::optional<Message> next_of(std::size_t topic) final;
 
  protected:
-  /// first_record: its offset, behind the magic bytes.
+  /// first_record: its offset, after the magic bytes.
   RecordSource(const std::filesystem::path& file, std::uint64_t first_record, Repairs* repairs);
 
-  /// Topics, counts and times, for the end of a constructor. Throws InputError when there is nothing to read.
+  /// Reads topics, counts and times. To be called last in a constructor. Throws InputError without messages.
   void find_topics();
 
-  // What a format has of its own. Each may throw Damage.
+  // The part of each format. Each function may throw Damage.
 
   /// Describes topics and chunks from the index.
   virtual void read_index() = 0;
-  /// Forgets what the records described so far.
+  /// Discards the descriptions from the records so far.
   virtual void forget() = 0;
-  /// Steps over the record of the file at at(). False: nothing in it is for take_message().
+  /// Skips the record of the file at at(). False: it has no message for take_message().
   virtual bool load_record() = 0;
-  /// The next record in memory, if it is a message.
+  /// Takes the next record in memory. Nothing if it is no message.
   virtual std::optional<Message> take_message() = 0;
 
   BinaryFile& file() { return file_; }
   std::uint64_t at() const { return at_; }
   void go_to(std::uint64_t place) { at_ = place; }
-  /// Records for take_message(), which takes them off reader().
+  /// Sets the records for take_message(), which reads them from reader().
   void load(Bytes records);
   ByteReader& reader() { return reader_; }
   /// Index of the topic with that name and type.
   std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition);
   void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
-  /// topics: of its messages; empty where the index does not tell.
+  /// topics: those of its messages, empty if the index does not list them.
   void add_chunk(std::uint64_t place, std::vector<std::size_t> topics) { chunks_[place] = std::move(topics); }
-  /// False: a chunk without a message of the topic that is looked for.
+  /// False for a chunk without a message of the topic `sought_`.
   bool is_of_use(std::uint64_t chunk) const;
   void extend(Timestamp t);
   void repair(const std::string& kind, const std::string& detail);
@@ -65,12 +65,12 @@ class RecordSource : public MessageSource {
   std::uint64_t first_record_;
   Repairs* repairs_;
   std::vector<Topic> topics_;
-  /// Of the index, by their place: where reading goes on after damage, and which topics are in each.
+  /// Chunks of the index by their offset, with their topics. Reading continues there after damage.
   std::map<std::uint64_t, std::vector<std::size_t>> chunks_;
-  std::optional<std::size_t> sought_;  ///< the only topic that is of use, at present
+  std::optional<std::size_t> sought_;  ///< the only topic that is read at present
   Timestamp first_ = Timestamp::max(), last_ = Timestamp::min();
-  std::uint64_t at_ = 0;  ///< next record of the file
-  Bytes records_;         ///< those being read
+  std::uint64_t at_ = 0;  ///< offset of the next record of the file
+  Bytes records_;         ///< the records being read
   ByteReader reader_{ByteSpan()};
 };
 

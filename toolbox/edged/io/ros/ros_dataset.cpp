@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// From messages to measurements.
+// Converts messages to measurements.
 #include "edged/io/ros/ros_dataset.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr std::string_view kPlainPoses = "geometry_msgs/PoseStamped";  // which name no frame of theirs
+constexpr std::string_view kPlainPoses = "geometry_msgs/PoseStamped";  // which does not name the frame whose pose it is
 
 }  // namespace
 
@@ -39,7 +39,7 @@ RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wa
   info_.pose_frame = truth_frame();
 }
 
-/// As its first message says it.
+/// The frame of the poses in the first message.
 std::string RosDataset::truth_frame() const {
   const auto topic = choice_.of(Role::Truth);
   if (!topic || source_->topics()[*topic].type == kPlainPoses) return "body";
@@ -49,7 +49,7 @@ std::string RosDataset::truth_frame() const {
       const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
       return std::string(named.frame == "events" || named.frame == "frames" ? named.frame : "body");
     } catch (const Damage&) {
-      // The next one tells as well.
+      // Skips a damaged message: the next one is as good.
     }
   }
   return "body";
@@ -81,7 +81,7 @@ void RosDataset::feed(const Message& message) {
         feed_imu(message.topic, reader);
         break;
       case Role::Truth:
-        break;  // in a pass of its own
+        break;  // read in a separate pass
       case Role::Height:
       case Role::Velocity:
         push_external(read_external(type, reader));
@@ -93,14 +93,16 @@ void RosDataset::feed(const Message& message) {
   }
 }
 
-/// Some damaged messages are repairs; a topic that holds nothing else is no recording of that kind.
+/// Counts a damaged message as a repair. Throws InputError if all messages of a topic so far are damaged, except for
+/// external sensors.
 void RosDataset::judge(std::size_t role, const std::string& reason) {
   constexpr std::size_t kTries = 10;
   const Topic& topic = source_->topics()[*choice_.topics[role]];
   const std::string detail = fmt::format("{}: {} ({}): {}", name_, topic.name, topic.type, reason);
   repairs_.add(fmt::format("{}: message unreadable", kRoleNames[role]), detail);
   ++bad_[role];
-  if (external_sensor_of(static_cast<Role>(role))) return;  // what is in water is none of the air's pressure
+  if (external_sensor_of(static_cast<Role>(role)))
+    return;  // the topic may have another meaning: a pressure in water is no air pressure
   if (good_[role] == 0 && bad_[role] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
     throw InputError::format("{}; none of its first {} messages can be read: give --topic {}=NAME or none", detail,
                              bad_[role], kRoleNames[role]);
@@ -154,7 +156,7 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
       }
       poses.push_back(read_named_pose(reader).pose);
     } catch (const Damage&) {
-      // A pose that is missing is no loss: there are hundreds a second.
+      // A missing pose does not matter: there are hundreds per second.
     }
   }
   std::ranges::stable_sort(poses, {}, &StampedPose::t);

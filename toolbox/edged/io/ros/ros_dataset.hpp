@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A bag of ROS 1 or 2 as a recording.
+// Reads a bag of ROS 1 or 2 as a recording.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 
 namespace edged {
 
-/// Cameras "events" and "frames"; poses of "body", or of the camera that the messages name so.
+/// The cameras are "events" and "frames". The poses are those of "body", or of the camera that the messages name.
 class RosDataset final : public StreamedDataset {
  public:
-  /// The size of the event camera is that of the rig, else `geometry`, else what its messages say. Throws InputError
-  /// where topics have to be chosen or nothing can be read.
+  /// The size of the event camera is that of the rig, else `geometry`, else that of its messages. Throws InputError if
+  /// the user has to choose topics or nothing is readable.
   RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
              std::optional<cv::Size> geometry);
 
   std::optional<GroundTruth> ground_truth() const override;
 
-  /// Intrinsics of its cameras, where it holds them.
+  /// Intrinsics of its cameras, if it holds them.
   std::optional<Calibration> intrinsics() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bags as recordings: the real ones.
+// Real bags as recordings.
 #include "edged/io/ros/ros_dataset.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ TEST_P(RealBag, GivesAllItsEventsInOrder) {
   for (const auto& [kind, count] : r.dataset->repairs()) ADD_FAILURE() << kind << ": " << count;
 }
 
-// The count of 1280 x 720 is what the decoder gave, its sums are checked below.
+// The count of 1280 x 720 is a result of this decoder. Its sums are checked below.
 INSTANTIATE_TEST_SUITE_P(Samples, RealBag,
                          ::testing::Values(BagSample{"event_camera_msgs_evt3.bag", 343'474, 640, 480, 2.08},
                                            BagSample{"rosbag2_sqlite_evt3", 343'474, 640, 480, 2.08},
@@ -80,7 +80,7 @@ TEST(RosDataset, ACompressedDavisRecordingHasThePolaritiesAndTheBeginThatItsOwnL
   EXPECT_EQ(sum_us, 335'555'680'277);
 }
 
-/// Each packet of it begins at its time base and ends before that of the next, 10 ms later.
+/// Each packet begins at its time base and ends before that of the next packet, 10 ms later.
 TEST(RosDataset, PacketsOfACompressedDavisRecordingKeepToTheirTimeBases) {
   const fs::path path = data_folder() / "formats" / "rosbag2_mcap_evt3";
   if (!fs::exists(path)) GTEST_SKIP() << "no data";

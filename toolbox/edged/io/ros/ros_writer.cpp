@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// From measurements to messages.
+// Converts measurements to messages.
 #include "edged/io/ros/ros_writer.hpp"
 
 #include <map>
@@ -28,7 +28,7 @@ class RosWriter final : public RecordingWriter {
     const Timestamp end = batch.events.back().t;
     check(batch.events.front().t);
     describe_camera(Modality::Events, "/dvs/camera_info", batch.camera, end);
-    // As a driver sends them: once the last one has happened.
+    // A driver sends events after the last one has occurred.
     send("/dvs/events", "dvs_msgs/EventArray", end, event_array_message(sink_->wire(), batch, sensor_));
   }
 
@@ -73,7 +73,7 @@ class RosWriter final : public RecordingWriter {
     sink_->write(place->second, t, message);
   }
 
-  /// Poses come between the measurements, so that the messages of the file are in order.
+  /// Poses are written between the measurements, so that the messages of the file are in order.
   void write_truth_until(Timestamp t) {
     const Trajectory& poses = truth_.trajectory;
     for (; next_pose_ < poses.size() && poses[next_pose_].t <= t; ++next_pose_) {
@@ -83,7 +83,7 @@ class RosWriter final : public RecordingWriter {
     }
   }
 
-  /// Once a camera, before its first measurement.
+  /// Written once for each camera, before its first measurement.
   void describe_camera(Modality modality, std::string_view topic, const std::string& name, Timestamp t) {
     if (!setup_.calibration || topics_.contains(topic)) return;
     if (const RigCamera* camera = setup_.calibration->rig.find(modality))

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Recordings as bags: what comes back besides the measurements, and what ROS's own tools say of the files.
+// Written bags: their content besides the measurements, and their check by the tools of ROS.
 #include "edged/io/ros/ros_writer.hpp"
 
 #include <gmock/gmock.h>
@@ -73,7 +73,7 @@ TEST(RosWriter, StampsThatRosCannotHoldAreRefused) {
     }
 }
 
-/// Output of tests/bag_oracle.py, ROS's own reader and writer.
+/// Output of tests/bag_oracle.py, which uses the reader and writer of ROS.
 std::string oracle(const std::string& arguments) {
   const std::string command =
       std::string("/usr/bin/python3 " EDGED_SOURCE_DIR "/tests/bag_oracle.py ") + arguments + " 2>&1";
@@ -86,7 +86,7 @@ std::string oracle(const std::string& arguments) {
 
 bool no_oracle() { return oracle("--version").starts_with("FAILED"); }
 
-/// What the oracle prints of a message.
+/// The output of the oracle for a message.
 std::string line_of(const Topic& topic, ByteSpan data) {
   std::string line = topic.name + " " + topic.type + " ";
   for (const std::uint8_t byte : data) line += fmt::format("{:02x}", byte);

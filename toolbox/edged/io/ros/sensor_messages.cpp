@@ -5,7 +5,7 @@
 namespace edged {
 
 EventArray EventMessageDecoder::decode(std::string_view type, WireReader message) {
-  constexpr std::uint32_t kMostSide = 16384;  // as --geometry
+  constexpr std::uint32_t kMostSide = 16384;  // the limit of --geometry
   EventArray array;
   if (type == "event_camera_msgs/EventPacket" || type == "event_array_msgs/EventArray") {
     const EventPacket packet = read_event_packet(message);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What sensors say in their messages, by the type of the message.
+// Events and frames of messages, by the type of the message.
 #pragma once
 
 #include "edged/io/ros/event_packets.hpp"
@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// Every type of event messages; of one stream, in its order.
+/// Decodes all types of event messages. The messages must be those of one stream, in order.
 class EventMessageDecoder {
  public:
   /// type: one with the role Events. Throws Damage.
@@ -18,7 +18,7 @@ class EventMessageDecoder {
   EventPacketDecoder packets_;
 };
 
-/// Every type of images, by one with the role Frames. Throws Damage.
+/// Decodes all types of images. type: one with the role Frames. Throws Damage.
 GrayImage read_frame(std::string_view type, WireReader message);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Unpacking of messages in memory and of files on disk.
+// Decompresses messages in memory, and files on disk.
 #include "edged/io/ros/unpacked_source.hpp"
 
 #include <unistd.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLargestMessage = 1U << 28U;
 
-/// A folder of our own that goes away with what is in it.
+/// A temporary folder, which the destructor removes with its content.
 class ScratchFolder {
  public:
   ScratchFolder() {

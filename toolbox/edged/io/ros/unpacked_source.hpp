@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// ROS 2 bags whose recorder compressed messages or whole files by zstd.
+// ROS 2 bags with messages or whole files compressed by zstd.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@
 
 namespace edged {
 
-/// The first bytes of a block of zstd. No message begins so: CDR has other ones.
+/// The first bytes of zstd data. No message in CDR begins so.
 inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
 
-/// The messages of another source, unpacked where they are compressed one by one.
+/// The messages of another source. Messages that are compressed one by one are decompressed.
 class UnpackedSource final : public MessageSource {
  public:
   UnpackedSource(std::unique_ptr<MessageSource> packed, std::string name, Repairs* repairs)
@@ -32,7 +32,7 @@ class UnpackedSource final : public MessageSource {
   }
 
  private:
-  /// The next of those that can be unpacked.
+  /// The next message that can be decompressed.
   std::optional<Message> unpack(const std::function<std::optional<Message>()>& next);
 
   std::unique_ptr<MessageSource> packed_;
@@ -41,8 +41,8 @@ class UnpackedSource final : public MessageSource {
   Bytes message_;
 };
 
-/// Opens a bag that is compressed as a whole: unpacks it into a file in the folder of temporary files (TMPDIR), which
-/// `open` opens. It has no name any more when this returns and goes away with the source.
+/// Opens a bag that is compressed as a whole. Decompresses it into a file in the folder of temporary files (TMPDIR),
+/// which `open` opens. The file is then unlinked, so it disappears with the source.
 std::unique_ptr<MessageSource> open_packed_messages(
     const std::filesystem::path& path,
     const std::function<std::unique_ptr<MessageSource>(const std::filesystem::path& unpacked)>& open, Repairs* repairs);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Field by field, as the definitions of the messages have them.
+// Writes messages field by field, in the order of their definitions.
 #include "edged/io/ros/wire_writer.hpp"
 
 #include <array>
@@ -89,7 +89,7 @@ std::string imu_message(Wire wire, const ImuSample& sample) {
   WireWriter out(wire);
   out.header(sample.t, "body");
   out.numbers(std::array{0.0, 0.0, 0.0, 1.0});
-  out.number(-1.0);  // a covariance that begins so: there is no orientation
+  out.number(-1.0);  // a covariance that begins with -1: no orientation
   out.numbers(kZeros<8>);
   out.numbers({sample.gyro_B.data(), 3});
   out.numbers(kZeros<9>);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Messages into either wire format: the counterpart of messages.hpp.
+// Writes messages in either wire format: the counterpart of messages.hpp.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace edged {
 
-/// Takes the fields in the order of the message's definition; see WireReader.
+/// Writes the fields in the order of the definition of the message; see WireReader.
 class WireWriter {
  public:
   explicit WireWriter(Wire wire);
@@ -26,7 +26,7 @@ class WireWriter {
   void numbers(std::span<const double> values);
   void text(std::string_view value);
   void bytes(ByteSpan value);
-  /// Within what the format holds: see latest_stamp().
+  /// t: from zero to latest_stamp().
   void time(Timestamp t);
   void header(Timestamp stamp, std::string_view frame_id);
 
@@ -38,11 +38,11 @@ class WireWriter {
   std::string out_;
 };
 
-/// Stamps from zero up to this one can be written.
+/// The latest stamp that the format holds. The earliest is zero.
 Timestamp latest_stamp(Wire wire);
 
-/// dvs_msgs/EventArray, prophesee_event_msgs/EventArray and dv_ros_msgs/EventArray; not empty, with the first event's
-/// stamp.
+/// dvs_msgs/EventArray, prophesee_event_msgs/EventArray and dv_ros_msgs/EventArray; events must not be empty, and the
+/// stamp is that of the first event.
 std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sensor);
 /// sensor_msgs/Image of 8 bit.
 std::string image_message(Wire wire, const Frame& frame);

@@ -18,12 +18,12 @@
 
 namespace edged {
 
-/// Batches of events end before the next sample; a sample comes before what has its stamp. Both must be on one clock:
-/// throws InputError where they do not overlap.
+/// Merges the samples into the recording. Batches of events end before the next sample. Of equal stamps, the sample is
+/// first. Both must be on one clock: throws InputError if they do not overlap.
 template <typename T>
 class DatasetWithLines final : public Dataset {
  public:
-  /// replaces: which measurements of the recording the file stands for. info: that of the whole.
+  /// replaces: the measurements of the recording that the samples replace. info: that of the result.
   DatasetWithLines(std::unique_ptr<Dataset> recording, typename StampedLines<T>::Spec lines, DatasetInfo info,
                    std::function<bool(const Measurement&)> replaces)
       : recording_(std::move(recording)),
@@ -80,7 +80,7 @@ class DatasetWithLines final : public Dataset {
   std::function<bool(const Measurement&)> replaces_;
   Repairs repairs_;
   StampedLines<T> samples_;
-  std::optional<Measurement> held_;  ///< the recording's next
+  std::optional<Measurement> held_;  ///< the next measurement of the recording
 };
 
 }  // namespace edged

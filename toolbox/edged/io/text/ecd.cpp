@@ -15,7 +15,7 @@
 namespace edged {
 namespace {
 
-/// UZH-FPV (Delmerico et al., ICRA 2019) has the layout with a column `id` in front, and ground truth of the IMU.
+/// UZH-FPV (Delmerico et al., ICRA 2019) has the same layout with a first column `id`, and ground truth of the IMU.
 bool is_uzh_fpv(const SourcePath& folder) {
   for (const char* name : {"groundtruth.txt", "imu.txt"}) {
     const SourcePath file = folder / name;
@@ -46,7 +46,7 @@ cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::option
 Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
   Recording recording;
   if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) recording.calibration = read_calibration(own);
-  // The lens of a sequence can differ from that of the rig: the data set used several.
+  // The lens of a sequence can differ from that of the rig, as the data set has several lenses.
   if (const SourcePath calib = folder / "calib.txt"; rig && calib.is_file())
     warn_of_other_lens(calib.string(), read_calibration(calib).rig.cameras.front().model.mean_focal(), *rig,
                        Modality::Events);

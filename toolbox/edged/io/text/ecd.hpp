@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// A folder that is_ecd_folder() recognises.
+/// folder: is_ecd_folder() is true for it.
 Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options);
 
 }  // namespace edged

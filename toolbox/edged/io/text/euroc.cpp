@@ -21,9 +21,9 @@
 namespace edged {
 namespace {
 
-/// Folders with poses of the body: EuRoC's, TUM-VI's.
+/// Folders with poses of the body, of EuRoC and of TUM-VI.
 constexpr const char* kTruthFolders[] = {"state_groundtruth_estimate0", "mocap0"};
-/// Folders of what EuRoC's truth was made from: positions alone, poses of a marker.
+/// Folders with the data from which the ground truth of EuRoC was computed: positions, poses of a marker.
 constexpr const char* kRawTruthFolders[] = {"leica0", "vicon0"};
 
 std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& repairs) {
@@ -34,7 +34,7 @@ std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& re
   return truth;
 }
 
-/// Of those wanted the ones there are, in the order of their names; else the first.
+/// The wanted cameras that exist, in the order of their names; else the first camera.
 std::set<std::string> cameras_to_read(const SourcePath& mav0, const std::vector<std::string>& wanted) {
   const auto is_there = [&](const std::string& camera) {
     return camera.starts_with("cam") && (mav0 / camera / "data.csv").is_file();
@@ -46,7 +46,7 @@ std::set<std::string> cameras_to_read(const SourcePath& mav0, const std::vector<
   return cameras;
 }
 
-/// The file with poses of the body. Says so where there is truth of another kind only.
+/// The file with poses of the body. Warns if there is only ground truth of another kind.
 std::optional<SourcePath> find_truth(const SourcePath& mav0) {
   for (const char* folder : kTruthFolders)
     if (const SourcePath file = mav0 / folder / "data.csv"; file.is_file()) return file;
@@ -57,7 +57,7 @@ std::optional<SourcePath> find_truth(const SourcePath& mav0) {
   return std::nullopt;
 }
 
-/// Where it is refused the recording is read all the same.
+/// The calibration of the folder. An unreadable one is ignored with a warning.
 std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   const SourcePath dso = mav0.parent_path() / "dso";
   return (dso / "camchain.yaml").is_file() ? std::optional(read_calibration(dso, {.otherwise = Sees::Frames}))
@@ -67,7 +67,7 @@ std::optional<Calibration> tum_vi_calibration(const SourcePath& mav0) try {
   return std::nullopt;
 }
 
-/// With all that are read.
+/// The layout with all cameras that are read.
 Calibration calibration_of(const SourcePath& mav0, const std::set<std::string>& cameras) {
   Calibration calibration = read_calibration(mav0);
   std::vector<RigCamera>& known = calibration.rig.cameras;

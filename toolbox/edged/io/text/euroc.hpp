@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// A folder that find_mav0() found.
+/// mav0: as returned by find_mav0().
 Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC folders as other data sets fill them (the real one is in open_recording_test.cpp).
+// EuRoC folders of other data sets (the real one is in open_recording_test.cpp).
 #include <gmock/gmock.h>
 
 #include "edged/io/open_recording.hpp"
@@ -22,7 +22,7 @@ constexpr const char* kCamchain = R"(cam0:
   - [0.0, 0.0, 0.0, 1.0]
 )";
 
-/// What TUM-VI has in a folder: no sensor.yaml, truth in mocap0, calibration in dso.
+/// A folder as in TUM-VI: no sensor.yaml, ground truth in mocap0, calibration in dso.
 void write_tum_vi(const TempFolder& folder) {
   folder.write("mav0/cam0/data.csv",
                "#timestamp [ns],filename\n1520530308199447626,1520530308199447626.png\n"
@@ -67,7 +67,7 @@ TEST(TumVi, OpensWithTruthCalibrationAndSixteenBitImages) {
   }
 }
 
-/// The calibration of write_tum_vi with something else in it.
+/// Replaces a text in the calibration of write_tum_vi.
 void change_camchain(const TempFolder& folder, const std::string& from, const std::string& to) {
   std::string text = kCamchain;
   folder.write("dso/camchain.yaml", text.replace(text.find(from), from.size(), to));

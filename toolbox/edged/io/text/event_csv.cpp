@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Opening and writing of plain event files; their form is found in event_form.cpp.
+// Opens and writes plain event files. event_form.cpp detects their form.
 #include "edged/io/text/event_csv.hpp"
 
 #include <spdlog/fmt/compile.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Events alone, one a line, in a text file of any tool: order of columns and unit of the stamps found from its content.
+// Text files with one event per line, written by any tool. Order of columns and unit of stamps are detected.
 #pragma once
 
 #include <memory>
@@ -14,36 +14,36 @@
 
 namespace edged {
 
-/// The stamps of a file in their unknown unit: those of its begin, and its last.
+/// The stamps at the beginning of a file and its last one, in their unknown unit.
 struct StampSample {
-  std::size_t count = 0;  ///< from first to last
+  std::size_t count = 0;  ///< number of events from first to last
   double first = 0, last = 0;
-  double end = 0;  ///< the last of the file, or `last`
+  double end = 0;  ///< the last stamp of the file if known, else `last`
   bool fractions = false;
 };
 
-/// The only unit in which the events would come at a rate, for a time and at a date that recordings have; fractions
-/// mean seconds. Nothing where several units would do, or none.
+/// The only unit that gives a plausible event rate, duration and date. Stamps with fractions are seconds. Nothing if
+/// several units or none are plausible.
 std::optional<TimeUnit> guess_time_unit(const StampSample& stamps);
 
-/// What the first lines of a file tell.
+/// The form of a file, by its first lines.
 struct EventTextForm {
   EventColumns columns;
   bool unit_known = false;
   std::optional<cv::Size> geometry;  ///< "# geometry WxH", or a first line `W H`
   StampSample stamps;
-  std::string complaint = {};  ///< of a heading with names that are not known: the columns are those of the content
+  std::string complaint = {};  ///< of a heading with unknown names: then the columns are found from the content
 };
 
-/// Nothing where the file holds no lines of events: numbers `t x y p` or in another order that only fits as events, or
-/// below a line that names the columns.
+/// Nothing if the file has no lines of events: numbers `t x y p`, or in another order that fits events only, or after a
+/// line that names the columns.
 std::optional<EventTextForm> find_event_form(const SourcePath& file);
 
-/// Camera "events". Throws InputError where the unit of the stamps is neither said nor certain.
+/// The camera is "events". Throws InputError if the unit of the stamps is neither given nor certain.
 Recording open_event_csv(const SourcePath& file, const EventTextForm& form, const Rig* rig,
                          const RecordingOptions& options);
 
-/// `t[s],x,y,p` with all nine decimals of the seconds.
+/// Writes lines `t[s],x,y,p` with nine decimals of the seconds.
 std::unique_ptr<RecordingWriter> write_csv(const WriterSetup& setup);
 
 }  // namespace edged

@@ -96,7 +96,7 @@ TEST(EventCsv, TheSizeOfTheSensorMayStandInTheFile) {
   EXPECT_THAT(input_error([&] { open_recording(silent); }), HasSubstr("--geometry"));
 }
 
-/// A recording that lasts so many seconds at so many events a second, counted in that unit from `begin_s` on.
+/// A recording of this duration and event rate, with stamps in that unit from `begin_s` on.
 StampSample stamps_of(double rate_hz, double lasts_s, TimeUnit unit, double begin_s = 0) {
   const double per_s = std::pow(10.0, 9 - static_cast<double>(unit));
   StampSample s;
@@ -125,7 +125,7 @@ TEST(EventCsvUnit, IsNeverGuessedWrongly) {
   for (double rate_hz = 1e3; rate_hz <= 5e7; rate_hz *= 2)
     for (double lasts_s = 0.01; lasts_s <= 3600; lasts_s *= 3)
       for (const TimeUnit unit : {TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds}) {
-        if (rate_hz < 3e3 || lasts_s < 0.1) continue;  // no recording of an event camera in use
+        if (rate_hz < 3e3 || lasts_s < 0.1) continue;  // not a realistic recording of an event camera
         const auto guess = guess_time_unit(stamps_of(rate_hz, std::max(lasts_s, 5000 / rate_hz), unit));
         EXPECT_EQ(guess.value_or(unit), unit) << rate_hz << " Hz for " << lasts_s << " s";
       }

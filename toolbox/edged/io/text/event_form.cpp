@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which columns a plain event file has, and in which unit its stamps are.
+// Detects the columns of a plain event file, and the unit of its stamps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,7 +31,7 @@ std::optional<std::size_t> event_role(const ColumnName& column) {
   return is_one_of(words[0], {"y", "row"}) ? std::optional<std::size_t>(2) : std::nullopt;
 }
 
-/// Nothing where no line names all columns.
+/// The columns of the heading. Nothing if no line names all columns.
 std::optional<EventTextForm> form_by_heading(const SourcePath& file) {
   static const ColumnRoles roles{{"t", "x", "y", "p"}, event_role, "t[s],x,y,p"};
   const auto columns = named_columns(file, roles);
@@ -46,7 +46,7 @@ std::optional<EventTextForm> form_by_heading(const SourcePath& file) {
   return form;
 }
 
-/// The numbers of a line; nothing where it holds anything else.
+/// The numbers of a line. Nothing if it holds anything else.
 std::optional<std::vector<double>> numbers_of(std::string_view line) {
   std::vector<double> numbers;
   for (FieldReader fields(line); !fields.rest().empty() && numbers.size() <= EventColumns::kMost;) {
@@ -71,7 +71,7 @@ bool fits(const std::vector<Row>& rows, const EventColumns& order) {
   return backwards <= rows.size() / kOneInSoMany;
 }
 
-/// The orders that tools write, the most common first.
+/// The orders of columns that tools write, the most common first.
 std::optional<EventColumns> columns_by_content(const std::vector<Row>& rows) {
   constexpr EventColumns kOrders[] = {{.t = 0, .x = 1, .y = 2, .p = 3},
                                       {.t = 3, .x = 0, .y = 1, .p = 2},
@@ -91,13 +91,13 @@ std::optional<cv::Size> geometry_in_comment(std::string_view line) {
                                       : parse_geometry(FieldReader(line.substr(at + kKey.size())).next());
 }
 
-/// Reads lines until the form is known and the rows are enough.
+/// Reads lines until the form is known and there are enough rows.
 class FormFinder {
  public:
   explicit FormFinder(const std::optional<EventTextForm>& named)
       : form_(named.value_or(EventTextForm())), named_(named.has_value()) {}
 
-  /// False once no further line is wanted, or the file is none of events.
+  /// False if no further line is needed, or if the file has no events.
   bool take(std::string_view line) {
     ++line_;
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) return true;
@@ -122,7 +122,7 @@ class FormFinder {
 
  private:
   bool take_row(std::string_view line, const std::vector<double>& numbers) {
-    if (raw_.empty() && !named_ && numbers.size() == 2) {  // the size of the sensor, as E2VID has it
+    if (raw_.empty() && !named_ && numbers.size() == 2) {  // the size of the sensor, in the format of E2VID
       form_.geometry = parse_geometry(fmt::format("{}x{}", numbers[0], numbers[1]));
       form_.columns.header_lines = line_;
       return form_.geometry.has_value();
@@ -222,7 +222,7 @@ std::optional<EventTextForm> find_event_form(const SourcePath& file) try {
   if (form) form->complaint = std::move(complaint);
   return form;
 } catch (const InputError&) {
-  return std::nullopt;  // no text
+  return std::nullopt;  // not a text file
 }
 
 }  // namespace edged

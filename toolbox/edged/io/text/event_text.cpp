@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Parsing and ordering of events.txt.
+// Parses and sorts the events of events.txt.
 #include "edged/io/text/event_text.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsi
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_separator(char c) { return is_blank(c) || c == ',' || c == ';'; }
 
-/// To the next field: blanks, with one comma or semicolon among them.
+/// Skips to the next field: blanks, with at most one comma or semicolon.
 const char* skip_separator(const char* p) {
   while (is_blank(*p)) ++p;
   if (*p != ',' && *p != ';') return p;
@@ -31,7 +31,7 @@ const char* skip_separator(const char* p) {
   return p;
 }
 
-/// A whole number below 100000 that is followed by a separator; null otherwise. The '\n' ends every loop.
+/// A whole number below 100000 and a separator; null otherwise. The '\n' ends every loop.
 const char* parse_pixel(const char* p, std::uint16_t& value) {
   p = skip_separator(p);
   const char* const start = p;
@@ -135,7 +135,7 @@ bool EventTextStream::refill() {
   if (at_end_ && !blocks_.damage().empty()) damage_.mended(line_, "file cut by damage", blocks_.damage());
   if (at_end_) return true;
   while (ready_ > 0 && events_[ready_ - 1].t >= newest_ - kLateness) --ready_;
-  if (events_.size() - ready_ > kMaxHeld) ready_ = events_.size() - 1;  // stamps that stand still must not fill memory
+  if (events_.size() - ready_ > kMaxHeld) ready_ = events_.size() - 1;  // constant stamps must not fill the memory
   return true;
 }
 
@@ -190,7 +190,7 @@ void EventTextStream::place_late(const Event& event) {
     damage_.mended(line_, "out of order, sorted in", "stamp up to 1 ms before the line above");
     return;
   }
-  // Far behind: either this stamp is wrong, or the one before it was, if this one follows the one before that.
+  // More than 1 ms late: this stamp is wrong, or the previous one is, if this stamp follows the one before that.
   const bool newest_is_wrong =
       first != events_.end() && (events_.end() - first > 1 ? (events_.end() - 2)->t : taken_) <= event.t;
   damage_.bad(line_, "out of order, dropped", "stamp more than 1 ms out of order");

@@ -13,18 +13,18 @@
 
 namespace edged {
 
-/// Where the parts of an event stand in a line.
+/// The columns of an event in a line.
 struct EventColumns {
   std::size_t t = 0, x = 1, y = 2, p = 3;  ///< counted from 0
-  std::size_t count = 4;                   ///< of columns in a line, kMost at most
+  std::size_t count = 4;                   ///< columns in a line, at most kMost
   TimeUnit unit = TimeUnit::Seconds;
-  std::size_t header_lines = 0;  ///< lines at the begin of the file that are no events
+  std::size_t header_lines = 0;  ///< leading lines of the file without events
   static constexpr std::size_t kMost = 16;
 
   bool operator==(const EventColumns&) const = default;
 };
 
-/// The columns and the unit that the heading of a file names; the default where it has none. Throws InputError as
+/// The columns and the unit of the heading of a file, the default without a heading. Throws InputError as
 /// named_columns() does.
 EventColumns named_event_columns(const SourcePath& file);
 
@@ -33,16 +33,16 @@ EventColumns named_event_columns(const SourcePath& file);
 /// when the line is not of that form.
 const char* parse_event_line(const char* p, Event& event);
 
-/// The same for any order of columns and way of writing numbers (exponents, `96.0`, polarity -1): slow, false when it
-/// is no event.
+/// The same for any order of columns and notation of numbers (exponents, `96.0`, polarity -1), but slower. False if the
+/// line is no event.
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event);
 
-/// The stamp alone.
+/// Parses the stamp only.
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns);
 
-/// The events of a file in time order. Memory stays bounded: a block of text and the events in it.
-/// Stamps far ahead pass an AheadGate. Events up to 1 ms late are sorted in; later ones, those outside the sensor and
-/// unreadable lines are left out. All counted.
+/// The events of a file in time order. Memory is bounded: a block of text and its events. An AheadGate checks for
+/// stamps far ahead. Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines
+/// are left out. All are counted.
 class EventTextStream {
  public:
   EventTextStream(const SourcePath& file, const EventColumns& columns, int width, int height, Repairs& repairs);
@@ -63,7 +63,7 @@ class EventTextStream {
   BlockReader blocks_;
   LineDamage damage_;
   EventColumns columns_;
-  bool plain_;  ///< as parse_event_line reads it
+  bool plain_;  ///< parse_event_line() reads this form
   int width_, height_;
   std::size_t line_ = 0;
   std::vector<Event> events_;           ///< sorted

@@ -119,7 +119,7 @@ TEST(EventStream, SurvivesACutAtAnyPlace) {
     const auto whole = static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
     const Stream s = read_stream(folder.write("events.txt", part));
     EXPECT_GE(s.events.size(), whole);
-    EXPECT_LE(s.events.size(), whole + 1);  // a cut just before a line end loses nothing
+    EXPECT_LE(s.events.size(), whole + 1);  // a cut before a line end loses no event
     const bool mended = s.repairs.count("events: last line cut") > 0;
     EXPECT_EQ(s.events.size() == whole && part.back() != '\n', mended) << percent;
   }

@@ -21,17 +21,17 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::infinity();
 
-/// Where the numbers of a line stand, and what turns them into our units.
+/// The columns of a line, and the factors to SI units.
 struct ExternalForm {
   std::size_t t = 0;
-  std::optional<TimeUnit> unit = std::nullopt;  ///< of the stamps, where it is known
+  std::optional<TimeUnit> unit = std::nullopt;  ///< of the stamps, if known
   std::vector<std::size_t> values;
   std::vector<double> scales;
   std::vector<std::size_t> sigmas;  ///< none, one for all values, or one each
-  bool open_end = false;            ///< the sigmas are what stands behind the values
+  bool open_end = false;            ///< all numbers after the values are sigmas
 };
 
-/// To the sensor's unit; nothing for a unit that is not known.
+/// The factor to the unit of the sensor. Nothing for an unknown unit.
 std::optional<double> external_scale(std::string_view unit, std::string_view wanted) {
   static const std::map<std::string_view, double> lengths = {{"m", 1.0},     {"cm", 0.01},   {"mm", 0.001},
                                                              {"km", 1000.0}, {"ft", 0.3048}, {"feet", 0.3048}};
@@ -42,7 +42,7 @@ std::optional<double> external_scale(std::string_view unit, std::string_view wan
   return found == known.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// "vx [m/s]" as "vx" and "m/s".
+/// Splits "vx [m/s]" into "vx" and "m/s".
 std::pair<std::string, std::string> name_and_unit(const std::string& column) {
   const std::string lower = lower_case(column);
   const std::size_t open = lower.find_first_of("[("), close = lower.find_first_of("])");
@@ -56,7 +56,7 @@ bool is_time(const std::string& name) {
   return name == "t" || name == "time" || name == "timestamp" || name == "stamp" || name == "ts";
 }
 
-/// Of the stamps of a file that does not say it: seconds since 1970 or a start have no more than ten digits.
+/// The unit of stamps without a named one: seconds, since 1970 or since the start, have at most ten digits.
 TimeUnit unit_by_size(double stamp) {
   if (std::abs(stamp) < 1e11) return TimeUnit::Seconds;
   if (std::abs(stamp) < 1e14) return TimeUnit::Milliseconds;
@@ -69,7 +69,7 @@ std::string heading_wanted(const ExternalSensor& sensor) {
   return heading + ",sigma";
 }
 
-/// The first line with something in it, and the first with a number in front.
+/// The first line that is not empty, and the first that begins with a number.
 std::pair<std::string, std::string> external_head(const SourcePath& file) {
   std::pair<std::string, std::string> head;
   BlockReader blocks(file, 64 * 1024);
@@ -88,7 +88,7 @@ std::pair<std::string, std::string> external_head(const SourcePath& file) {
   return head;
 }
 
-/// Nothing where the line is a comment that names no column.
+/// Nothing if the line is a comment that names no column.
 std::optional<ExternalForm> form_by_heading(const std::string& heading, const ExternalSensor& sensor,
                                             const SourcePath& file) {
   const auto refuse = [&](const std::string& what) {
@@ -149,7 +149,7 @@ ExternalForm external_form(const ExternalSensor& sensor, const SourcePath& file)
   return *named;
 }
 
-/// A finite number, 0 for none; infinite where it says that it is not measured.
+/// A finite number, 0 for an empty field, infinity for a value that is not measured.
 std::optional<double> sigma_of(std::string_view field) {
   if (field.empty()) return 0.0;
   if (lower_case(field) == "inf" || lower_case(field) == "infinity") return kNotMeasured;

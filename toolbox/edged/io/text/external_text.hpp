@@ -13,16 +13,16 @@
 
 namespace edged {
 
-/// The recording with the samples of the file instead of its own of that sensor. A line is `layout_of(sensor)`, or what
-/// a first line names: columns in any order, units in brackets. Without a unit stamps are seconds, or what their size
-/// says. Throws InputError for a first line that lacks a column, and where both are not on one clock.
+/// The recording, with the samples of that sensor replaced by those of the file. A line has the columns of
+/// `layout_of(sensor)`, or of a heading: columns in any order, units in brackets. The unit of stamps, if not named,
+/// follows from their size. Throws InputError for a heading that lacks a column, and if the clocks differ.
 std::unique_ptr<Dataset> with_external_file(std::unique_ptr<Dataset> recording, const ExternalSensor& sensor,
                                             const SourcePath& file);
 
-/// The same with what lies in the folder: NAME.txt, NAME.csv or NAME0/data.csv of each sensor.
+/// The same with the files of the folder: NAME.txt, NAME.csv or NAME0/data.csv of each sensor.
 std::unique_ptr<Dataset> with_external_files(std::unique_ptr<Dataset> recording, const SourcePath& folder);
 
-/// What with_external_files looks for in a folder, whether it is there or not.
+/// The file names that with_external_files searches in a folder.
 std::set<std::string> external_file_names();
 
 }  // namespace edged

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A folder as UZH-FPV publishes it: a column `id` in front, the gyro before the accelerometer.
+/// A folder as in UZH-FPV: first a column `id`, the gyro before the accelerometer.
 void write_uzh_fpv(const TempFolder& folder) {
   std::string imu = "# id timestamp ang_vel_x ang_vel_y ang_vel_z lin_acc_x lin_acc_y lin_acc_z\n";
   std::string events = "# timestamp x y polarity\n", images = "# id timestamp image_name\n";

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Which columns an IMU file has, and in which units they are.
+// Detects the columns and units of an IMU file.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,7 +32,7 @@ struct Sample {
   }
 };
 
-/// Of the columns that are named, else of all, numbers; anything else reads as not a number.
+/// The numbers of the named columns, else of all columns. Any other text is NaN.
 Sample read_sample(const SourcePath& file, const std::optional<NamedImu>& named) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto is_sample = [&named](const std::vector<double>& row) {
@@ -59,11 +59,11 @@ Sample read_sample(const SourcePath& file, const std::optional<NamedImu>& named)
   return sample;
 }
 
-/// Unit of an accelerometer whose median is this, as gravity is the most of it.
+/// Unit of an accelerometer with this median, which is mainly gravity.
 std::optional<std::pair<double, const char*>> gravity_unit(double median) {
   if (median > 7.0 && median < 13.0) return std::pair(1.0, "m/s^2");
-  if (median > 0.7 && median < 1.3) return std::pair(kStandardGravity_mps2, "g");
-  if (median > 700.0 && median < 1300.0) return std::pair(1e-3 * kStandardGravity_mps2, "mg");
+  if (median > 0.7 && median < 1.3) return std::pair(kStandardGravity, "g");
+  if (median > 700.0 && median < 1300.0) return std::pair(1e-3 * kStandardGravity, "mg");
   return std::nullopt;
 }
 
@@ -83,7 +83,7 @@ NamedImu by_gravity(const SourcePath& file, const Sample& sample) {
   return found;
 }
 
-/// The only unit in which samples would come 25 to 10,000 times a second.
+/// The only unit that gives a rate of 25 to 10,000 Hz.
 TimeUnit unit_by_rate(const SourcePath& file, const Sample& sample, std::size_t t) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < sample.rows.size(); ++i) steps.push_back(sample.column(i, t) - sample.column(i - 1, t));
@@ -100,7 +100,7 @@ TimeUnit unit_by_rate(const SourcePath& file, const Sample& sample, std::size_t 
 }  // namespace
 
 ImuTextForm find_imu_form(const SourcePath& file) {
-  constexpr double kFastest_radps = 35.0;  // 2000 deg/s, what MEMS gyros measure
+  constexpr double kFastest_radps = 35.0;  // 2000 deg/s, the range of MEMS gyros
   const std::optional<NamedImu> named = named_imu(file);
   const Sample sample = read_sample(file, named);
   NamedImu found = named ? *named : by_gravity(file, sample);
@@ -115,7 +115,7 @@ ImuTextForm find_imu_form(const SourcePath& file) {
     throw InputError::format("{}: the unit of the accelerometer is not certain (its median is {:g}); name it: `{}`",
                              file.string(), pull, kWanted);
   form.accel_scale = found.accel_scale ? *found.accel_scale : guess->first;
-  const char* accel = form.accel_scale == 1.0 ? "m/s^2" : form.accel_scale == kStandardGravity_mps2 ? "g" : "mg";
+  const char* accel = form.accel_scale == 1.0 ? "m/s^2" : form.accel_scale == kStandardGravity ? "g" : "mg";
   const auto place = [](const std::array<std::size_t, 3>& at) {
     return fmt::format("{},{},{}", at[0] + 1, at[1] + 1, at[2] + 1);
   };

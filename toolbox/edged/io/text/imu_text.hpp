@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// IMU samples from a text file of any tool, beside a recording that has none.
+// Adds IMU samples from a text file of any tool to a recording.
 #pragma once
 
 #include <memory>
@@ -10,14 +10,13 @@
 
 namespace edged {
 
-/// Columns by the names in the first line; where there is none, seven columns `t gx gy gz ax ay az` or `t ax ay az gx
-/// gy gz`, whichever has gravity in the accelerometer. Units by the names, else by the content: gravity, turns faster
-/// than sensors measure in rad/s, rates that IMUs have. Throws InputError where that does not decide, with what to
-/// write.
+/// The columns are those of the heading. Without a heading they are `t gx gy gz ax ay az` or `t ax ay az gx gy gz`: the
+/// order with gravity in the accelerometer. Units not in the heading are found from the content: gravity, the range of
+/// gyros in rad/s, the rates of IMUs. Throws InputError, with the heading to write, if the form is not certain.
 ImuTextForm find_imu_form(const SourcePath& file);
 
-/// The recording with the samples of the file instead of its own, if it has any. Both must be on one clock. Throws
-/// InputError where they do not overlap, with both spans.
+/// The recording, with its IMU samples, if any, replaced by those of the file. Both must be on one clock. Throws
+/// InputError, with both time spans, if they do not overlap.
 std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file);
 
 }  // namespace edged

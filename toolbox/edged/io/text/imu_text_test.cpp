@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 200 Hz from 0.9 s on; stamps in seconds times `ticks`, turning by `turn`, pulled by `pull` upwards.
+/// Samples at 200 Hz from 0.9 s on. Stamps in seconds times `ticks`, angular rate `turn`, upward specific force `pull`.
 std::string imu_lines(const std::string& heading, double ticks, double turn, double pull, bool accel_first = false) {
   std::string text = heading.empty() ? "" : heading + "\n";
   for (int i = 0; i < 60; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Merging of sensors by stamp, lazy loading of images.
+// Merges sensors by stamp, and loads images when they are needed.
 #include "edged/io/text/text_dataset.hpp"
 
 #include <algorithm>
@@ -102,7 +102,7 @@ Timestamp TextDataset::next_frame_stamp() const {
   return next;
 }
 
-/// Of the camera whose turn it is; of those with one stamp the first.
+/// The next frame of all cameras. Of equal stamps, the first camera is first.
 std::optional<Frame> TextDataset::load_next_frame() {
   FrameStream& stream = *std::ranges::find_if(frames_, [t = next_frame_stamp()](const FrameStream& candidate) {
     return candidate.lines.peek() && candidate.lines.peek()->t == t;

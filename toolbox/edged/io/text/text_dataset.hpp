@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording whose sensors are separate text files: merges them by stamp. The formats only differ in its TextLayout.
+// A recording with one text file per sensor, which are merged by stamp. The formats differ only in the TextLayout.
 #pragma once
 
 #include <functional>
@@ -28,18 +28,18 @@ struct FrameFile {
   StampedLines<FrameEntry>::Spec lines;
 };
 
-/// Where the parts of a recording are and how their lines read.
+/// The files of a recording, and the format of their lines.
 struct TextLayout {
   DatasetInfo info;  ///< name, format and pose_frame
   std::optional<EventFile> events;
-  std::vector<FrameFile> frames;  ///< one a camera, each with a name of its own
+  std::vector<FrameFile> frames;  ///< one per camera, with different names
   std::optional<StampedLines<ImuSample>::Spec> imu;
   std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;  ///< may be empty
 };
 
 class TextDataset final : public Dataset {
  public:
-  /// Throws InputError when no sensor has anything readable.
+  /// Throws InputError if no sensor has a readable line.
   explicit TextDataset(TextLayout layout);
 
   const DatasetInfo& info() const override { return layout_.info; }
@@ -61,7 +61,7 @@ class TextDataset final : public Dataset {
 
   TextLayout layout_;
   Repairs repairs_;
-  mutable Repairs ground_truth_repairs_;  ///< of the last reading: not counted twice
+  mutable Repairs ground_truth_repairs_;  ///< of the last reading, so that repeated readings are not counted twice
   std::optional<EventTextStream> events_;
   std::vector<FrameStream> frames_;
   std::optional<StampedLines<ImuSample>> imu_;
