@@ -206,8 +206,11 @@ void tell_rotation(const CameraCheck& check, Findings& out) {
 }
 
 void judge_scale(const CameraCheck& check, Findings& out) {
+  constexpr double kOfUnexplained = 2.0;  // four sigmas of the systematic error, as in GyroAgreement::common_error
   const double ratio = check.agreement->gyro_scale;
   if (ratio > 0.7 && (ratio < 1.4 || check.in_degrees())) return;
+  // People who walk through the view also turn the image.
+  if (std::abs(std::log(std::max(ratio, 1e-3))) < kOfUnexplained * check.agreement->unexplained) return;
   out.warn(fmt::format("camera {}: the gyro turns {:.2f} times as fast as its image", check.camera.name, ratio),
            "check the focal length, and the unit of the gyro");
 }

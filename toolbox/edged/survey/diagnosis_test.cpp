@@ -162,6 +162,8 @@ TEST(Diagnosis, NamesACalibrationThatContradictsTheGyro) {
   check.agreement->gyro_scale = 0.5;
   EXPECT_THAT(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "0.50 times"),
               HasSubstr("focal length"));
+  check.agreement->unexplained = 0.4;
+  EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Warning, "0.50 times"), "NO SUCH FINDING");
 }
 
 TEST(Diagnosis, NamesAGyroWhoseScaleIsOffAndAnAccelerometerThatPointsTheOtherWay) {
