@@ -128,6 +128,10 @@ struct RigCamera {
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };
 
+/// Covariance of the calibration of a camera: rotation about its axes [rad], time offset [s], position in the body [m],
+/// ln fx, ln fy, principal point over the focal lengths, first distortion coefficient.
+using CalibrationCovariance = Eigen::Matrix<double, 12, 12>;
+
 /// A run uses the first event camera and the first frame camera, or those that the option `cameras` names.
 struct Rig {
   std::string name;

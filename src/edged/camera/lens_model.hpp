@@ -26,8 +26,11 @@ struct Distorted {
   Eigen::Matrix2d d_point;
 };
 
+/// The derivative of a distorted point by the coefficients.
+using ByCoefficients = Eigen::Matrix<double, 2, 5>;
+
 /// A lens that is symmetric about its axis has `radius_of_angle`, and may see beyond 90 degrees. One that is not has
-/// the other two functions. One without distortion has none.
+/// radius_of_radius and distort. One without distortion has no function.
 struct LensModel {
   DistortionModel model;
   std::string_view name;                      ///< in calibrations, options and messages
@@ -40,6 +43,8 @@ struct LensModel {
   /// The same of a radius on the unit plane, without what is not symmetric.
   Sloped (*radius_of_radius)(const LensCoefficients& k, double r) = nullptr;
   Distorted (*distort)(const LensCoefficients& k, const Eigen::Vector2d& point) = nullptr;
+  /// Of any lens with coefficients. Distortion is linear in them.
+  ByCoefficients (*by_coefficients)(const Eigen::Vector2d& point) = nullptr;
 };
 
 }  // namespace edged
