@@ -11,17 +11,6 @@
 namespace edged {
 namespace {
 
-/// Distortion of a point, by any lens.
-Distorted distorted_by(const LensModel& lens, const LensCoefficients& k, const Eigen::Vector2d& p) {
-  if (lens.distort) return lens.distort(k, p);
-  const double r = p.norm();
-  if (!lens.radius_of_angle || r == 0.0) return {p, Eigen::Matrix2d::Identity()};
-  const Sloped radius = lens.radius_of_angle(k, std::atan(r));
-  const double tangential = radius.value / r, radial = radius.slope / (1.0 + r * r);
-  const Eigen::Matrix2d outward = p * p.transpose() / (r * r);
-  return {tangential * p, tangential * Eigen::Matrix2d::Identity() + (radial - tangential) * outward};
-}
-
 /// Row by row; empty without a mask.
 std::vector<std::uint8_t> mask_of(const CameraModel& model) {
   std::vector<std::uint8_t> used;
@@ -35,12 +24,12 @@ std::vector<std::uint8_t> mask_of(const CameraModel& model) {
 
 ByIntrinsics point_by_intrinsics(const CameraModel& given, const Eigen::Vector2d& point) {
   const LensModel& lens = lens_model(given.distortion());
-  const Distorted at = distorted_by(lens, given.coefficients(), point);
+  const Distorted at = distorted(lens, given.coefficients(), point);
   ByIntrinsics by_pixel = ByIntrinsics::Zero();  // of the pixel over the focal lengths, at a fixed point
   by_pixel(0, 0) = at.point.x();
   by_pixel(1, 1) = at.point.y();
   by_pixel(0, 2) = by_pixel(1, 3) = 1.0;
-  if (lens.by_coefficients) by_pixel.col(4) = lens.by_coefficients(point).col(0);
+  if (lens.by_coefficients) by_pixel.col(4) = lens.by_coefficients(given.coefficients(), point).col(0);
   return -at.d_point.inverse() * by_pixel;
 }
 

@@ -26,7 +26,7 @@ TEST(Intrinsics, DerivativeOfDistortionByItsCoefficientsMatchesDifferences) {
     const LensModel& lens = lens_model(camera.distortion());
     if (lens.model == DistortionModel::None) continue;
     for (const Eigen::Vector2d& point : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.3, -0.2)}) {
-      const ByCoefficients by = lens.by_coefficients(point);
+      const ByCoefficients by = lens.by_coefficients(camera.coefficients(), point);
       for (std::size_t i = 0; i < lens.most; ++i) {
         constexpr double kStep = 1e-5;
         LensCoefficients more = camera.coefficients(), less = more;

@@ -15,14 +15,9 @@ inline Sloped equidistant_radius(const LensCoefficients& k, double theta) {
           1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
 }
 
-inline ByCoefficients equidistant_by_coefficients(const Eigen::Vector2d& p) {
-  ByCoefficients out = ByCoefficients::Zero();
-  const double r = p.norm();
-  if (r == 0.0) return out;
-  const double theta = std::atan(r), t2 = theta * theta;
-  out.col(0) = theta * t2 / r * p;
-  for (int i = 1; i < 4; ++i) out.col(i) = t2 * out.col(i - 1);
-  return out;
+inline ByCoefficients equidistant_by_coefficients(const LensCoefficients&, const Eigen::Vector2d& p) {
+  const double theta = std::atan(p.norm()), t2 = theta * theta, t3 = theta * t2;
+  return along_radius(p, {t3, t3 * t2, t3 * t2 * t2, t3 * t2 * t2 * t2});
 }
 
 inline constexpr LensModel kEquidistant{.model = DistortionModel::Equidistant,

@@ -29,10 +29,10 @@ inline Sloped radtan_radius(const LensCoefficients& k, double r) {
           1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]))};
 }
 
-inline ByCoefficients radtan_by_coefficients(const Eigen::Vector2d& p) {
+inline ByCoefficients radtan_by_coefficients(const LensCoefficients&, const Eigen::Vector2d& p) {
   const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
-  ByCoefficients out;
-  out << r2 * p, r2 * r2 * p, Eigen::Vector2d(2.0 * x * y, r2 + 2.0 * y * y),
+  ByCoefficients out = ByCoefficients::Zero();
+  out.leftCols<5>() << r2 * p, r2 * r2 * p, Eigen::Vector2d(2.0 * x * y, r2 + 2.0 * y * y),
       Eigen::Vector2d(r2 + 2.0 * x * x, 2.0 * x * y), r2 * r2 * r2 * p;
   return out;
 }
