@@ -166,7 +166,9 @@ TEST(Simulator, HasACameraOfEveryLensModelThatIsUsedInTheWholeImage) {
     ConfigFields::of(config).set("camera.distortion=" + std::string(lens.name));
     const CameraModel model = config.camera.model();
     EXPECT_EQ(model.distortion(), lens.model);
-    if (!lens.radius_of_angle) EXPECT_EQ(model.coefficients()[1], config.camera.k2);
+    if (!lens.radius_of_angle) {
+      EXPECT_EQ(model.coefficients()[1], config.camera.k2);
+    }
     EXPECT_FALSE(model.view_limit()) << lens.name;
   }
   SimulatedCameraConfig omni;
