@@ -166,12 +166,14 @@ ordered_json matrix_json(const SE3& T) {
 ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   const FieldOfView view = field_of_view(m);
+  std::vector<double> coefficients(m.coefficients().begin(), m.coefficients().end());
+  coefficients.resize(lens_model(m.distortion()).most);
   ordered_json out = {{"name", camera.name},
                       {"modality", camera.modality == Modality::Events ? "events" : "frames"},
                       {"resolution_px", {m.width(), m.height()}},
                       {"intrinsics_px", {m.fx(), m.fy(), m.cx(), m.cy()}},
                       {"distortion", to_string(m.distortion())},
-                      {"coefficients", m.coefficients()},
+                      {"coefficients", coefficients},
                       {"field_of_view_deg",
                        {{"horizontal", view.horizontal * kDegreesPerRadian},
                         {"vertical", view.vertical * kDegreesPerRadian},

@@ -233,12 +233,15 @@ nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {
 }
 
 nlohmann::ordered_json to_json(const CalibrationFound& c) {
+  nlohmann::ordered_json corrections = nlohmann::ordered_json::object();
+  for (const CorrectionFound& of : c.corrections) corrections[of.name] = {{"off", of.off}, {"sigma", of.sigma}};
   return {{"camera", c.camera},
           {"rotation_off_deg", c.rotation_deg},
           {"rotation_sigma_deg", number_or_null(c.rotation_sigma_deg)},
           {"time_offset_ms", c.time_offset_ms},
           {"time_offset_sigma_ms", number_or_null(c.time_sigma_ms)},
-          {"given_time_offset_ms", c.given_offset_ms}};
+          {"given_time_offset_ms", c.given_offset_ms},
+          {"corrections", corrections}};
 }
 
 std::string to_text(const CalibrationFit& fit) {

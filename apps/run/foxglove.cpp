@@ -92,9 +92,11 @@ Json compressed_image(Timestamp t, const std::string& camera, const std::vector<
 Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
   const CameraModel& m = camera.model;
   const LensModel& lens = lens_model(m.distortion());
-  const auto k = std::span(m.coefficients()).first(lens.most);
+  // Of a model without a name there: a pinhole with the focal length near the axis.
+  const auto k = std::span(m.coefficients()).first(lens.foxglove.empty() ? 0 : lens.most);
   const std::vector<double> D(k.begin(), k.end());
-  const double fx = scale * m.fx(), fy = scale * m.fy();
+  const double on_axis = 2.0 * m.mean_focal() / (m.fx() + m.fy());
+  const double fx = scale * m.fx() * on_axis, fy = scale * m.fy() * on_axis;
   // The centre of the first pixel is at zero, whatever its size.
   const double cx = scale * (m.cx() + 0.5) - 0.5, cy = scale * (m.cy() + 0.5) - 0.5;
   return {{"timestamp", time(t)},

@@ -52,6 +52,7 @@ std::vector<T> evenly(const std::vector<T>& values) {
 /// One pyramid per keyframe: the camera and the corners of its image at some distance.
 foxglove::Lines frusta(const std::vector<StampedPose>& bodies, const RigCamera& camera) {
   const CameraModel& m = camera.model;
+  const double on_axis = 2.0 * m.mean_focal() / (m.fx() + m.fy()), fx = on_axis * m.fx(), fy = on_axis * m.fy();
   foxglove::Lines lines{"keyframes", {}, {}, {0.2, 0.6, 1.0, 0.8}};
   for (const StampedPose& body : bodies) {
     const auto apex = static_cast<unsigned>(lines.points.size());
@@ -60,7 +61,7 @@ foxglove::Lines frusta(const std::vector<StampedPose>& bodies, const RigCamera& 
     for (const auto& [u, v] :
          {std::pair(0, 0), std::pair(m.width(), 0), std::pair(m.width(), m.height()), std::pair(0, m.height())})
       lines.points.push_back(point_of(
-          T_W_C * Eigen::Vector3d(kFrustum_m * (u - m.cx()) / m.fx(), kFrustum_m * (v - m.cy()) / m.fy(), kFrustum_m)));
+          T_W_C * Eigen::Vector3d(kFrustum_m * (u - m.cx()) / fx, kFrustum_m * (v - m.cy()) / fy, kFrustum_m)));
     for (unsigned k = 0; k < 4; ++k)
       for (const unsigned end : {apex, apex + 1 + k, apex + 1 + k, apex + 1 + (k + 1) % 4}) lines.pairs.push_back(end);
   }

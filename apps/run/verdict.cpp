@@ -53,6 +53,22 @@ bool fits_inverse(const SE3& given, const SE3& found, double found_deg, double s
   return found_deg > std::max(kLeast_deg, kSigmas * sigma_deg) && inverse_deg < kNearer * found_deg;
 }
 
+/// Of lens and position.
+std::vector<CorrectionFound> corrections_of(const RigCamera& given, const RigCamera& found,
+                                            const CalibrationCovariance& P) {
+  const CameraModel &before = given.model, &now = found.model;
+  const Eigen::Vector3d moved_mm = 1e3 * (found.T_B_C.translation() - given.T_B_C.translation());
+  const auto sigma = [&](Eigen::Index i, double unit) { return unit * std::sqrt(P(i, i)); };
+  return {{"x_mm", moved_mm.x(), sigma(4, 1e3)},
+          {"y_mm", moved_mm.y(), sigma(5, 1e3)},
+          {"z_mm", moved_mm.z(), sigma(6, 1e3)},
+          {"fx_percent", 100.0 * (now.fx() / before.fx() - 1.0), sigma(7, 100.0)},
+          {"fy_percent", 100.0 * (now.fy() / before.fy() - 1.0), sigma(8, 100.0)},
+          {"cx_px", now.cx() - before.cx(), sigma(9, before.fx())},
+          {"cy_px", now.cy() - before.cy(), sigma(10, before.fy())},
+          {"k1", now.coefficients()[0] - before.coefficients()[0], sigma(11, 1.0)}};
+}
+
 /// Inconsistencies appear in the biases first.
 void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kMost = 1.2;  // [m/s^2]; up to 0.5 on the mirror recordings
@@ -243,6 +259,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
                                   : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation).eigenvalues()[2];
       found.rotation_sigma_deg = kDegreesPerRadian * std::sqrt(variance);
       found.time_sigma_ms = 1e3 * std::sqrt((*P)(3, 3));
+      found.corrections = corrections_of(before, camera, *P);
       found.inverse = fits_inverse(before.T_B_C, camera.T_B_C, found.rotation_deg, *found.rotation_sigma_deg);
     }
     out.push_back(found);
@@ -254,6 +271,7 @@ Calibration with_found(Calibration given, const Rig& found) {
   for (RigCamera& camera : given.rig.cameras) {
     const auto same = std::ranges::find(found.cameras, camera.name, &RigCamera::name);
     if (same == found.cameras.end()) continue;
+    camera.model = same->model;
     camera.T_B_C = same->T_B_C;
     camera.time_offset = same->time_offset;
   }

@@ -75,12 +75,11 @@ class Odometry {
   FinalTrajectory final_trajectory() const;
   [[deprecated("use final_trajectory()")]] FinalTrajectory hindsight() const { return final_trajectory(); }
 
-  /// The cameras of the mode with their present online calibration: rotation relative to the body, and total time
+  /// The cameras of the mode with their present online calibration: lens, pose relative to the body, and total time
   /// offset.
   Rig rig() const;
-  /// Covariance of the online calibration of a camera: rotation about its axes [rad], then time offset [s]. Nothing
-  /// without an estimate.
-  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
+  /// Covariance of the online calibration of a camera; nothing without an estimate.
+  std::optional<CalibrationCovariance> calibration_covariance(const std::string& camera) const;
 
   OdometryCounters counters() const;
   /// "packetize", "process", and the stages of the latter.

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,21 +20,33 @@ namespace edged {
 
 enum class DistortionModel {
   None,
-  RadTan,       ///< Brown: k1, k2, p1, p2 [, k3]
-  Equidistant,  ///< Kannala-Brandt: k1..k4
+  RadTan,          ///< Brown: k1, k2, p1, p2 [, k3]
+  Equidistant,     ///< Kannala-Brandt: k1..k4
+  Rational,        ///< OpenCV: k1, k2, p1, p2, k3..k6
+  FieldOfView,     ///< Devernay: w
+  Omni,            ///< Mei, with Brown's distortion: xi [, k1, k2, p1, p2]
+  DoubleSphere,    ///< Usenko: xi, alpha
+  ExtendedUnified  ///< Khomutenko: alpha, beta
 };
 
-/// A pinhole camera with radial-tangential or equidistant distortion.
+inline constexpr std::size_t kMostLensCoefficients = 8;
+/// In the order of the model; those that it lacks are zero.
+using LensCoefficients = std::array<double, kMostLensCoefficients>;
+
+/// A camera of one of these models.
 /// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
-/// An equidistant lens that reaches more than 86 degrees off its axis is used only within 70, the limit of the unit
-/// plane. A value: cheap to copy, never changed after construction.
+/// A lens that is defined by the angle off its axis (all but RadTan and Rational) is used only in part of the image
+/// where it reaches more than 86 degrees: within 70, the limit of the unit plane; and where its distortion turns back
+/// before the corners of the image: as far as it grows a quarter as fast as on the axis, if that leaves three quarters
+/// of the image. A value: cheap to copy, never changed after construction.
 class CameraModel {
  public:
   CameraModel() = default;
   /// Throws InputError when a focal length is not positive and finite, the size is not positive, the distortion is not
-  /// monotone over the image (a pixel would have no or two bearings), or the model has fewer coefficients than are set.
+  /// monotone over the image (a pixel would have no or two bearings) or three quarters of it, or the model has fewer
+  /// coefficients than are set.
   CameraModel(int width, int height, double fx, double fy, double cx, double cy,
-              DistortionModel distortion = DistortionModel::None, const std::array<double, 5>& coefficients = {});
+              DistortionModel distortion = DistortionModel::None, const LensCoefficients& coefficients = {});
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -42,10 +55,11 @@ class CameraModel {
   double cx() const { return cx_; }
   double cy() const { return cy_; }
   DistortionModel distortion() const { return distortion_; }
-  const std::array<double, 5>& coefficients() const { return k_; }
+  const LensCoefficients& coefficients() const { return k_; }
 
-  /// (fx + fy) / 2 [px]: turns angles near the axis into pixels.
-  double mean_focal() const { return 0.5 * (fx_ + fy_); }
+  /// Turns angles near the axis into pixels [px]: (fx + fy) / 2, times the radius over the angle there, which is 1 but
+  /// for Omni, DoubleSphere and FieldOfView.
+  double mean_focal() const { return mean_focal_; }
 
   /// Pixel of a point (x, y) on the unit plane.
   Eigen::Vector2d distort_to_pixel(const Eigen::Vector2d& point) const;
@@ -100,9 +114,11 @@ class CameraModel {
     }
   };
 
-  /// Sets max_radius_, and limit_ of a lens that is too wide; throws InputError when it does not reach the corners of
-  /// the image.
+  /// Sets max_radius_, and limit_ of a lens that is too wide or turns back; throws InputError when it does not reach
+  /// the corners of the image.
   void find_monotone_range();
+  /// Angle off the axis up to which a lens that turns back before the corners is used; nothing where it is refused.
+  std::optional<double> limit_before_turn() const;
   bool in_limit(const Eigen::Vector2d& pixel, double border_px) const;
   bool in_mask(const Eigen::Vector2d& pixel, double border_px) const;
   /// Throws InputError when a pixel of the border has no bearing (the radial check does not cover the tangential part).
@@ -111,10 +127,11 @@ class CameraModel {
   int width_ = 0, height_ = 0;
   double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
   DistortionModel distortion_ = DistortionModel::None;
-  std::array<double, 5> k_{};
+  LensCoefficients k_{};
+  double mean_focal_ = 0;
   double max_radius_ = 0;  // on the unit plane: up to here the distortion grows with the radius, or limit_
   double limit_ = 0;       // [rad] off the axis; 0: none
-  double max_theta_ = 0;   // [rad] up to here an equidistant distortion grows with the angle
+  double max_theta_ = 0;   // [rad] up to here the distortion of a lens defined by its angle grows
   Mask mask_;
 };
 
@@ -127,6 +144,10 @@ struct RigCamera {
   SE3 T_B_C;                           ///< camera frame to body: p_B = T_B_C * p_C
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };
+
+/// Covariance of the calibration of a camera: rotation about its axes [rad], time offset [s], position in the body [m],
+/// ln fx, ln fy, principal point over the focal lengths, first distortion coefficient.
+using CalibrationCovariance = Eigen::Matrix<double, 12, 12>;
 
 /// A run uses the first event camera and the first frame camera, or those that the option `cameras` names.
 struct Rig {

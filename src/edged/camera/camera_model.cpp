@@ -25,12 +25,29 @@ constexpr double kUnitPlaneEnds = 89.0 * kDegree;
 // [deg] off the axis. A lens that reaches more than the first angle is used only up to the second: a pixel at 70
 // degrees is 4.4 times as long on the unit plane as on the axis, at 80 degrees 12 times.
 constexpr double kWidest = 86.0 * kDegree, kUsedOfWider = 70.0 * kDegree;
+constexpr double kScanStep = 0.05 * kDegree;
+// A lens that turns back before the corners: how steep it must be, relative to the axis, where it is used, and how much
+// of the image that must leave. A wrong order of the coefficients leaves less.
+constexpr double kLeastSlope = 0.25, kLeastShare = 0.75;
 
-/// How far the radius grows with the angle, at most to 180 degrees.
-double growing_range(const LensModel& lens, const LensCoefficients& k) {
-  constexpr double kStep = 0.05 * kDegree;
-  double theta = 0.0;
-  while (theta + kStep < std::numbers::pi && lens.radius_of_angle(k, theta + kStep).slope > 0.0) theta += kStep;
+/// Radius in the distorted image of an angle off the axis, without what is not symmetric.
+Sloped radius_at(const LensModel& lens, const LensCoefficients& k, double theta) {
+  const Sloped first = lens.radius_of_angle(k, theta);
+  if (!lens.radius_of_radius) return first;
+  const Sloped second = lens.radius_of_radius(k, first.value);
+  return {second.value, second.slope * first.slope};
+}
+
+/// How far the radius grows with the angle, at most to 180 degrees, at least that steeply. It does not beyond a pole,
+/// where the projection of a lens is no longer defined.
+double growing_range(const LensModel& lens, const LensCoefficients& k, double least_slope = 0.0) {
+  double theta = 0.0, reached = 0.0;
+  while (theta + kScanStep < std::numbers::pi) {
+    const Sloped next = radius_at(lens, k, theta + kScanStep);
+    if (!(next.slope > least_slope && next.value > reached)) break;
+    theta += kScanStep;
+    reached = next.value;
+  }
   return theta;
 }
 
@@ -58,7 +75,7 @@ double angle_of_radius(const LensModel& lens, const LensCoefficients& k, double 
   return invert_growing([&](double theta) { return lens.radius_of_angle(k, theta); }, radius, max_theta);
 }
 
-/// The radial part first, then Newton steps on both coordinates (C4).
+/// The step `distort`. The radial part first, then Newton steps on both coordinates (C4).
 Vector2d undistort_asymmetric(const LensModel& lens, const LensCoefficients& k, const Vector2d& distorted,
                               double max_radius) {
   const double target = distorted.norm();
@@ -82,10 +99,22 @@ Vector2d undistort_symmetric(const LensModel& lens, const LensCoefficients& k, c
   return std::tan(angle_of_radius(lens, k, target, std::atan(max_radius))) / target * distorted;
 }
 
+/// The inverse of the step `distort` of a lens that is used up to an angle off its axis.
+Vector2d undistort_on_plane(const LensModel& lens, const LensCoefficients& k, const Vector2d& distorted,
+                            double max_theta) {
+  if (!lens.distort) return distorted;
+  return undistort_asymmetric(lens, k, distorted, lens.radius_of_angle(k, max_theta).value);
+}
+
+/// "k1 k2 ..." of a lens, in numbers.
+std::string numbers_of(const LensModel& lens, const LensCoefficients& k) {
+  return fmt::format("{}", fmt::join(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.most), " "));
+}
+
 }  // namespace
 
 CameraModel::CameraModel(int width, int height, double fx, double fy, double cx, double cy, DistortionModel distortion,
-                         const std::array<double, 5>& coefficients)
+                         const LensCoefficients& coefficients)
     : width_(width), height_(height), fx_(fx), fy_(fy), cx_(cx), cy_(cy), distortion_(distortion), k_(coefficients) {
   if (width <= 0 || height <= 0) {
     throw InputError::format("image size {} x {} px: both must be positive", width, height);
@@ -102,9 +131,10 @@ CameraModel::CameraModel(int width, int height, double fx, double fy, double cx,
   }
   const LensModel& lens = lens_model(distortion);
   if (std::any_of(k_.begin() + static_cast<std::ptrdiff_t>(lens.most), k_.end(), [](double k) { return k != 0.0; })) {
-    throw InputError::format("distortion '{}' with coefficients {} {} {} {} {}: it has {}", lens.name, k_[0], k_[1],
-                             k_[2], k_[3], k_[4], lens.most == 0 ? "none" : fmt::format("only {}", lens.coefficients));
+    throw InputError::format("distortion '{}' with coefficients {}: it has {}", lens.name, fmt::join(k_, " "),
+                             lens.most == 0 ? "none" : fmt::format("only {}", lens.coefficients));
   }
+  mean_focal_ = 0.5 * (fx_ + fy_) * (lens.radius_of_angle ? lens.radius_of_angle(k_, 0.0).slope : 1.0);
   find_monotone_range();
   check_border();
 }
@@ -121,28 +151,48 @@ void CameraModel::find_monotone_range() {
   }
   const LensModel& lens = lens_model(distortion_);
   if (lens.radius_of_angle) max_theta_ = growing_range(lens, k_);
-  if (max_theta_ > kWidest && corner_radius > lens.radius_of_angle(k_, kWidest).value) {
+  if (max_theta_ > kWidest && corner_radius > radius_at(lens, k_, kWidest).value) {
     limit_ = kUsedOfWider;
     max_radius_ = std::tan(limit_);
     return;
   }
-  constexpr double kStep = 0.05 * kDegree;
   double reached = 0.0;
   double theta = 0.0;
-  for (; theta <= kUnitPlaneEnds; theta += kStep) {
+  for (; theta <= kUnitPlaneEnds; theta += kScanStep) {
     const double radius = std::tan(theta);
-    const Sloped at = lens.radius_of_angle ? lens.radius_of_angle(k_, theta) : lens.radius_of_radius(k_, radius);
-    if (at.slope <= 0.0) break;
+    const Sloped at = lens.radius_of_angle ? radius_at(lens, k_, theta) : lens.radius_of_radius(k_, radius);
+    if (!(at.slope > 0.0 && at.value >= reached)) break;
     reached = at.value;
     max_radius_ = radius;
   }
-  if (reached < corner_radius) {
-    throw InputError::format(
-        "distortion '{}' {} {} {} {} {} (fx {} fy {}) is not monotone over the image: it ends {:.1f} degrees off the "
-        "axis at a distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the "
-        "distortion model and the image size",
-        to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], fx_, fy_, theta / kDegree, reached, corner_radius);
+  if (reached >= corner_radius) return;
+  if (const std::optional<double> limit = limit_before_turn()) {
+    limit_ = *limit;
+    max_radius_ = std::tan(limit_);
+    return;
   }
+  throw InputError::format(
+      "distortion '{}' {} (fx {} fy {}) is not monotone over the image: it ends {:.1f} degrees off the axis at a "
+      "distorted radius of {:.4f}, the image corners need {:.4f}; check the order of the coefficients, the distortion "
+      "model and the image size",
+      lens.name, numbers_of(lens, k_), fx_, fy_, theta / kDegree, reached, corner_radius);
+}
+
+std::optional<double> CameraModel::limit_before_turn() const {
+  const LensModel& lens = lens_model(distortion_);
+  if (!lens.radius_of_angle) return std::nullopt;
+  const double axis_slope = radius_at(lens, k_, 0.0).slope;
+  if (!(axis_slope > 0.0)) return std::nullopt;
+  const double limit = std::min(growing_range(lens, k_, kLeastSlope * axis_slope), kWidest - kScanStep);
+  const double reached = radius_at(lens, k_, limit).value;
+  constexpr int kPerSide = 40;
+  int within = 0;
+  for (int row = 0; row < kPerSide; ++row)
+    for (int column = 0; column < kPerSide; ++column) {
+      const double x = (column + 0.5) / kPerSide * width_ - 0.5, y = (row + 0.5) / kPerSide * height_ - 0.5;
+      within += std::hypot((x - cx_) / fx_, (y - cy_) / fy_) <= reached ? 1 : 0;
+    }
+  return within >= kLeastShare * kPerSide * kPerSide ? std::optional(limit) : std::nullopt;
 }
 
 void CameraModel::check_border() const {
@@ -156,9 +206,9 @@ void CameraModel::check_border() const {
       const double error = (distort_to_pixel(pixel_to_point(pixel)) - pixel).norm();
       if (error < kRoundTripTolerance) continue;
       throw InputError::format(
-          "distortion '{}' {} {} {} {} {} has no inverse at pixel ({:.0f}, {:.0f}) (off by {:.2g} px); check the order "
+          "distortion '{}' {} has no inverse at pixel ({:.0f}, {:.0f}) (off by {:.2g} px); check the order "
           "of the coefficients and the distortion model",
-          to_string(distortion_), k_[0], k_[1], k_[2], k_[3], k_[4], pixel.x(), pixel.y(), error);
+          to_string(distortion_), numbers_of(lens_model(distortion_), k_), pixel.x(), pixel.y(), error);
     }
   }
 }
@@ -166,12 +216,11 @@ void CameraModel::check_border() const {
 Vector2d CameraModel::distort_to_pixel(const Vector2d& point) const {
   const LensModel& lens = lens_model(distortion_);
   Vector2d d = point;
-  if (lens.distort) {
-    d = lens.distort(k_, point).point;
-  } else if (lens.radius_of_angle) {
+  if (lens.radius_of_angle) {
     const double r = point.norm();
     if (r > 0.0) d = lens.radius_of_angle(k_, std::atan(r)).value / r * point;
   }
+  if (lens.distort) d = lens.distort(k_, d).point;
   return {fx_ * d.x() + cx_, fy_ * d.y() + cy_};
 }
 
@@ -185,9 +234,9 @@ std::optional<Vector2d> CameraModel::project(const Eigen::Vector3d& p_C) const {
 Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
   const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
   const LensModel& lens = lens_model(distortion_);
-  if (lens.distort) return undistort_asymmetric(lens, k_, distorted, max_radius_);
-  if (lens.radius_of_angle) return undistort_symmetric(lens, k_, distorted, max_radius_);
-  return distorted;
+  if (lens.radius_of_angle)
+    return undistort_symmetric(lens, k_, undistort_on_plane(lens, k_, distorted, std::atan(max_radius_)), max_radius_);
+  return lens.distort ? undistort_asymmetric(lens, k_, distorted, max_radius_) : distorted;
 }
 
 std::optional<double> CameraModel::view_limit() const { return limit_ > 0.0 ? std::optional(limit_) : std::nullopt; }
@@ -204,7 +253,7 @@ CameraModel CameraModel::within(double limit_rad) const {
 
 bool CameraModel::in_limit(const Vector2d& pixel, double border_px) const {
   const double used = (distort_to_pixel({std::tan(limit_), 0.0}).x() - cx_) / fx_;
-  return std::hypot((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_) + border_px / mean_focal() <= used;
+  return std::hypot((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_) + border_px / (0.5 * (fx_ + fy_)) <= used;
 }
 
 CameraModel CameraModel::masked(const std::vector<std::uint8_t>& used) const {
@@ -232,11 +281,12 @@ Eigen::Vector3d CameraModel::pixel_to_ray(const Vector2d& pixel) const {
   if (limit_ == 0.0) return pixel_to_point(pixel).homogeneous();
   const LensModel& lens = lens_model(distortion_);
   if (!lens.radius_of_angle) return pixel_to_point(pixel).homogeneous().normalized();
-  const Vector2d distorted((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
-  const double target = distorted.norm();
+  const Vector2d on_plane =
+      undistort_on_plane(lens, k_, {(pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_}, max_theta_);
+  const double target = on_plane.norm();
   if (target == 0.0) return Eigen::Vector3d::UnitZ();
   const double theta = angle_of_radius(lens, k_, target, max_theta_);
-  return (Eigen::Vector3d() << std::sin(theta) / target * distorted, std::cos(theta)).finished();
+  return (Eigen::Vector3d() << std::sin(theta) / target * on_plane, std::cos(theta)).finished();
 }
 
 double CameraModel::stretch(const Vector2d& point) const {

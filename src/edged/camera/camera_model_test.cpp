@@ -39,6 +39,14 @@ std::vector<NamedCamera> all_cameras() {
        CameraModel(640, 480, 500, 505, 310, 250, DistortionModel::RadTan, {0.12, 0.05, 0.004, -0.006, 0.03})},
       {"mvsec_left", CameraModel(346, 260, 226.38018, 226.15003, 173.64708, 133.73271, DistortionModel::Equidistant,
                                  {-0.048031, 0.011331, -0.055378, 0.021501, 0.0})},
+      {"rational", CameraModel(640, 480, 380, 381, 318, 243, DistortionModel::Rational,
+                               {0.2, 0.01, 2e-4, -3e-4, 0.001, 0.5, 0.05, 0.002})},
+      {"fov", CameraModel(752, 480, 400, 401, 370, 245, DistortionModel::FieldOfView, {0.92})},
+      {"omni_of_vins", CameraModel(752, 480, 1877.3, 1871.4, 361.5, 248.3, DistortionModel::Omni,
+                                   {3.06, 0.673, 7.05, -7.2e-4, 3.8e-4})},
+      {"omni_without_distortion", CameraModel(346, 260, 300, 301, 170, 131, DistortionModel::Omni, {0.8})},
+      {"ds", CameraModel(640, 480, 310, 311, 322, 239, DistortionModel::DoubleSphere, {-0.18, 0.59})},
+      {"eucm", CameraModel(640, 480, 330, 331, 322, 239, DistortionModel::ExtendedUnified, {0.61, 1.08})},
       {"fisheye_150_degrees",
        CameraModel(640, 480, 300, 301, 322, 239, DistortionModel::Equidistant, {0.01, -0.004, 0.002, -0.0003, 0.0})},
   };
@@ -86,6 +94,7 @@ TEST_P(EveryCamera, TakesEveryBearingToAPixelAndBack) {
 
 TEST_P(EveryCamera, AgreesWithOpenCvOnProjection) {
   const CameraModel& camera = GetParam().model;
+  if (camera.distortion() > DistortionModel::Rational) return;  // no model of OpenCV: lens_models_test.cpp
   const auto& k = camera.coefficients();
   const cv::Matx33d K(camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(), 0, 0, 1);
   std::vector<cv::Point3d> points;
@@ -110,6 +119,7 @@ TEST_P(EveryCamera, AgreesWithOpenCvOnProjection) {
   }
 }
 
+/// By the coefficients one by one, and by the axes of the plane.
 TEST_P(EveryCamera, HasALensWithDerivativesOfItsFunctions) {
   const CameraModel& camera = GetParam().model;
   const LensModel& lens = lens_model(camera.distortion());
@@ -119,13 +129,27 @@ TEST_P(EveryCamera, HasALensWithDerivativesOfItsFunctions) {
     for (double x = 0.05; function && x < 0.6; x += 0.05)
       EXPECT_NEAR(function(k, x).slope, (function(k, x + kStep).value - function(k, x - kStep).value) / (2 * kStep),
                   1e-8);
-  if (!lens.distort) return;
-  const Vector2d p(0.3, -0.2);
-  for (int axis = 0; axis < 2; ++axis) {
-    const Vector2d step = kStep * Vector2d::Unit(axis);
-    const Vector2d numeric = (lens.distort(k, p + step).point - lens.distort(k, p - step).point) / (2 * kStep);
-    EXPECT_LT((lens.distort(k, p).d_point.col(axis) - numeric).norm(), 1e-8);
+  for (const Vector2d& p : {Vector2d(0.3, -0.2), Vector2d(0.0, 0.0), Vector2d(-0.7, 0.5)}) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vector2d step = kStep * Vector2d::Unit(axis);
+      const Vector2d numeric = (distorted(lens, k, p + step).point - distorted(lens, k, p - step).point) / (2 * kStep);
+      EXPECT_LT((distorted(lens, k, p).d_point.col(axis) - numeric).norm(), 1e-8);
+    }
+    for (std::size_t i = 0; i < lens.most; ++i) {
+      LensCoefficients more = k, less = k;
+      more[i] += kStep, less[i] -= kStep;
+      const Vector2d numeric = (distorted(lens, more, p).point - distorted(lens, less, p).point) / (2 * kStep);
+      EXPECT_LT((lens.by_coefficients(k, p).col(static_cast<int>(i)) - numeric).norm(), 1e-8) << i;
+    }
   }
+}
+
+TEST_P(EveryCamera, HasAMeanFocalLengthThatTurnsAnglesNearItsAxisIntoPixels) {
+  const CameraModel& camera = GetParam().model;
+  constexpr double kStep = 1e-5;
+  const double x = (camera.distort_to_pixel({kStep, 0.0}) - camera.distort_to_pixel({-kStep, 0.0})).norm();
+  const double y = (camera.distort_to_pixel({0.0, kStep}) - camera.distort_to_pixel({0.0, -kStep})).norm();
+  EXPECT_NEAR(camera.mean_focal(), (x + y) / (4.0 * kStep), 1e-4);
 }
 
 TEST(LensTable, HasOneRowAModelThatEachOfItsNamesFinds) {
@@ -138,7 +162,7 @@ TEST(LensTable, HasOneRowAModelThatEachOfItsNamesFinds) {
         << lens.name << " has no camera in these tests";
   }
   EXPECT_EQ(find_lens_model(""), nullptr);
-  EXPECT_EQ(lens_model_names(), "none, radtan, equidistant");
+  EXPECT_EQ(lens_model_names(), "none, radtan, equidistant, rational, fov, omni, ds, eucm");
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryCamera, testing::ValuesIn(all_cameras()),

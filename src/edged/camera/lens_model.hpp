@@ -6,13 +6,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <string_view>
 
 #include "edged/rig.hpp"
 
 namespace edged {
-
-using LensCoefficients = std::array<double, 5>;
 
 /// A value and its derivative.
 struct Sloped {
@@ -20,26 +19,41 @@ struct Sloped {
   double slope;
 };
 
-/// What a distortion does to a point of the unit plane, and its derivative.
+/// What a distortion does to a point of a plane, and its derivative.
 struct Distorted {
   Eigen::Vector2d point;
   Eigen::Matrix2d d_point;
 };
 
-/// A lens that is symmetric about its axis has `radius_of_angle`, and may see beyond 90 degrees. One that is not has
-/// the other two functions. One without distortion has none.
+/// The derivative of a distorted point by the coefficients.
+using ByCoefficients = Eigen::Matrix<double, 2, static_cast<int>(kMostLensCoefficients)>;
+
+/// A lens in two steps, each of which may be absent. First `radius_of_angle`: the radius on a plane of the angle off
+/// the axis, which may exceed 90 degrees; without it, the unit plane. Then `distort` on that plane, with
+/// `radius_of_radius`, its part that is symmetric about the axis.
 struct LensModel {
   DistortionModel model;
   std::string_view name;                      ///< in calibrations, options and messages
   std::string_view coefficients;              ///< in their order, those that may be missing in brackets
-  std::size_t fewest = 0, most = 0;           ///< how many of them
+  std::size_t fewest = 0, most = 0;           ///< how many of them: one number or the other
+  std::size_t of_projection = 0;              ///< a camera model of Kalibr: those that precede the focal lengths there
   std::array<std::string_view, 3> also = {};  ///< further names, of other formats, lower case
   std::string_view ros = {}, foxglove = {};   ///< names in camera_info and in Foxglove's CameraCalibration
-  /// Radius on the distorted unit plane of an angle off the axis [rad].
-  Sloped (*radius_of_angle)(const LensCoefficients& k, double theta) = nullptr;
-  /// The same of a radius on the unit plane, without what is not symmetric.
+  Sloped (*radius_of_angle)(const LensCoefficients& k, double theta) = nullptr;  ///< [rad]
   Sloped (*radius_of_radius)(const LensCoefficients& k, double r) = nullptr;
   Distorted (*distort)(const LensCoefficients& k, const Eigen::Vector2d& point) = nullptr;
+  /// Of both steps, for any lens with coefficients, at a point of the unit plane.
+  ByCoefficients (*by_coefficients)(const LensCoefficients& k, const Eigen::Vector2d& point) = nullptr;
 };
+
+/// `by_coefficients` of a lens whose radius has these derivatives at the point.
+inline ByCoefficients along_radius(const Eigen::Vector2d& point, std::initializer_list<double> radius_by_coefficient) {
+  ByCoefficients out = ByCoefficients::Zero();
+  const double r = point.norm();
+  if (r == 0.0) return out;
+  int i = 0;
+  for (const double derivative : radius_by_coefficient) out.col(i++) = derivative / r * point;
+  return out;
+}
 
 }  // namespace edged

@@ -4,16 +4,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "edged/camera/lenses/double_sphere.hpp"
 #include "edged/camera/lenses/equidistant.hpp"
+#include "edged/camera/lenses/extended_unified.hpp"
+#include "edged/camera/lenses/fov.hpp"
+#include "edged/camera/lenses/omni.hpp"
 #include "edged/camera/lenses/radtan.hpp"
+#include "edged/camera/lenses/rational.hpp"
 
 namespace edged {
 namespace {
 
 constexpr LensModel kNoDistortion{.model = DistortionModel::None, .name = "none", .coefficients = "", .also = {"no"}};
 
-constexpr std::array kLensModels{kNoDistortion, kRadTan, kEquidistant};
+constexpr std::array kLensModels{kNoDistortion, kRadTan, kEquidistant,  kRational,
+                                 kFieldOfView,  kOmni,   kDoubleSphere, kExtendedUnified};
 
 }  // namespace
 
@@ -36,6 +43,21 @@ std::string lens_model_names() {
   std::string names;
   for (const LensModel& lens : kLensModels) names.append(names.empty() ? "" : ", ").append(lens.name);
   return names;
+}
+
+Distorted distorted(const LensModel& lens, const LensCoefficients& k, const Eigen::Vector2d& p) {
+  Distorted out{p, Eigen::Matrix2d::Identity()};
+  if (lens.radius_of_angle) {
+    const double r = p.norm();
+    const Sloped radius = lens.radius_of_angle(k, std::atan(r));
+    const double radial = radius.slope / (1.0 + r * r), tangential = r == 0.0 ? radial : radius.value / r;
+    out.point = tangential * p;
+    out.d_point *= tangential;
+    if (r > 0.0) out.d_point += (radial - tangential) * (p * p.transpose() / (r * r));
+  }
+  if (!lens.distort) return out;
+  const Distorted second = lens.distort(k, out.point);
+  return {second.point, second.d_point * out.d_point};
 }
 
 std::string to_string(DistortionModel model) { return std::string(lens_model(model).name); }

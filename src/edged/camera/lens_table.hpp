@@ -18,6 +18,9 @@ const LensModel& lens_model(DistortionModel model);
 /// By any of its names, in lower case; null where none has it.
 const LensModel* find_lens_model(std::string_view name);
 
+/// Both steps of a lens at a point of the unit plane.
+Distorted distorted(const LensModel& lens, const LensCoefficients& k, const Eigen::Vector2d& point);
+
 /// "none, radtan, ...", for messages.
 std::string lens_model_names();
 

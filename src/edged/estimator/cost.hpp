@@ -31,10 +31,10 @@ std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
 /// A residual (2) of a landmark: weight * (e - correlation * e of the residual before).
 struct LandmarkResidual {
   ObservationKey seen;
-  std::size_t place;      ///< of the state in the window, the oldest being 0
-  Eigen::Vector2d point;  ///< on the unit plane
-  double correlation;     ///< 0 if the one before is the anchor's, which is exact by definition of the landmark
-  double weight;          ///< 1 / sigma
+  std::size_t place;  ///< of the state in the window, the oldest being 0
+  ImagePoint point;
+  double correlation;  ///< 0 if the one before is the anchor's, which is exact by definition of the landmark
+  double weight;       ///< 1 / sigma
 };
 
 /// All residuals of a landmark.
@@ -42,7 +42,7 @@ struct LandmarkTerm {
   FeatureId id = 0;
   ObservationKey anchor;
   std::size_t anchor_place = 0;
-  Eigen::Vector2d point;                  ///< in the anchor view
+  ImagePoint point;                       ///< in the anchor view
   const double* inverse_depth = nullptr;  ///< in the window
   bool coupled = false;                   ///< its depth shares a factor with others: not eliminated by itself
   std::vector<LandmarkResidual> residuals;

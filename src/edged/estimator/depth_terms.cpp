@@ -20,9 +20,7 @@ struct Middle {
   std::size_t in_region = 0;
 };
 
-SE3 T_B_E(const Window& window, const RegionDepth& depth) {
-  return window.calibrated(window.camera_index(depth.camera)).T_B_C;
-}
+SE3 T_B_E(const Window& window, const RegionDepth& depth) { return window.T_B_C(window.camera_index(depth.camera)); }
 
 /// The landmarks that the state observes in the region, those of medium depth; nothing if they are too few.
 std::optional<Middle> middle_landmarks(const Window& window, StateId state, const RegionDepth& region) {
@@ -64,7 +62,7 @@ std::shared_ptr<const Factor> depth_factor(const Window& window, StateId state, 
     const Feature& feature = window.features().at(id);
     const ObservationKey& anchor = *feature.anchor;
     landmarks.push_back(
-        {id, window.calibrated(anchor.camera).T_B_C, feature.observations.at(anchor).point, anchor.state});
+        {id, window.T_B_C(anchor.camera), window.point(anchor, feature.observations.at(anchor)), anchor.state});
   }
   double weight = 1.0 / sigma_ln(window.depth_config(), depth, middle.in_region);
   // The paper's residual is in 1/m; its error is relative to s rho, at the present solution.

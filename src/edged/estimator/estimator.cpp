@@ -69,13 +69,15 @@ double inflation(const Window& window, const EstimatorConfig& config) {
 
 }  // namespace
 
-Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
+Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
+                     std::vector<IntrinsicsCorrection> intrinsics)
     : noise_(noise),
       config_(config),
       window_(rig, config.cauchy_scale, config.depth_factor),
       standstill_(config.standstill),
       external_(config.height, config.velocity),
       initializer_(rig, noise, config),
+      known_intrinsics_(std::move(intrinsics)),
       depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
@@ -112,6 +114,8 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   agreed_ = at_rest || (now && agrees(*now, found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
+  for (std::size_t camera = 0; camera < known_intrinsics_.size(); ++camera)
+    window_.set_intrinsics(camera, known_intrinsics_[camera]);
   scale_sigma_ = found.start->scale_sigma;
   result.outliers.assign(found.start->outliers.begin(), found.start->outliers.end());
   result.started = at_rest ? "at rest"
@@ -153,10 +157,10 @@ std::optional<Matrix15d> Estimator::covariance() const {
   return P;
 }
 
-std::optional<Eigen::Matrix4d> Estimator::calibration_covariance(std::size_t camera) const {
+std::optional<CalibrationCovariance> Estimator::calibration_covariance(std::size_t camera) const {
   if (!initialized_) return std::nullopt;
   const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
-  return P ? std::optional<Eigen::Matrix4d>(*P * inflation(window_, config_)) : std::nullopt;
+  return P ? std::optional<CalibrationCovariance>(*P * inflation(window_, config_)) : std::nullopt;
 }
 
 std::optional<double> Estimator::depth(FeatureId id, const std::string& camera) const {

@@ -37,7 +37,9 @@ struct EstimatorResult {
 class Estimator {
  public:
   /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock.
-  Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config);
+  /// intrinsics: corrections known from an earlier start, one of each camera, or none.
+  Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
+            std::vector<IntrinsicsCorrection> intrinsics = {});
 
   /// Inputs in time order.
   EstimatorResult add(const EstimatorInput& input);
@@ -54,7 +56,7 @@ class Estimator {
   /// Of the newest state: see covariance() of a window; inflated to be consistent. Nothing before initialization.
   std::optional<Matrix15d> covariance() const;
   /// Of the calibration correction of a camera (CalibrationBlock); inflated in the same way.
-  std::optional<Eigen::Matrix4d> calibration_covariance(std::size_t camera) const;
+  std::optional<CalibrationCovariance> calibration_covariance(std::size_t camera) const;
 
   /// z-depth of a landmark in a camera at the newest state [m].
   std::optional<double> depth(FeatureId id, const std::string& camera) const;
@@ -81,6 +83,7 @@ class Estimator {
   StandstillDetector standstill_;
   ExternalFactors external_;
   Initializer initializer_;
+  std::vector<IntrinsicsCorrection> known_intrinsics_;
   bool initialized_ = false;
   double scale_sigma_ = kFree;   ///< of ln scale
   bool sees_landmarks_ = false;  ///< the newest state

@@ -59,6 +59,16 @@ void CalibrationConfig::visit(ConfigFields& fields) {
       {"deg", 0, 10, "Prior uncertainty of each camera's rotation relative to the IMU. 0 keeps the given value."});
   fields.add("time_offset_sigma_ms", time_offset_sigma_ms,
              {"ms", 0, 50, "Prior uncertainty of each camera's time offset. 0 keeps the given value."});
+  fields.add(
+      "lever_arm_sigma_mm", lever_arm_sigma_mm,
+      {"mm", 0, 500, "Prior uncertainty of each camera's position relative to the IMU. 0 keeps the given value."});
+  fields.add("focal_sigma", focal_sigma,
+             {"1", 0, 0.1, "Prior relative uncertainty of each camera's focal lengths. 0 keeps the given values."});
+  fields.add("principal_point_sigma_px", principal_point_sigma_px,
+             {"px", 0, 50, "Prior uncertainty of each camera's principal point. 0 keeps the given value."});
+  fields.add(
+      "distortion_sigma", distortion_sigma,
+      {"1", 0, 0.5, "Prior uncertainty of the first distortion coefficient of each camera. 0 keeps the given value."});
   fields.add("imu_sigma", imu_sigma,
              {"1", 0, 0.1,
               "Prior uncertainty of scale factors and axis misalignment of gyroscope and accelerometer. 0 keeps them "

@@ -213,6 +213,46 @@ TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
 }
 
+/// Of a lens with distortion, its lever arm and intrinsics off.
+TestWorldOptions miscalibrated(std::uint64_t seed) {
+  TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
+  options.distortion = {-0.37, 0.15, -3e-4, -7e-4, 0.0};
+  const double sign = seed % 2 == 0 ? -1.0 : 1.0;
+  options.intrinsics_error << 0.008 * sign, 0.006, 0.006 * sign, -0.008, -0.015 * sign;
+  options.lever_arm_error = sign * Eigen::Vector3d(0.008, -0.006, 0.007);
+  return options;
+}
+
+CalibrationVector correction_after(const TestWorldOptions& options, double duration_s) {
+  TestWorld world(options);
+  Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
+  for (int i = 1; i <= std::lround(duration_s / 0.05); ++i) estimator.add(world.packet(0.05 * i, 0.05, i % 4 == 0));
+  EXPECT_TRUE(estimator.initialized());
+  return CalibrationVector(estimator.window().block({BlockKind::Calibration, 0}));
+}
+
+TEST(Estimator, FindsWhatIntrinsicsAndLeverArmAreOffBy) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const TestWorldOptions options = miscalibrated(seed);
+    const CalibrationVector found = correction_after(options, 15.0);
+    const IntrinsicsCorrection off = found.tail<kIntrinsics>() - options.intrinsics_error;
+    EXPECT_LT(off.head<4>().cwiseAbs().maxCoeff(), 2e-3) << seed << ": " << off.transpose();
+    EXPECT_LT(std::abs(off[4]), 6e-3) << seed;
+    EXPECT_LT((found.segment<3>(kLeverArmAt) - options.lever_arm_error).norm(), 0.5 * options.lever_arm_error.norm())
+        << seed << ": " << found.segment<3>(kLeverArmAt).transpose();
+  }
+}
+
+/// Motion that does not show them.
+TEST(Estimator, LeavesIntrinsicsAndLeverArmWhereNothingShowsThem) {
+  for (const TestWorldOptions& options : {TestWorldOptions{.rest_s = 20.0},  // at rest
+                                          TestWorldOptions{.rest_s = 1.0, .speed = 0.02, .turn = 0.01}}) {  // hover
+    const CalibrationVector found = correction_after(options, 8.0);
+    EXPECT_LT(found.tail<kIntrinsics>().cwiseAbs().maxCoeff(), 1e-3) << found.transpose();
+    EXPECT_LT(found.segment<3>(kLeverArmAt).norm(), 2e-3) << found.transpose();
+  }
+}
+
 /// Of the velocity in the body frame, over seeds and time: mean square error over reported variance, and RMS error.
 struct VelocityErrors {
   double nees = 0.0, rms = 0.0;

@@ -51,7 +51,7 @@ double visual_rms(const Window& window) {
     for (const auto& [view, seen] : feature.observations) {
       if (view == *feature.anchor) continue;
       const Eigen::Vector3d p_C = window.T_O_C(view).inverse() * p_O;
-      sum += std::min((p_C.hnormalized() - seen.point).squaredNorm() / (seen.sigma * seen.sigma), 25.0);
+      sum += std::min((p_C.hnormalized() - window.point(view, seen)).squaredNorm() / (seen.sigma * seen.sigma), 25.0);
       ++n;
     }
   }

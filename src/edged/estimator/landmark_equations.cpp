@@ -27,7 +27,7 @@ Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Tr
 struct WeightedResidual {
   Vector2d r;
   Transposed<6> anchor, seen, before;
-  Transposed<4> calibration, seen_calibration;
+  Transposed<kCalibrationSize> calibration, seen_calibration;
   Vector2d depth;
 };
 
@@ -115,7 +115,7 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
     before = error;
     before_defined = defined;
     defined = derivatives.error(taken.at(at.seen.camera, at.place), at.point, error) &&
-              (at_present_ || landmark.error(now.at(at.seen.camera, at.place).at, at.point, error.e));
+              (at_present_ || landmark.error(now.at(at.seen.camera, at.place), at.point, error.e));
     if (defined && (before_defined || at.correlation == 0.0)) accumulate(i, error, before, term);
   }
 }
@@ -152,14 +152,14 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
   if (calibration_of_[residual] != 0) {
     DepthByCalibration& camera = depth_.calibrations[calibration_of_[residual]];
     camera.coupling += J.seen_calibration * J.depth;
-    equations_.g.segment<4>(camera.global) += J.seen_calibration * J.r;
+    equations_.g.segment<kCalibrationSize>(camera.global) += J.seen_calibration * J.r;
     equations_.add(camera.global, camera.global, product(J.seen_calibration, J.seen_calibration));
     equations_.add(camera.global, anchor_calibration, product(J.seen_calibration, J.calibration));
     equations_.add(camera.global, anchor.global, product(J.seen_calibration, J.anchor));
     if (seen != 0) equations_.add(camera.global, view.global, product(J.seen_calibration, J.seen));
     if (seen_before != 0) equations_.add(camera.global, view_before.global, product(J.seen_calibration, J.before));
   }
-  Transposed<10> own;
+  Transposed<kOwn> own;
   own << J.anchor, J.calibration;
   H_ += product(own, own);
   g_ += own * J.r;
@@ -172,18 +172,19 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
 void LandmarkEquations::add_own() {
   const Index anchor = depth_.poses.front().global, calibration = depth_.calibrations.front().global;
   equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());
-  equations_.add<4, 6>(calibration, anchor, H_.bottomLeftCorner<4, 6>());
-  equations_.add<4, 4>(calibration, calibration, H_.bottomRightCorner<4, 4>());
+  equations_.add<kCalibrationSize, 6>(calibration, anchor, H_.bottomLeftCorner<kCalibrationSize, 6>());
+  equations_.add<kCalibrationSize, kCalibrationSize>(calibration, calibration,
+                                                     H_.bottomRightCorner<kCalibrationSize, kCalibrationSize>());
   equations_.g.segment<6>(anchor) += g_.head<6>();
-  equations_.g.segment<4>(calibration) += g_.tail<4>();
+  equations_.g.segment<kCalibrationSize>(calibration) += g_.tail<kCalibrationSize>();
   depth_.poses.front().coupling = coupling_.head<6>();
-  depth_.calibrations.front().coupling = coupling_.tail<4>();
+  depth_.calibrations.front().coupling = coupling_.tail<kCalibrationSize>();
 }
 
 void LandmarkEquations::add_depth(Index place) {
   for (const DepthByPose& pose : depth_.poses) equations_.add<1, 6>(place, pose.global, pose.coupling.transpose());
   for (const DepthByCalibration& camera : depth_.calibrations) {
-    equations_.add<1, 4>(place, camera.global, camera.coupling.transpose());
+    equations_.add<1, kCalibrationSize>(place, camera.global, camera.coupling.transpose());
   }
   equations_.H(place, place) += depth_.h;
   equations_.g[place] += depth_.g;
@@ -202,15 +203,16 @@ void LandmarkEquations::eliminate_depth() {
   }
   for (std::size_t i = 0; i < depth_.calibrations.size(); ++i) {
     const DepthByCalibration& row = depth_.calibrations[i];
-    const Eigen::Vector4d share = row.coupling / -depth_.h;
+    const CalibrationVector share = row.coupling / -depth_.h;
     for (const DepthByPose& pose : depth_.poses) {
-      equations_.add<4, 6>(row.global, pose.global, share * pose.coupling.transpose());
+      equations_.add<kCalibrationSize, 6>(row.global, pose.global, share * pose.coupling.transpose());
     }
     for (std::size_t j = 0; j <= i; ++j) {
       const DepthByCalibration& column = depth_.calibrations[j];
-      equations_.add<4, 4>(row.global, column.global, share * column.coupling.transpose());
+      equations_.add<kCalibrationSize, kCalibrationSize>(row.global, column.global,
+                                                         share * column.coupling.transpose());
     }
-    equations_.g.segment<4>(row.global) += share * depth_.g;
+    equations_.g.segment<kCalibrationSize>(row.global) += share * depth_.g;
   }
 }
 
@@ -234,7 +236,7 @@ double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres:
   Vector2d e = Vector2d::Zero(), before;
   for (const LandmarkResidual& at : term.residuals) {
     before = e;
-    if (!landmark.error(views.at(at.seen.camera, at.place).at, at.point, e))
+    if (!landmark.error(views.at(at.seen.camera, at.place), at.point, e))
       return std::numeric_limits<double>::infinity();
     double rho[3];
     loss.Evaluate((at.weight * (e - at.correlation * before)).squaredNorm(), rho);

@@ -34,8 +34,9 @@ class LandmarkEquations {
   std::vector<Eigen::Index> poses_, calibrations_;  ///< global columns, by the index of a state and of a camera
 
   // Of the present landmark. Columns: the anchor's pose, the calibration of its camera.
-  Eigen::Matrix<double, 10, 10> H_;
-  Eigen::Matrix<double, 10, 1> g_, coupling_;
+  static constexpr int kOwn = 6 + kCalibrationSize;
+  Eigen::Matrix<double, kOwn, kOwn> H_;
+  Eigen::Matrix<double, kOwn, 1> g_, coupling_;
   DepthEquation depth_;
   std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its index in depth_
 };

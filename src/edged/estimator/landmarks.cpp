@@ -39,7 +39,7 @@ void triangulate_feature(Window& window, FeatureId id, const Feature& feature, c
   std::vector<View> views;
   double sigma = 0.0;
   for (const auto& [view, observation] : feature.observations) {
-    views.push_back({window.T_O_C(view), observation.point});
+    views.push_back({window.T_O_C(view), window.point(view, observation)});
     sigma = observation.sigma;
   }
   const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
@@ -58,8 +58,9 @@ class Fit {
   /// Predicted minus observed position of a landmark on the unit plane; false if it is behind the camera.
   bool error(const Feature& feature, const ObservationKey& view, Eigen::Vector2d& e) const {
     const CameraView anchor = at(*feature.anchor);
-    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).point, feature.inverse_depth);
-    return landmark.error(at(view).at, feature.observations.at(view).point, e);
+    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).image_point(),
+                                    feature.inverse_depth);
+    return landmark.error(at(view), feature.observations.at(view).image_point(), e);
   }
 
   /// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.

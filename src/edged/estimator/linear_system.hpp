@@ -64,7 +64,7 @@ struct DepthByPose {
 /// The same with the calibration of one of its cameras.
 struct DepthByCalibration {
   Eigen::Index global = 0;
-  Eigen::Vector4d coupling = Eigen::Vector4d::Zero();
+  CalibrationVector coupling = CalibrationVector::Zero();
 };
 
 /// A landmark's inverse depth in the normal equations; eliminated from them, its step is -(g + couplings^T d) / h.

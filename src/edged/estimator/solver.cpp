@@ -50,7 +50,7 @@ class Neighbourhood {
     for (const DepthEquation& depth : eliminated_) {
       double coupled = depth.g;
       for (const DepthByCalibration& camera : depth.calibrations) {
-        coupled += camera.coupling.dot(d.segment<4>(camera.global));
+        coupled += camera.coupling.dot(d.segment<kCalibrationSize>(camera.global));
       }
       for (const DepthByPose& pose : depth.poses) coupled += pose.coupling.dot(d.segment<6>(pose.global));
       const double step = -coupled / depth.h;

@@ -86,9 +86,10 @@ void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& a
     if (found == known.end()) known.push_back(value);
     return place;
   };
-  const auto view = [&](const ObservationKey& image, const Eigen::Vector2d& point) {
+  const auto view = [&](const ObservationKey& image, const ImagePoint& point) {
     const BodyRate rate = window.states().at(image.state).rate();
-    return LandmarkView{point, rate, place_in(poses, image.state), place_in(cameras, image.camera)};
+    const std::size_t pose = place_in(poses, image.state), camera = place_in(cameras, image.camera);
+    return LandmarkView{point.given, rate, pose, camera, point.by_intrinsics};
   };
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];

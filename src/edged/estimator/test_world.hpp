@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+#include "edged/camera/intrinsics.hpp"
+#include "edged/camera/lens_model.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/rig.hpp"
 
@@ -30,6 +32,9 @@ struct TestWorldOptions {
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
   Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
+  Eigen::Vector3d lever_arm_error = {0, 0, 0};  ///< of the cameras: t_B_C true = t_B_C of rig() + error [m]
+  IntrinsicsCorrection intrinsics_error = IntrinsicsCorrection::Zero();  ///< true = rig() corrected by it
+  LensCoefficients distortion = {};  ///< of the first camera: radtan, if it is not zero
   double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
   int walker = 0;               ///< number of the 120 features on a dynamic object of half a metre that passes by
   double walker_comes_s = 0.0;  ///< when it enters the view
@@ -49,6 +54,10 @@ class TestWorld {
           options_.shared_ids ? Eigen::Vector3d(0.02, -0.05, 0.1) : Eigen::Vector3d(0.2, -0.15, 0.4);
       rig_.cameras.push_back({"events", Modality::Events, CameraModel(240, 180, 210, 200, 125, 85),
                               SE3(so3::exp(turned), {-0.06, 0.03, 0.01}), Duration(0)});
+    }
+    if (options_.distortion != LensCoefficients{}) {
+      rig_.cameras.front().model =
+          CameraModel(240, 180, 200, 200, 119.5, 89.5, DistortionModel::RadTan, options_.distortion);
     }
     noise_.gyro_noise = 2e-4;
     noise_.accel_noise = 4e-3;
@@ -103,19 +112,23 @@ class TestWorld {
   CameraObservations observe(double t, std::size_t camera_index = 0) {
     const RigCamera& camera = rig_.cameras.at(camera_index);
     CameraObservations out{camera.name, {}};
-    const SE3 T_B_C = camera.T_B_C * SE3(so3::exp(options_.rotation_error), Eigen::Vector3d::Zero());
+    const SE3 T_B_C = SE3(camera.T_B_C.rotation() * so3::exp(options_.rotation_error),
+                          camera.T_B_C.translation() + options_.lever_arm_error);
+    const CameraModel model = corrected_model(camera.model, options_.intrinsics_error);
+    const bool exact = options_.intrinsics_error.isZero(0.0);
     const SE3 T_C_W = (T_W_B(t + options_.time_error) * T_B_C).inverse();
     const Eigen::Vector3d walked = (t - options_.walker_comes_s) * Eigen::Vector3d(0.6, 0.1, 0.0);
     for (std::size_t i = 0; i < walker_.size() + points_W_.size() && out.features.size() < 120; ++i) {
       const bool walks = i < walker_.size();
       const Eigen::Vector3d p_C = T_C_W * (walks ? walker_[i] + walked : points_W_[i - walker_.size()]);
-      const auto pixel = camera.model.project(p_C);
+      const auto pixel = model.project(p_C);
       if (!pixel || !camera.model.contains(*pixel)) continue;
       const std::size_t of_camera = options_.shared_ids ? 0 : 1000 * camera_index;
       const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + of_camera;
       Eigen::Vector2d noise = options_.pixel_noise * normal2();
       if (options_.pixel_walk > 0.0) noise += drifted(id, t);
-      out.features.push_back({id, p_C.hnormalized() + noise / 200.0, 1.0 / 200.0});
+      const Eigen::Vector2d point = exact ? Eigen::Vector2d(p_C.hnormalized()) : camera.model.pixel_to_point(*pixel);
+      out.features.push_back({id, point + noise / 200.0, 1.0 / 200.0});
     }
     return out;
   }

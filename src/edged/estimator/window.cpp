@@ -27,6 +27,17 @@ LinearPrior near_present(BlockKey key, std::span<const double> present, const Ei
   return prior;
 }
 
+CalibrationVector sigmas_of(const CalibrationConfig& config, const CameraModel& model) {
+  CalibrationVector sigmas;
+  sigmas.head<3>().setConstant(config.rotation_sigma_deg * std::numbers::pi / 180.0);
+  sigmas[kTimeAt] = config.time_offset_sigma_ms * 1e-3;
+  sigmas.segment<3>(kLeverArmAt).setConstant(config.lever_arm_sigma_mm * 1e-3);
+  const double centre = config.principal_point_sigma_px;
+  sigmas.tail<kIntrinsics>() << config.focal_sigma, config.focal_sigma, centre / model.fx(), centre / model.fy(),
+      config.distortion_sigma;
+  return sigmas;
+}
+
 /// The observations from one state on, up to another.
 void forget(Feature& feature, StateId first, StateId end) {
   feature.observations.erase(feature.observations.lower_bound({first, 0}), feature.observations.lower_bound({end, 0}));
@@ -82,9 +93,10 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
       depth_config_(depth),
       visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {
   for (const RigCamera& given : rig.cameras) {
-    cameras_.push_back({given, {0.0, 0.0, 0.0, to_seconds(given.time_offset)}});
+    cameras_.push_back({given});
+    cameras_.back().calibration[kTimeAt] = to_seconds(given.time_offset);
   }
-  free_calibration({0.0, 0.0, 0.0});
+  free_calibration(CalibrationConfig::fixed());
   if (depth.enabled) begin_walk(BlockKind::LogScale, 0.0, {depth.scale_sigma, depth.scale_walk});
 }
 
@@ -98,9 +110,25 @@ std::size_t Window::camera_index(const std::string& name) const {
 RigCamera Window::calibrated(std::size_t camera) const {
   RigCamera found = cameras_[camera].given;
   const CalibrationBlock& off = cameras_[camera].calibration;
-  found.T_B_C = camera_pose(found.T_B_C, {}, SE3(), off.data());
-  found.time_offset = duration_from_seconds(off[3]);
+  found.T_B_C = T_B_C(camera);
+  found.time_offset = duration_from_seconds(off[kTimeAt]);
   return found;
+}
+
+SE3 Window::T_B_C(std::size_t camera) const {
+  return camera_pose(SE3(), {}, cameras_[camera].given.T_B_C, cameras_[camera].calibration.data());
+}
+
+IntrinsicsCorrection Window::intrinsics(std::size_t camera) const {
+  return IntrinsicsCorrection(cameras_[camera].calibration.data() + kIntrinsicsAt);
+}
+
+CameraModel Window::model(std::size_t camera) const {
+  return corrected_model(cameras_[camera].given.model, intrinsics(camera));
+}
+
+Eigen::Vector2d Window::point(const ObservationKey& image, const WindowObservation& observation) const {
+  return observation.point + observation.by_intrinsics * intrinsics(image.camera);
 }
 
 SE3 Window::T_O_C(const ObservationKey& image) const {
@@ -120,7 +148,7 @@ bool Window::alive(const Feature& feature) const {
 }
 
 Eigen::Vector3d Window::position(const Feature& feature) const {
-  const Eigen::Vector2d& point = feature.observations.at(*feature.anchor).point;
+  const Eigen::Vector2d point = this->point(*feature.anchor, feature.observations.at(*feature.anchor));
   return T_O_C(*feature.anchor) * (Eigen::Vector3d(point.x(), point.y(), 1.0) / feature.inverse_depth);
 }
 
@@ -157,7 +185,9 @@ void Window::observe(const CameraObservations& view) {
     Feature& feature = features_[observation.id];
     feature.last_seen[index] = newest_id();
     const ObservationKey image{newest_id(), index};
-    FeatureObservation& kept = feature.observations.insert_or_assign(image, observation).first->second;
+    const ByIntrinsics by_intrinsics = point_by_intrinsics(camera.given.model, observation.point);
+    WindowObservation& kept =
+        feature.observations.insert_or_assign(image, WindowObservation{observation, by_intrinsics}).first->second;
     kept.sigma *= camera.noise_scale;
   }
 }
@@ -255,12 +285,16 @@ void Window::rescale_noise(std::size_t camera, double factor) {
 
 void Window::free_calibration(const CalibrationConfig& config) {
   std::erase_if(soft_priors_, [](const auto& soft) { return is_calibration(soft->blocks().front()); });
-  const double rotation = config.rotation_sigma_deg * std::numbers::pi / 180.0;
-  const Eigen::Vector4d of_camera(rotation, rotation, rotation, config.time_offset_sigma_ms * 1e-3);
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-    add_soft_prior(near_present({BlockKind::Calibration, camera}, cameras_[camera].calibration, of_camera));
+    const WindowCamera& of = cameras_[camera];
+    add_soft_prior(near_present({BlockKind::Calibration, camera}, of.calibration, sigmas_of(config, of.given.model)));
   }
   add_soft_prior(near_present(kImuIntrinsicsKey, imu_intrinsics_, Eigen::VectorXd::Constant(18, config.imu_sigma)));
+}
+
+void Window::set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics) {
+  std::ranges::copy(intrinsics, cameras_.at(camera).calibration.begin() + kIntrinsicsAt);
+  free_calibration(CalibrationConfig::fixed());
 }
 
 void Window::add_soft_prior(LinearPrior prior) {

@@ -53,9 +53,15 @@ struct ObservationKey {
   auto operator<=>(const ObservationKey&) const = default;
 };
 
+/// An observation, and how its point changes with corrections of its camera's intrinsics.
+struct WindowObservation : FeatureObservation {
+  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();
+  ImagePoint image_point() const { return {point, by_intrinsics}; }
+};
+
 /// The observations under one id and, once triangulated, their landmark.
 struct Feature {
-  std::map<ObservationKey, FeatureObservation> observations;  ///< in the window
+  std::map<ObservationKey, WindowObservation> observations;  ///< in the window
   /// By observing camera: the newest state that observed it, even if that has been dropped since.
   std::map<std::size_t, StateId> last_seen;
   std::optional<ObservationKey> anchor;  ///< set when it is a landmark: an observation from a keyframe
@@ -107,8 +113,15 @@ class Window {
 
   /// Index into cameras(); the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
-  /// The camera with its estimated rotation relative to the body and its residual time offset.
+  /// The camera with its estimated pose relative to the body and its residual time offset. Its model is the given one,
+  /// that of the points of its observations.
   RigCamera calibrated(std::size_t camera) const;
+  SE3 T_B_C(std::size_t camera) const;
+  /// Estimated corrections of its intrinsics, and the model with these.
+  IntrinsicsCorrection intrinsics(std::size_t camera) const;
+  CameraModel model(std::size_t camera) const;
+  /// The point of an observation by the estimated intrinsics, on the unit plane.
+  Eigen::Vector2d point(const ObservationKey& image, const WindowObservation& observation) const;
   SE3 T_O_C(const ObservationKey& image) const;
   /// True while the newest image of a camera that observes the feature still shows it. Not every state has an image of
   /// every camera.
@@ -150,6 +163,8 @@ class Window {
   /// Starts to estimate calibrations, with priors at their present values. Not before scale is known: in slow motion a
   /// rotation of the camera resembles a scale error.
   void free_calibration(const CalibrationConfig& config);
+  /// Corrections known beforehand. Before free_calibration().
+  void set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics);
   /// Gauge, biases, zero velocity: until one of its blocks is marginalized, when it is absorbed into the prior.
   void add_soft_prior(LinearPrior prior);
 

@@ -153,7 +153,7 @@ std::optional<Slider> read_slider() {
   if (!std::filesystem::exists(folder / "events.txt")) return std::nullopt;
   Slider slider;
   double fx = 0, fy = 0, cx = 0, cy = 0;
-  std::array<double, 5> k{};
+  LensCoefficients k{};
   std::ifstream(folder / "calib.txt") >> fx >> fy >> cx >> cy >> k[0] >> k[1] >> k[2] >> k[3] >> k[4];
   slider.camera = CameraModel(240, 180, fx, fy, cx, cy, DistortionModel::RadTan, k);
 

@@ -43,6 +43,7 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       noise_(noise),
       given_rig_(cameras),
       rig_(without_offsets(given_rig_)),
+      intrinsics_(cameras.cameras.size(), IntrinsicsCorrection::Zero()),
       timings_(&timings),
       estimator_(fresh_estimator()),
       mapper_(config.map, config.status.lost_after_s),
@@ -126,8 +127,10 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   if (!estimator_.initialized()) return result;
   const SE3 T_new_old = body_.correct(estimator_.newest(), result.new_frame);
   if (result.new_frame) correction.T_new_old = T_new_old;
-  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera)
+  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
     rig_.cameras[camera] = estimator_.window().calibrated(camera);
+    intrinsics_[camera] = estimator_.window().intrinsics(camera);
+  }
   correction.cameras = rig_.cameras;
   correction.landmarks = landmark_depths();
   // The drift of the map filter is that of an odometry with a gyro: without one, the pose is as uncertain as after a
@@ -214,12 +217,13 @@ void Localization::update_covariance(Timestamp t) {
 Rig Localization::rig() const {
   Rig rig = rig_;
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
+    rig.cameras[camera].model = corrected_model(rig.cameras[camera].model, intrinsics_[camera]);
     rig.cameras[camera].time_offset += given_rig_.cameras[camera].time_offset;
   }
   return rig;
 }
 
-std::optional<Eigen::Matrix4d> Localization::calibration_covariance(const std::string& camera) const {
+std::optional<CalibrationCovariance> Localization::calibration_covariance(const std::string& camera) const {
   const auto found = std::ranges::find(rig_.cameras, camera, &RigCamera::name);
   if (found == rig_.cameras.end()) return std::nullopt;
   return estimator_.calibration_covariance(static_cast<std::size_t>(found - rig_.cameras.begin()));

@@ -51,11 +51,11 @@ class Localization {
   bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
   FinalTrajectory final_trajectory() const;
   Rig rig() const;
-  std::optional<Eigen::Matrix4d> calibration_covariance(const std::string& camera) const;
+  std::optional<CalibrationCovariance> calibration_covariance(const std::string& camera) const;
   ExternalCounters external_counters() const;
 
  private:
-  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator}; }
+  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator, intrinsics_}; }
   void begin_estimate();
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;
@@ -67,7 +67,8 @@ class Localization {
   OdometryConfig config_;
   ImuNoise noise_;
   Rig given_rig_;  ///< the cameras of the run
-  Rig rig_;        ///< the same with online calibration; with residual time offsets
+  Rig rig_;        ///< the same with online calibration of poses and clocks; with residual time offsets
+  std::vector<IntrinsicsCorrection> intrinsics_;  ///< of rig_'s cameras, estimated
   StageTimings* timings_;
   Estimator estimator_;
   ExternalCounters counters_before_;  ///< by the estimators before

@@ -90,7 +90,7 @@ bool Odometry::awaiting_relocalization() const {
 std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.localization().save_map(); }
 FinalTrajectory Odometry::final_trajectory() const { return impl_->packet_odometry.localization().final_trajectory(); }
 Rig Odometry::rig() const { return impl_->packet_odometry.localization().rig(); }
-std::optional<Eigen::Matrix4d> Odometry::calibration_covariance(const std::string& camera) const {
+std::optional<CalibrationCovariance> Odometry::calibration_covariance(const std::string& camera) const {
   return impl_->packet_odometry.localization().calibration_covariance(camera);
 }
 OdometryCounters Odometry::counters() const {

@@ -3,6 +3,7 @@
 #include "edged/io/distortion.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
@@ -11,13 +12,21 @@
 namespace edged {
 namespace {
 
-/// In the order of OpenCV. radtan has the first five.
-constexpr std::array<std::string_view, 14> kRadialNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5",
+/// In the order of OpenCV. radtan has the first five, rational the first eight.
+constexpr std::array<std::string_view, 14> kOpenCvNames = {"k1", "k2", "p1", "p2", "k3", "k4", "k5",
                                                            "k6", "s1", "s2", "s3", "s4", "tx", "ty"};
 
-/// Models of OpenCV that equal radtan if their further coefficients are zero.
-bool extends_radtan(std::string_view name) {
-  return name == "rational_polynomial" || name == "rational" || name == "thin_prism";
+bool is_of_opencv(const LensModel& lens) {
+  return lens.model == DistortionModel::RadTan || lens.model == DistortionModel::Rational;
+}
+
+/// As in OpenCV, where the number of coefficients chooses between these models. `rational`, our own name, is kept.
+const LensModel* opencv_model(const std::string& name, const std::vector<double>& k) {
+  const std::size_t fewest = lens_model(DistortionModel::RadTan).most,
+                    most = lens_model(DistortionModel::Rational).most;
+  bool rational = name == "rational" && k.size() >= most;
+  for (std::size_t i = fewest; i < std::min(most, k.size()); ++i) rational |= k[i] != 0.0;
+  return &lens_model(rational ? DistortionModel::Rational : DistortionModel::RadTan);
 }
 
 /// Throws InputError for a nonzero coefficient that the model lacks.
@@ -26,24 +35,25 @@ void refuse_others(const LensModel& lens, const std::vector<double>& k) {
   const auto first = std::find_if(from, k.end(), [](double x) { return x != 0.0; });
   if (first == k.end()) return;
   const auto place = static_cast<std::size_t>(first - k.begin());
-  const bool radial = lens.model == DistortionModel::RadTan && place < kRadialNames.size();
+  const bool named = is_of_opencv(lens) && place < kOpenCvNames.size();
   throw InputError::format(
-      "distortion {} has {} coefficients, here are {}, and {} = {} is not supported: calibrate with one of {}",
-      lens.name, lens.most, k.size(), radial ? std::string(kRadialNames[place]) : fmt::format("number {}", place + 1),
-      *first, lens_model_names());
+      "distortion {} has {} coefficient{}, here are {}, and {} = {} is not supported: calibrate with one of {}",
+      lens.name, lens.most, lens.most == 1 ? "" : "s", k.size(),
+      named ? std::string(kOpenCvNames[place]) : fmt::format("number {}", place + 1), *first, lens_model_names());
 }
 
 }  // namespace
 
 Distortion make_distortion(std::string_view given, const std::vector<double>& k) {
   const std::string name = given.empty() ? "none" : lower_case(given);
-  const LensModel* lens = extends_radtan(name) ? &lens_model(DistortionModel::RadTan) : find_lens_model(name);
+  const LensModel* lens = find_lens_model(name);
   if (!lens) {
     const bool zeros = std::all_of(k.begin(), k.end(), [](double x) { return x == 0.0; });
     if (zeros && !k.empty()) return {};
     throw InputError::format("distortion {} is not supported; these are: {}", name, lens_model_names());
   }
-  if (!k.empty() && k.size() < lens->fewest)
+  if (is_of_opencv(*lens)) lens = opencv_model(name, k);
+  if (!k.empty() && k.size() != lens->fewest && k.size() < lens->most)
     throw InputError::format("{} takes {}{} numbers ({}), here are {}", lens->name, lens->fewest,
                              lens->most > lens->fewest ? fmt::format(" or {}", lens->most) : "", lens->coefficients,
                              k.size());

@@ -91,16 +91,42 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   for (const LensModel& lens : lens_models())
     if (lens.most > 0) lenses.emplace_back(lens.name, lens.model);
   fields.choice("distortion", distortion, lenses,
-                {.effect = "k1 k2 p1 p2 of an ordinary lens, or k1 k2 of one that may see behind itself"});
+                {.effect = "the model of the lens: it takes the coefficients below that it has"});
   fields.add("k1", k1, {"", -10, 10, "radial distortion"});
   fields.add("k2", k2, {"", -10, 10, "radial distortion"});
   fields.add("p1", p1, {"", -1, 1, "tangential distortion"});
   fields.add("p2", p2, {"", -1, 1, "tangential distortion"});
+  fields.add("k3", k3, {"", -10, 10, "radial distortion"});
+  fields.add("k4", k4, {"", -10, 10, "radial distortion"});
+  fields.add("k5", k5, {"", -10, 10, "radial distortion"});
+  fields.add("k6", k6, {"", -10, 10, "radial distortion"});
+  fields.add("xi", xi, {"", -1, 10, "of ds and omni: distance from the centre of the sphere"});
+  fields.add("alpha", alpha, {"", 0, 1, "of ds and eucm: weight of the sphere against the plane"});
+  fields.add("beta", beta, {"", 0.01, 100, "of eucm: shape of the ellipsoid"});
+  fields.add("w", w, {"rad", 0, 3.1, "of fov: angle of view of an ideal lens of that kind"});
+}
+
+double SimulatedCameraConfig::coefficient(std::string_view name) const {
+  const std::pair<std::string_view, double> named[] = {{"k1", k1}, {"k2", k2},       {"p1", p1},     {"p2", p2},
+                                                       {"k3", k3}, {"k4", k4},       {"k5", k5},     {"k6", k6},
+                                                       {"xi", xi}, {"alpha", alpha}, {"beta", beta}, {"w", w}};
+  const auto* const found = std::ranges::find(named, name, &std::pair<std::string_view, double>::first);
+  EDGED_CHECK(found != std::end(named), "the simulator has no coefficient {}", name);
+  return found->second;
 }
 
 CameraModel SimulatedCameraConfig::model() const {
-  if (distortion == DistortionModel::RadTan) return {width, height, fx, fy, cx, cy, distortion, {k1, k2, p1, p2, 0.0}};
-  return {width, height, fx, fy, cx, cy, distortion, {k1, k2}};
+  LensCoefficients k{};
+  std::size_t count = 0;
+  std::string_view names = lens_model(distortion).coefficients;
+  while (!names.empty()) {
+    const std::size_t begin = names.find_first_not_of(" []"),
+                      end = std::min(names.find_first_of(" ]", begin), names.size());
+    if (begin == std::string_view::npos) break;
+    k.at(count++) = coefficient(names.substr(begin, end - begin));
+    names.remove_prefix(end);
+  }
+  return {width, height, fx, fy, cx, cy, distortion, k};
 }
 
 void SimulatorConfig::visit(ConfigFields& fields) {

@@ -6,6 +6,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/test_recording.hpp"
@@ -156,6 +157,23 @@ TEST(Simulator, GroundTruthIsTheBodyOnTheClockOfTheImu) {
   const Calibration calibration = simulator.calibration();
   EXPECT_EQ(calibration.rig.camera("events").time_offset, timestamp_from_seconds(0.0024).time_since_epoch());
   EXPECT_EQ(calibration.rig.camera("frames").model, config.camera.model());
+}
+
+TEST(Simulator, HasACameraOfEveryLensModelThatIsUsedInTheWholeImage) {
+  for (const LensModel& lens : lens_models()) {
+    if (lens.most == 0) continue;
+    SimulatorConfig config = small("room", 1.0);
+    ConfigFields::of(config).set("camera.distortion=" + std::string(lens.name));
+    const CameraModel model = config.camera.model();
+    EXPECT_EQ(model.distortion(), lens.model);
+    if (!lens.radius_of_angle) {
+      EXPECT_EQ(model.coefficients()[1], config.camera.k2);
+    }
+    EXPECT_FALSE(model.view_limit()) << lens.name;
+  }
+  SimulatedCameraConfig omni;
+  omni.distortion = DistortionModel::Omni;
+  EXPECT_EQ(omni.model().coefficients(), (LensCoefficients{omni.xi, omni.k1, omni.k2, omni.p1, omni.p2}));
 }
 
 TEST(Simulator, RefusesAnExposureLongerThanThePeriod) {

@@ -11,6 +11,12 @@
 
 namespace edged {
 
+/// A number of a camera's calibration: estimated minus given.
+struct CorrectionFound {
+  std::string name;  ///< with the unit
+  double off = 0.0, sigma = 0.0;
+};
+
 /// The estimated error of a camera's calibration.
 struct CalibrationFound {
   std::string camera;
@@ -20,6 +26,7 @@ struct CalibrationFound {
   bool beyond = false;  ///< farther off than the priors estimator.calibration.* allow: wrong, and not corrected
   std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of the estimate; nothing without one
   bool inverse = false;                                     ///< the estimate is the inverse of the given rotation
+  std::vector<CorrectionFound> corrections = {};            ///< of lens and position; none without an estimate
   bool events = false;  ///< an event camera: the latency of its pixels is part of the time offset
 
   bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }

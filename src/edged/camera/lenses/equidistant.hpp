@@ -3,6 +3,8 @@
 // Kannala and Brandt's lens: the radius is a polynomial of the angle off the axis, math.md (C3).
 #pragma once
 
+#include <cmath>
+
 #include "edged/camera/lens_model.hpp"
 
 namespace edged {
@@ -13,6 +15,11 @@ inline Sloped equidistant_radius(const LensCoefficients& k, double theta) {
           1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
 }
 
+inline ByCoefficients equidistant_by_coefficients(const LensCoefficients&, const Eigen::Vector2d& p) {
+  const double theta = std::atan(p.norm()), t2 = theta * theta, t3 = theta * t2;
+  return along_radius(p, {t3, t3 * t2, t3 * t2 * t2, t3 * t2 * t2 * t2});
+}
+
 inline constexpr LensModel kEquidistant{.model = DistortionModel::Equidistant,
                                         .name = "equidistant",
                                         .coefficients = "k1 k2 k3 k4",
@@ -21,6 +28,7 @@ inline constexpr LensModel kEquidistant{.model = DistortionModel::Equidistant,
                                         .also = {"fisheye", "kannala_brandt", "kb4"},
                                         .ros = "equidistant",
                                         .foxglove = "kannala_brandt",
-                                        .radius_of_angle = equidistant_radius};
+                                        .radius_of_angle = equidistant_radius,
+                                        .by_coefficients = equidistant_by_coefficients};
 
 }  // namespace edged

@@ -29,6 +29,14 @@ inline Sloped radtan_radius(const LensCoefficients& k, double r) {
           1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]))};
 }
 
+inline ByCoefficients radtan_by_coefficients(const LensCoefficients&, const Eigen::Vector2d& p) {
+  const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
+  ByCoefficients out = ByCoefficients::Zero();
+  out.leftCols<5>() << r2 * p, r2 * r2 * p, Eigen::Vector2d(2.0 * x * y, r2 + 2.0 * y * y),
+      Eigen::Vector2d(r2 + 2.0 * x * x, 2.0 * x * y), r2 * r2 * r2 * p;
+  return out;
+}
+
 inline constexpr LensModel kRadTan{.model = DistortionModel::RadTan,
                                    .name = "radtan",
                                    .coefficients = "k1 k2 p1 p2 [k3]",
@@ -38,6 +46,7 @@ inline constexpr LensModel kRadTan{.model = DistortionModel::RadTan,
                                    .ros = "plumb_bob",
                                    .foxglove = "plumb_bob",
                                    .radius_of_radius = radtan_radius,
-                                   .distort = distort_radtan};
+                                   .distort = distort_radtan,
+                                   .by_coefficients = radtan_by_coefficients};
 
 }  // namespace edged

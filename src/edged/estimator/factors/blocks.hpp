@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 
+#include "edged/camera/intrinsics.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
@@ -21,9 +22,12 @@ using PoseBlock = std::array<double, 7>;
 /// A motion block: velocity, gyro bias, accelerometer bias.
 using MotionBlock = std::array<double, 9>;
 
-/// Correction of a camera's calibration: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi), and time [s] with
-/// t_imu = t_given + time.
-using CalibrationBlock = std::array<double, 4>;
+/// Correction of a camera's calibration: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi); time [s] with
+/// t_imu = t_given + time; lever arm [m] with t_B_C = t_B_C,given + it; intrinsics (IntrinsicsCorrection).
+inline constexpr int kTimeAt = 3, kLeverArmAt = 4, kIntrinsicsAt = 7, kCalibrationSize = kIntrinsicsAt + kIntrinsics;
+using CalibrationBlock = std::array<double, kCalibrationSize>;
+static_assert(kCalibrationSize == CalibrationCovariance::RowsAtCompileTime);
+using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 
 /// Errors of scale and axes of the IMU: E_g row by row, then E_a. measured = (I + E) true + bias.
 using ImuIntrinsicsBlock = std::array<double, 18>;
@@ -60,7 +64,7 @@ constexpr int block_size(BlockKind kind) {
     case BlockKind::Motion:
       return 9;
     case BlockKind::Calibration:
-      return 4;
+      return kCalibrationSize;
     case BlockKind::ImuIntrinsics:
       return 18;
     default:

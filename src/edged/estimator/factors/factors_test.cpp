@@ -69,12 +69,21 @@ TEST(StandstillFactor, JacobiansMatchCentralDifferences) {
                   {pose({0.3, -0.8, 0.2}, {1, 2, 3}), pose({0.35, -0.7, 0.25}, {1.1, 1.9, 3.05})});
 }
 
+const std::vector<double> kExact(kCalibrationSize, 0.0);
+const std::vector<double> kOff{0.03, -0.02, 0.04, 0.012, 0.02, -0.01, 0.015, 0.01, -0.02, 0.005, -0.008, 0.02};
+const ByIntrinsics kBy = point_by_intrinsics(
+    CameraModel(240, 180, 200, 190, 119.5, 91.0, DistortionModel::RadTan, {-0.37, 0.15, -3e-4, -7e-4, 0.0}),
+    {0.2, -0.1});
+const ByIntrinsics kByOther = point_by_intrinsics(
+    CameraModel(240, 180, 180, 185, 124.5, 90.0, DistortionModel::RadTan, {-0.3, 0.1, 2e-4, 4e-4, 0.0}), {0.25, -0.05});
+
 TEST(LandmarkFactor, JacobiansMatchCentralDifferences) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
   for (const double rho : {0.02, 0.5, 2.0}) {
-    const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {{0.25, -0.05}, rate_1, 1}}, 5e-3);
-    for (const auto& calibration : {std::vector<double>(4, 0.0), std::vector<double>{0.03, -0.02, 0.04, 0.012}}) {
+    const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, rate_0, 0, 0, kBy}, {{0.25, -0.05}, rate_1, 1, 0, kByOther}},
+                              5e-3);
+    for (const auto& calibration : {kExact, kOff}) {
       check_jacobians(
           factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
           {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}), calibration, {rho}});
@@ -88,13 +97,15 @@ TEST(LandmarkFactor, JacobiansBesideAnObservationBeforeMatchCentralDifferences) 
       rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
   for (const double rho : {0.02, 0.5, 2.0}) {
     const LandmarkCost factor(
-        {T_B_C}, {{{0.2, -0.1}, rate_0, 0}, {{0.25, -0.05}, rate_1, 1}, {{0.22, -0.08}, rate_2, 2}}, 5e-3, 0.9);
+        {T_B_C},
+        {{{0.2, -0.1}, rate_0, 0, 0, kBy}, {{0.25, -0.05}, rate_1, 1, 0, kByOther}, {{0.22, -0.08}, rate_2, 2, 0, kBy}},
+        5e-3, 0.9);
     check_jacobians(
         factor, {BlockKind::Pose, BlockKind::Pose, BlockKind::Pose, BlockKind::Calibration, BlockKind::InverseDepth},
         {pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}),
          pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
          pose({0.12, 0.18, -0.08}, {1.05, 0.48, 0.21}),
-         {0.03, -0.02, 0.04, 0.012},
+         kOff,
          {rho}});
   }
 }
@@ -102,15 +113,16 @@ TEST(LandmarkFactor, JacobiansBesideAnObservationBeforeMatchCentralDifferences) 
 TEST(LandmarkFactor, JacobiansOfAnotherCameraMatchCentralDifferences) {
   const std::vector<SE3> T_B_C = {SE3(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}),
                                   SE3(so3::exp({-0.03, 0.04, 1.4}), {-0.06, 0.01, 0.02})};
-  const std::vector<double> one{0.03, -0.02, 0.04, 0.012}, other{-0.01, 0.03, 0.02, -0.008};
+  const std::vector<double> one = kOff,
+                            other{-0.01, 0.03, 0.02, -0.008, 0.01, 0.02, -0.03, -0.01, 0.01, 0.004, 0.007, 0.03};
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
       rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),
              pose_2 = pose({0.12, 0.18, -0.08}, {1.05, 0.48, 0.21});
   constexpr BlockKind kPose = BlockKind::Pose, kCalibration = BlockKind::Calibration, kDepth = BlockKind::InverseDepth;
-  const LandmarkView anchor{{0.2, -0.1}, rate_0, 0, 0}, same_instant{{0.25, -0.05}, rate_0, 0, 1},
-      later{{0.25, -0.05}, rate_1, 1, 1}, before{{0.22, -0.08}, rate_2, 2, 1},
-      before_at_anchor{{0.2, 0.0}, rate_0, 0, 1};
+  const LandmarkView anchor{{0.2, -0.1}, rate_0, 0, 0, kBy}, same_instant{{0.25, -0.05}, rate_0, 0, 1, kByOther},
+      later{{0.25, -0.05}, rate_1, 1, 1, kByOther}, before{{0.22, -0.08}, rate_2, 2, 1, kBy},
+      before_at_anchor{{0.2, 0.0}, rate_0, 0, 1, kByOther};
   for (const double rho : {0.02, 0.5, 2.0}) {
     check_jacobians(LandmarkCost(T_B_C, {anchor, same_instant}, 5e-3), {kPose, kCalibration, kCalibration, kDepth},
                     {pose_0, one, other, {rho}});
@@ -133,7 +145,7 @@ TEST(LandmarkFactor, ChargesATrackForADriftOnce) {
     return LandmarkView{Eigen::Vector2d(0.1 - x, 0.2) + drift, {}, pose};
   };
   const LandmarkCost factor({T_B_C}, {{{0.1, 0.2}, {}, 0}, view(0.2 * 0.5, 1), view(0.1 * 0.5, 2)}, 1e-3, 0.9);
-  const Eigen::VectorXd r = evaluate(factor, {anchor, seen, before, std::vector<double>(4, 0.0), {0.5}});
+  const Eigen::VectorXd r = evaluate(factor, {anchor, seen, before, kExact, {0.5}});
   EXPECT_LT((r + 0.1 * drift / 1e-3).norm(), 1e-9);
 }
 
@@ -143,14 +155,14 @@ TEST(LandmarkFactor, IsZeroForAPointWhereItWasSeen) {
   const Eigen::Vector3d p_O = pose_of(pose_0.data()) * T_B_C * Eigen::Vector3d(0.4, -0.2, 2.0);
   const Eigen::Vector3d p_C1 = (pose_of(pose_1.data()) * T_B_C).inverse() * p_O;
   const LandmarkCost factor({T_B_C}, {{{0.2, -0.1}, {}, 0}, {p_C1.hnormalized(), {}, 1}}, 5e-3);
-  EXPECT_LT(evaluate(factor, {pose_0, pose_1, std::vector<double>(4, 0.0), {0.5}}).norm(), 1e-9);
+  EXPECT_LT(evaluate(factor, {pose_0, pose_1, kExact, {0.5}}).norm(), 1e-9);
 }
 
 TEST(LandmarkFactor, IsZeroForAPointSeenLaterByATurnedCamera) {
   const SE3 T_B_C(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03});
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22});
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}};
-  const std::vector<double> calibration{0.03, -0.02, 0.04, 0.012};
+  const std::vector<double> calibration = kOff;
   const SE3 T_O_C0 = camera_pose(pose_of(pose_0.data()), rate_0, T_B_C, calibration.data());
   const SE3 T_O_C1 = camera_pose(pose_of(pose_1.data()), rate_1, T_B_C, calibration.data());
   const Eigen::Vector3d p_C1 = T_O_C1.inverse() * (T_O_C0 * Eigen::Vector3d(0.4, -0.2, 2.0));

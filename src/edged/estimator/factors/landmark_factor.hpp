@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "edged/estimator/factors/blocks.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
@@ -20,8 +21,14 @@ struct BodyRate {
   Eigen::Vector3d v_O = Eigen::Vector3d::Zero();      ///< [m/s]
 };
 
+/// A point of an image.
+struct ImagePoint {
+  Eigen::Vector2d given = Eigen::Vector2d::Zero();    ///< on the unit plane, by the given intrinsics
+  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();  ///< the change of the point by corrections of these
+};
+
 /// T_O_C of a camera whose image was taken `time` after the state: T_O_B extrapolated by the rate, then T_B_C rotated
-/// by phi. calibration: a CalibrationBlock's numbers.
+/// by phi and shifted by the lever arm's correction. calibration: a CalibrationBlock's numbers.
 SE3 camera_pose(const SE3& T_O_B, const BodyRate& rate, const SE3& T_B_C, const double* calibration);
 
 /// A camera on the body, its calibration applied.
@@ -30,8 +37,13 @@ struct CameraOnBody {
   CameraOnBody(const SE3& T_B_C, const double* calibration);
   Eigen::Matrix3d R_B_C;
   Eigen::Vector3d t_B_C;
+  Eigen::Vector2d corrected(const ImagePoint& point) const {
+    return point.given + point.by_intrinsics.lazyProduct(intrinsics);
+  }
+
   Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a rotation of the camera
   double time;             ///< of its image after the state [s]
+  IntrinsicsCorrection intrinsics;
 };
 
 /// A camera at one state's image. The rate is a constant: its error enters only times the time shift.
@@ -55,19 +67,19 @@ struct ObservationError {
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
   /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first.
-  Eigen::Matrix<double, 2, 4> by_anchor_calibration, by_seen_calibration;
+  Eigen::Matrix<double, 2, kCalibrationSize> by_anchor_calibration, by_seen_calibration;
   Eigen::Vector2d by_rho;
 };
 
 /// A landmark in its anchor view. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
-  /// point: in the anchor view, on the unit plane.
-  AnchoredLandmark(const CameraView& anchor, const Eigen::Vector2d& point, double rho);
+  /// point: in the anchor view.
+  AnchoredLandmark(const CameraView& anchor, const ImagePoint& point, double rho);
 
   /// e = predicted - observed, of an observation at `point` of the camera `seen`. False when the landmark is not in
   /// front of it.
-  bool error(const CameraAt& seen, const Eigen::Vector2d& point, Eigen::Vector2d& e) const;
+  bool error(const CameraView& seen, const ImagePoint& point, Eigen::Vector2d& e) const;
 
   Eigen::Vector3d in_camera(const CameraAt& seen) const {
     return seen.R_C_O * (bearing_O + rho * (anchor.p_O_C - seen.p_O_C));
@@ -77,21 +89,23 @@ struct AnchoredLandmark {
   const CameraAt& anchor;
   double rho;
   Eigen::Vector3d bearing_C, bearing_O;
+  ByIntrinsics by_intrinsics;  ///< of bearing_C's first two
 };
 
 /// The common part of the derivatives of all observations of a landmark: that of its position in O, times rho, by the
-/// anchor's rotation, phi and the time.
+/// anchor's rotation, phi, the time, the lever arm and the intrinsics.
 class LandmarkDerivatives {
  public:
   /// The landmark must outlive this.
   explicit LandmarkDerivatives(const AnchoredLandmark& landmark);
   /// As AnchoredLandmark::error, with derivatives.
-  bool error(const CameraView& seen, const Eigen::Vector2d& point, ObservationError& observation) const;
+  bool error(const CameraView& seen, const ImagePoint& point, ObservationError& observation) const;
 
  private:
   const AnchoredLandmark& landmark_;
   Eigen::Matrix3d by_turn_, by_phi_;
   Eigen::Vector3d by_time_;
+  Eigen::Matrix<double, 3, kIntrinsics> by_intrinsics_;
 };
 
 }  // namespace edged

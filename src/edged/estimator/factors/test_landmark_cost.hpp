@@ -18,6 +18,8 @@ struct LandmarkView {
   BodyRate rate;
   std::size_t pose = 0;    ///< index of its state among the poses
   std::size_t camera = 0;  ///< index among the cameras
+  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();
+  ImagePoint image_point() const { return {point, by_intrinsics}; }
 };
 
 /// Blocks: poses; calibrations of the cameras; inverse depth. Views: the anchor's, the observation, and with one the
@@ -31,7 +33,7 @@ class LandmarkCost final : public ceres::CostFunction {
     set_num_residuals(2);
     std::vector<int>& sizes = *mutable_parameter_block_sizes();
     sizes.assign(poses_, 7);
-    sizes.insert(sizes.end(), T_B_C_.size(), 4);
+    sizes.insert(sizes.end(), T_B_C_.size(), kCalibrationSize);
     sizes.push_back(1);
   }
 
@@ -44,7 +46,7 @@ class LandmarkCost final : public ceres::CostFunction {
     }
     const std::size_t depth = poses_ + cameras.size();
     const CameraView anchor{cameras[views_[0].camera], at[0]};
-    const AnchoredLandmark anchored(anchor, views_[0].point, *blocks[depth]);
+    const AnchoredLandmark anchored(anchor, views_[0].image_point(), *blocks[depth]);
     const LandmarkDerivatives landmark(anchored);
     const auto jacobian = [&](std::size_t block) { return jacobians == nullptr ? nullptr : jacobians[block]; };
     for (std::size_t i = 0; i <= depth; ++i) {
@@ -55,9 +57,9 @@ class LandmarkCost final : public ceres::CostFunction {
     for (std::size_t i = 1; i < views_.size(); ++i) {
       const LandmarkView& view = views_[i];
       ObservationError error;
-      if (!landmark.error({cameras[view.camera], at[i]}, view.point, error)) return false;
+      if (!landmark.error({cameras[view.camera], at[i]}, view.image_point(), error)) return false;
       r += weights_[i] * error.e;
-      using OfCalibration = Eigen::Map<Eigen::Matrix<double, 2, 4, Eigen::RowMajor>>;
+      using OfCalibration = Eigen::Map<Eigen::Matrix<double, 2, kCalibrationSize, Eigen::RowMajor>>;
       add_pose(jacobian(views_[0].pose), weights_[i] * error.by_anchor);
       add_pose(jacobian(view.pose), weights_[i] * error.by_seen);
       if (double* J = jacobian(poses_ + views_[0].camera)) {

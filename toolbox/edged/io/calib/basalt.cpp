@@ -23,20 +23,36 @@ SE3 read_basalt_pose(const YamlReader& node) {
   return node.rigid({R.data(), 9}, std::array{number("px"), number("py"), number("pz")});
 }
 
-CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>& size) {
-  const std::string type = node.at("camera_type").text();
-  const YamlReader values = node.at("intrinsics");
-  const auto numbers = [&values](std::initializer_list<const char*> keys) {
-    std::vector<double> out;
-    for (const char* key : keys) out.push_back(values.at(key).number());
-    return out;
+/// A camera type, the distortion that it is, and its coefficients in the order of that.
+struct BasaltType {
+  std::string_view name, distortion;
+  std::vector<std::string> keys;
+};
+
+const std::vector<BasaltType>& basalt_types() {
+  static const std::vector<BasaltType> types{
+      {"pinhole", "none", {}},
+      {"pinhole-radtan8", "radtan", {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}},
+      {"kb4", "equidistant", {"k1", "k2", "k3", "k4"}},
+      {"ds", "ds", {"xi", "alpha"}},
+      {"eucm", "eucm", {"alpha", "beta"}},
+      {"fov", "fov", {"w"}},
   };
-  if (type != "pinhole" && type != "kb4" && type != "pinhole-radtan8")
-    node.at("camera_type").fail("camera type " + type + " is not supported; pinhole, pinhole-radtan8 and kb4 are");
-  Intrinsics in{size[0], size[1], numbers({"fx", "fy", "cx", "cy"}), "none", {}};
-  if (type == "kb4") in.distortion = "equidistant", in.coefficients = numbers({"k1", "k2", "k3", "k4"});
-  if (type == "pinhole-radtan8")
-    in.distortion = "radtan", in.coefficients = numbers({"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"});
+  return types;
+}
+
+CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>& size) {
+  const std::string name = node.at("camera_type").text();
+  const auto type = std::ranges::find(basalt_types(), name, &BasaltType::name);
+  if (type == basalt_types().end()) {
+    std::string known;
+    for (const BasaltType& t : basalt_types()) known += (known.empty() ? "" : ", ") + std::string(t.name);
+    node.at("camera_type").fail("camera type " + name + " is not supported; these are: " + known);
+  }
+  const YamlReader values = node.at("intrinsics");
+  Intrinsics in{size[0], size[1], {}, std::string(type->distortion), {}};
+  for (const char* key : {"fx", "fy", "cx", "cy"}) in.projection.push_back(values.at(key).number());
+  for (const std::string& key : type->keys) in.coefficients.push_back(values.at(key).number());
   return make_model(values, in);
 }
 

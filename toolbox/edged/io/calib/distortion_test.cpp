@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <algorithm>
+
+#include "edged/camera/lens_table.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -55,25 +58,60 @@ TEST(Distortion, ZerosBehindTheCoefficientsOfTheModelAreAcceptedInEveryFormat) {
   }
 }
 
+TEST(Distortion, EightCoefficientsAreTheRationalModelInEveryFormat) {
+  const TempFolder folder;
+  const std::vector<double> k = {-0.3, 0.1, 1e-3, -2e-3, 0.01, 0.05, 0.02, 0.003};
+  for (const std::size_t count : {8U, 12U}) {
+    std::vector<double> padded = k;
+    padded.resize(count);
+    for (const auto& [name, text] : files_with(padded)) {
+      const Calibration calibration = load_calibration(folder.write(name, text), {.otherwise = Sees::Events});
+      const CameraModel& model = calibration.rig.cameras.front().model;
+      EXPECT_EQ(model.distortion(), DistortionModel::Rational) << name << count;
+      EXPECT_TRUE(std::equal(k.begin(), k.end(), model.coefficients().begin())) << name << count;
+    }
+  }
+}
+
 TEST(Distortion, ACoefficientThatIsNotSupportedIsNamedInEveryFormat) {
   const TempFolder folder;
-  std::vector<double> k(8, 0.0);
-  k[0] = -0.3, k[6] = 0.02;
-  for (const auto& [name, text] : files_with(k)) {
-    const auto file = folder.write(name, text);
-    const std::string refusal = input_error([&] { load_calibration(file, {.otherwise = Sees::Events}); });
-    EXPECT_THAT(refusal, HasSubstr("k5 = 0.02 is not supported")) << name;
+  for (const double k4 : {0.0, 0.1}) {
+    std::vector<double> k(12, 0.0);
+    k[0] = -0.3, k[5] = k4, k[8] = 0.02;
+    for (const auto& [name, text] : files_with(k)) {
+      const auto file = folder.write(name, text);
+      const std::string refusal = input_error([&] { load_calibration(file, {.otherwise = Sees::Events}); });
+      EXPECT_THAT(refusal, HasSubstr("s1 = 0.02 is not supported")) << name;
+    }
+  }
+}
+
+TEST(Distortion, EveryModelTakesItsCoefficientsByEachOfItsNames) {
+  for (const LensModel& lens : lens_models()) {
+    if (lens.most == 0) continue;
+    std::vector<double> k;
+    for (std::size_t i = 0; i < lens.most; ++i) k.push_back(0.1 + 0.01 * static_cast<double>(i));
+    for (std::string_view name : {lens.name, lens.also[0], lens.also[1], lens.also[2], lens.ros}) {
+      if (name.empty()) continue;
+      const Distortion distortion = make_distortion(name, k);
+      EXPECT_EQ(distortion.model, lens.model) << name;
+      EXPECT_TRUE(std::equal(k.begin(), k.end(), distortion.k.begin())) << name;
+    }
   }
 }
 
 TEST(Distortion, EquidistantAndNoneArePaddedToo) {
   EXPECT_EQ(make_distortion("equidistant", {0.1, 0.2, 0.3, 0.4, 0, 0, 0, 0}).k[3], 0.4);
   EXPECT_EQ(make_distortion("none", {0, 0, 0, 0, 0}).model, DistortionModel::None);
-  EXPECT_EQ(make_distortion("fov", {0}).model, DistortionModel::None);
+  EXPECT_EQ(make_distortion("cahvor", {0}).model, DistortionModel::None);
+  EXPECT_EQ(make_distortion("fov", {0.9, 0, 0, 0}).k[0], 0.9);
+  EXPECT_EQ(make_distortion("rational_polynomial", {0.1, 0, 0, 0, 0, 0, 0, 0}).model, DistortionModel::RadTan);
+  EXPECT_EQ(make_distortion("rational", {0.1, 0, 0, 0, 0, 0, 0, 0}).model, DistortionModel::Rational);
   EXPECT_THAT(input_error([] { make_distortion("fisheye", {0.1, 0, 0, 0, 0.5}); }), HasSubstr("number 5 = 0.5"));
   EXPECT_THAT(input_error([] { make_distortion("none", {0.1}); }), HasSubstr("distortion none"));
-  EXPECT_THAT(input_error([] { make_distortion("fov", {0.9}); }), HasSubstr("distortion fov is not supported"));
+  EXPECT_THAT(input_error([] { make_distortion("cahvor", {0.9}); }), HasSubstr("distortion cahvor is not supported"));
   EXPECT_THAT(input_error([] { make_distortion("radtan", {0.1, 0.2}); }), HasSubstr("takes 4 or 5"));
+  EXPECT_THAT(input_error([] { make_distortion("omni", {1.1, 0.2, 0.1}); }), HasSubstr("takes 1 or 5"));
 }
 
 }  // namespace

@@ -213,7 +213,7 @@ TEST_F(CalibrationFormats, VinsFusionTakesPosesOfTheBody) {
   expect_forward_at_10_cm(c.rig.cameras[0]);
 }
 
-TEST_F(CalibrationFormats, KannalaBrandtOfVinsIsEquidistantAndMeiIsRefused) {
+TEST_F(CalibrationFormats, KannalaBrandtOfVinsIsEquidistantAndMeiIsOmni) {
   const std::string head = "%YAML:1.0\nmodel_type: KANNALA_BRANDT\nimage_width: 752\nimage_height: 480\n";
   const CalibrationOptions frames{.sees = {{"cam0", Sees::Frames}}};
   const Calibration c =
@@ -222,7 +222,15 @@ TEST_F(CalibrationFormats, KannalaBrandtOfVinsIsEquidistantAndMeiIsRefused) {
   EXPECT_EQ(c.rig.cameras[0].model.distortion(), DistortionModel::Equidistant);
   EXPECT_DOUBLE_EQ(c.rig.cameras[0].model.fy(), 461);
   EXPECT_FALSE(c.has_extrinsics);
-  EXPECT_THAT(complaint(changed(kInline, "PINHOLE", "MEI")), HasSubstr("model MEI is not supported"));
+  const std::string mei =
+      "%YAML:1.0\nmodel_type: MEI\nimage_width: 752\nimage_height: 480\nmirror_parameters: {xi: 3.06}\n"
+      "distortion_parameters: {k1: 0.67, k2: 7.05, p1: -0.0007, p2: 0.000004}\n"
+      "projection_parameters: {gamma1: 1877.3, gamma2: 1871.4, u0: 361.5, v0: 248.3}\n";
+  EXPECT_EQ(load(mei, "c.yaml", frames).rig.cameras[0].model,
+            CameraModel(752, 480, 1877.3, 1871.4, 361.5, 248.3, DistortionModel::Omni,
+                        {3.06, 0.67, 7.05, -0.0007, 0.000004}));
+  EXPECT_THAT(complaint(changed(kInline, "PINHOLE", "MEI")), HasSubstr("mirror_parameters is missing"));
+  EXPECT_THAT(complaint(changed(kInline, "PINHOLE", "SCARAMUZZA")), HasSubstr("model SCARAMUZZA is not supported"));
 }
 
 TEST_F(CalibrationFormats, UslamsPoseIsOurs) {
@@ -269,7 +277,8 @@ TEST_F(CalibrationFormats, BasaltsPoseOffsetAndDensitiesAreOurs) {
   EXPECT_DOUBLE_EQ(c.imu.accel_noise, 0.017);
   EXPECT_DOUBLE_EQ(c.imu.gyro_noise, 0.00029);
   EXPECT_DOUBLE_EQ(c.imu.gyro_walk, 0.0001);
-  EXPECT_THAT(complaint(changed(kBasalt, "kb4", "ds")), HasSubstr("camera type ds is not supported"));
+  EXPECT_THAT(complaint(changed(kBasalt, "kb4", "ds9")), HasSubstr("camera type ds9 is not supported"));
+  EXPECT_THAT(complaint(changed(kBasalt, "kb4", "ds")), HasSubstr("the key xi is missing"));
   EXPECT_THAT(complaint(changed(kBasalt, "\"qw\": 0.5", "\"qw\": 1.5")), HasSubstr("norm of 1.732"));
   EXPECT_THAT(complaint(kBasalt), HasSubstr("--camera cam0=events --out"));
 }
@@ -300,8 +309,10 @@ TEST_F(CalibrationFormats, CameraInfoHasIntrinsicsOnly) {
   const std::string rational = changed(kCameraInfo, "plumb_bob", "rational_polynomial");
   EXPECT_EQ(load(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0, 0, 0]")).rig.cameras[0].model.distortion(),
             DistortionModel::RadTan);
-  EXPECT_THAT(complaint(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0.1, 0, 0]")),
-              HasSubstr("k4 = 0.1 is not supported"));
+  EXPECT_EQ(load(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0.1, 0, 0]")).rig.cameras[0].model.distortion(),
+            DistortionModel::Rational);
+  EXPECT_THAT(complaint(changed(rational, "-0.001, 0.0]", "-0.001, 0.0, 0, 0, 0, 0, 0.1, 0, 0]")),
+              HasSubstr("s2 = 0.1 is not supported"));
   EXPECT_THAT(complaint(changed(kCameraInfo, "[327.0, 0, 305.0", "[327.0, 2, 305.0")), HasSubstr("camera_matrix"));
 }
 

@@ -82,10 +82,43 @@ TEST_F(Kalibr, ASecondImuOfKalibrTakesItsPlaceAndClockIntoAccount) {
   EXPECT_EQ(c.rig.cameras[0].time_offset, Duration(-1'000'000));
 }
 
+/// The chain with the second camera of this model; distortion: its lines, without the indentation of the first.
+std::string with_model(const std::string& model, const std::string& intrinsics, const std::string& distortion) {
+  const std::string text =
+      edited(kChain, "camera_model: pinhole\n  distortion_model: none", "camera_model: " + model + "\n  " + distortion);
+  return edited(text, "[226.0, 226.0, 173.0, 133.0]\n  resolution: [346, 260]\n  rostopic: /davis/right",
+                "[" + intrinsics + "]\n  resolution: [346, 260]\n  rostopic: /davis/right");
+}
+
+TEST_F(Kalibr, CameraModelsHaveTheirCoefficientsBeforeTheFocalLengths) {
+  const std::string radtan = "distortion_model: radtan\n  distortion_coeffs: [0.1, 0.2, 0.003, 0.004]";
+  const auto second = [&](const std::string& text) { return load(text).rig.cameras.back().model; };
+  EXPECT_EQ(second(with_model("omni", "1.2, 500, 501, 173, 133", radtan)),
+            CameraModel(346, 260, 500, 501, 173, 133, DistortionModel::Omni, {1.2, 0.1, 0.2, 0.003, 0.004}));
+  EXPECT_EQ(second(with_model("omni", "1.2, 500, 501, 173, 133", "distortion_model: none")),
+            CameraModel(346, 260, 500, 501, 173, 133, DistortionModel::Omni, {1.2}));
+  EXPECT_EQ(second(with_model("ds", "-0.2, 0.6, 226, 227, 173, 133", "distortion_model: none")),
+            CameraModel(346, 260, 226, 227, 173, 133, DistortionModel::DoubleSphere, {-0.2, 0.6}));
+  EXPECT_EQ(
+      second(with_model("eucm", "0.6, 1.1, 226, 227, 173, 133", "distortion_model: none\n  distortion_coeffs: []")),
+      CameraModel(346, 260, 226, 227, 173, 133, DistortionModel::ExtendedUnified, {0.6, 1.1}));
+  EXPECT_EQ(second(with_model("pinhole", "226, 227, 173, 133", "distortion_model: fov\n  distortion_coeffs: [0.9]")),
+            CameraModel(346, 260, 226, 227, 173, 133, DistortionModel::FieldOfView, {0.9}));
+  EXPECT_THAT(complaint(with_model("ds", "-0.2, 0.6, 226, 227, 173, 133", radtan)),
+              HasSubstr("camera model ds with distortion radtan is not supported; with none it is"));
+  EXPECT_THAT(complaint(with_model("omni", "1.2, 500, 501, 173, 133",
+                                   "distortion_model: equidistant\n  distortion_coeffs: [0.1, 0, 0, 0]")),
+              HasSubstr("with radtan (k1 k2 p1 p2) and none it is"));
+}
+
 TEST_F(Kalibr, ModelsWithoutSupportAreRefusedByName) {
   for (const char* model : {"omni", "ds", "eucm"})
     EXPECT_THAT(complaint(edited(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
-                HasSubstr(std::string("camera model ") + model + " is not supported"));
+                HasSubstr(std::string("numbers for camera model ") + model));
+  for (const char* model : {"cahvor", "radtan"})
+    EXPECT_THAT(complaint(edited(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
+                HasSubstr(std::string("camera model ") + model + " is not supported; these are: omni, ds, eucm, and "));
+  EXPECT_THAT(complaint(edited(kChain, "distortion_model: equidistant", "distortion_model: fov9")), HasSubstr("fov9"));
   EXPECT_THAT(complaint(edited(kChain, "distortion_model: equidistant", "distortion_model: fov")), HasSubstr("fov"));
 }
 

@@ -55,6 +55,51 @@ void add_cameras(Rig& rig, const Lens& lens, Sees sees) {
   rig.cameras.push_back(camera);
 }
 
+/// "omni, ds, ...": the camera models of Kalibr beside pinhole.
+std::string camera_model_names() {
+  std::string names;
+  for (const LensModel& lens : lens_models())
+    if (lens.of_projection > 0) names += (names.empty() ? "" : ", ") + std::string(lens.name);
+  return names;
+}
+
+Distortion distortion_of(const YamlReader& place, const Intrinsics& in) {
+  try {
+    return make_distortion(in.distortion, in.coefficients);
+  } catch (const InputError& e) {
+    place.fail(e.what());
+  }
+}
+
+/// From Kalibr's camera model with its own coefficients before the focal lengths, and a distortion, to ours, which
+/// lists the coefficients of both.
+void take_camera_model(const YamlReader& camera, const std::string& model, Intrinsics& in) {
+  const LensModel* lens = find_lens_model(model);
+  if (!lens || lens->of_projection == 0)
+    camera.at("camera_model")
+        .fail("camera model " + model + " is not supported; these are: " + camera_model_names() +
+              ", and pinhole with distortion: " + lens_model_names());
+  const std::size_t own = lens->of_projection;
+  if (in.projection.size() != own + 4)
+    camera.at("intrinsics")
+        .fail(fmt::format("must have {} numbers for camera model {}: {} {}, fx fy cx cy", own + 4, lens->name,
+                          own == 1 ? "its coefficient" : "its coefficients",
+                          lens->coefficients.substr(0, lens->coefficients.find(" ["))));
+  const auto begin = in.projection.begin(), end = begin + static_cast<std::ptrdiff_t>(own);
+  const Distortion second = distortion_of(camera, in);
+  std::vector<double> coefficients(begin, end);
+  if (second.k != LensCoefficients{}) {
+    if (second.model != DistortionModel::RadTan || lens->most < own + 4 || second.k[4] != 0.0)
+      camera.at("camera_model")
+          .fail(fmt::format("camera model {} with distortion {} is not supported{}", lens->name, in.distortion,
+                            lens->most > own ? "; with radtan (k1 k2 p1 p2) and none it is" : "; with none it is"));
+    coefficients.insert(coefficients.end(), second.k.begin(), second.k.begin() + 4);
+  }
+  in.projection.erase(begin, end);
+  in.distortion = std::string(lens->name);
+  in.coefficients = coefficients;
+}
+
 }  // namespace
 
 CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
@@ -74,16 +119,15 @@ CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
 
 CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,
                        const std::string& coefficients_key) {
-  if (const std::string model = camera.text_or("camera_model", "pinhole"); model != "pinhole")
-    camera.at("camera_model")
-        .fail("camera model " + model + " is not supported; pinhole is, with distortion: " + lens_model_names());
   const YamlReader resolution = camera.at("resolution"), intrinsics = camera.at("intrinsics");
   const std::vector<double> size = resolution.numbers();
   if (size.size() != 2) resolution.fail("must be [width, height]");
-  const std::string distortion = camera.text_or(distortion_key, "none");
-  const auto coefficients = distortion == "none" ? camera.find(coefficients_key) : camera.at(coefficients_key);
-  return make_model(intrinsics, {size[0], size[1], intrinsics.numbers(), distortion,
-                                 coefficients ? coefficients->numbers() : std::vector<double>{}});
+  Intrinsics in{size[0], size[1], intrinsics.numbers(), camera.text_or(distortion_key, "none"), {}};
+  const auto coefficients = in.distortion == "none" ? camera.find(coefficients_key) : camera.at(coefficients_key);
+  if (coefficients) in.coefficients = coefficients->numbers();
+  if (const std::string model = camera.text_or("camera_model", "pinhole"); model != "pinhole")
+    take_camera_model(camera, model, in);
+  return make_model(intrinsics, in);
 }
 
 std::optional<Sees> parse_sees(std::string_view text) {

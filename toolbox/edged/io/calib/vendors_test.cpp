@@ -188,7 +188,8 @@ TEST_F(VendorsCalibrations, WhatCannotBeUsedIsRefusedByItsKey) {
               HasSubstr("cameras.C0.resolution: must be [width"));
   EXPECT_THAT(refusal(with_text(kDvJson, "\"2897\"", "\"28970000\"")),
               HasSubstr("timeOffsetMicros: a clock off by 28.97 s"));
-  EXPECT_THAT(refusal(with_text(kDvXml, "Equidistant", "FOV"), "c.xml"), HasSubstr("distortion fov is not supported"));
+  EXPECT_THAT(refusal(with_text(kDvXml, "Equidistant", "FOV"), "c.xml"),
+              HasSubstr("distortion fov has 1 coefficient, here are 4"));
   EXPECT_THAT(refusal(with_text(kDvXml, "</rows>", ""), "c.xml"), HasSubstr("c.xml: not readable as xml from line"));
   EXPECT_THAT(refusal("<svg></svg>", "c.xml"), HasSubstr("no element opencv_storage"));
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configuration files of VINS and its descendants: VINS-Mono and SuperEIO (the camera in the same file),
 // VINS-Fusion (cam0_calib) and ESVIO (cam_left_calib, event_left_calib).
+#include <initializer_list>
+
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 
@@ -29,32 +31,44 @@ const VinsCamera kCameras[] = {
     {"cam1", "cam1_calib", "image1_topic", "body_T_cam1", nullptr, "", std::nullopt},
 };
 
-/// The models of camodocal: PINHOLE is radtan, KANNALA_BRANDT is equidistant.
+std::vector<double> numbers_at(const YamlReader& from, std::initializer_list<const char*> keys) {
+  std::vector<double> out;
+  for (const char* key : keys) out.push_back(from.at(key).number());
+  return out;
+}
+
+/// Of PINHOLE, in the order of OpenCV.
+std::vector<double> read_camodocal_distortion(const YamlReader& distortion) {
+  std::vector<double> out = numbers_at(distortion, {"k1", "k2", "p1", "p2"});
+  for (const char* key : {"k3", "k4", "k5", "k6"})
+    if (const auto value = distortion.find(key)) {
+      out.resize(4 + static_cast<std::size_t>(key[1] - '3'));
+      out.push_back(value->number());
+    }
+  if (out.size() > 5) out.resize(8);
+  return out;
+}
+
+/// The models of camodocal: PINHOLE is radtan, KANNALA_BRANDT is equidistant, MEI is omni.
 CameraModel read_camodocal(const YamlReader& root) {
   const std::string type = root.text_or("model_type", "PINHOLE");
-  const bool fisheye = type == "KANNALA_BRANDT";
-  if (!fisheye && type != "PINHOLE")
-    root.at("model_type").fail("model " + type + " is not supported; PINHOLE and KANNALA_BRANDT are");
   const YamlReader projection = root.at("projection_parameters");
-  const auto numbers = [](const YamlReader& from, std::initializer_list<const char*> keys) {
-    std::vector<double> out;
-    for (const char* key : keys) out.push_back(from.at(key).number());
-    return out;
-  };
   Intrinsics in{root.at("image_width").number(), root.at("image_height").number(), {}, "radtan", {}};
-  if (fisheye) {
+  if (type == "KANNALA_BRANDT") {
     in.distortion = "equidistant";
-    in.projection = numbers(projection, {"mu", "mv", "u0", "v0"});
-    in.coefficients = numbers(projection, {"k2", "k3", "k4", "k5"});
+    in.projection = numbers_at(projection, {"mu", "mv", "u0", "v0"});
+    in.coefficients = numbers_at(projection, {"k2", "k3", "k4", "k5"});
+  } else if (type == "MEI") {
+    in.distortion = "omni";
+    in.coefficients = numbers_at(root.at("mirror_parameters"), {"xi"});
+    in.projection = numbers_at(projection, {"gamma1", "gamma2", "u0", "v0"});
+    const std::vector<double> brown = numbers_at(root.at("distortion_parameters"), {"k1", "k2", "p1", "p2"});
+    in.coefficients.insert(in.coefficients.end(), brown.begin(), brown.end());
+  } else if (type == "PINHOLE") {
+    in.projection = numbers_at(projection, {"fx", "fy", "cx", "cy"});
+    in.coefficients = read_camodocal_distortion(root.at("distortion_parameters"));
   } else {
-    in.projection = numbers(projection, {"fx", "fy", "cx", "cy"});
-    const YamlReader distortion = root.at("distortion_parameters");
-    in.coefficients = numbers(distortion, {"k1", "k2", "p1", "p2"});
-    for (const char* key : {"k3", "k4", "k5", "k6"})
-      if (const auto value = distortion.find(key)) {
-        in.coefficients.resize(4 + static_cast<std::size_t>(key[1] - '3'));
-        in.coefficients.push_back(value->number());
-      }
+    root.at("model_type").fail("model " + type + " is not supported; PINHOLE, KANNALA_BRANDT and MEI are");
   }
   return make_model(projection, in);
 }

@@ -262,8 +262,24 @@ TEST_P(Messages, CameraInfoGivesTheIntrinsicsOfTheCameraBesideIt) {
   EXPECT_EQ(open(topics).calibration->rig.camera("events").model, model);
 }
 
+TEST_P(Messages, CameraInfoHoldsEveryLens) {
+  for (const CameraModel& model :
+       {CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::Rational, {0.2, 0, 1e-3, 2e-3, 0, 0.4, 0.01, 0}),
+        CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::FieldOfView, {0.9}),
+        CameraModel(346, 260, 400, 401, 170, 130, DistortionModel::Omni, {1.1, 0.1, 0.2, 1e-3, 2e-3}),
+        CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::DoubleSphere, {-0.2, 0.6}),
+        CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::ExtendedUnified, {0.6, 1.1})}) {
+    std::vector<TestTopic> topics = SmallBag(wire()).topics;
+    topics.push_back(
+        {"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, camera_info_message(wire(), kStart, "c", model)}}});
+    const auto calibration = open(topics).calibration;
+    ASSERT_TRUE(calibration) << to_string(model.distortion());
+    EXPECT_EQ(calibration->rig.camera("events").model, model) << to_string(model.distortion());
+  }
+}
+
 TEST_P(Messages, IntrinsicsMayBePaddedWithZeros) {
-  for (const double k5 : {0.0, 0.1}) {
+  for (const double s1 : {0.0, 0.1}) {
     std::vector<TestTopic> topics = SmallBag(wire()).topics;
     WireWriter out(wire());
     out.header(kStart, "c");
@@ -272,12 +288,12 @@ TEST_P(Messages, IntrinsicsMayBePaddedWithZeros) {
     out.text("rational_polynomial");
     out.number(std::uint32_t{14});
     std::vector<double> k(14, 0.0);
-    k[0] = -0.1, k[6] = k5;
+    k[0] = -0.1, k[8] = s1;
     out.numbers(k);
     out.numbers(std::vector<double>{200, 0, 170, 0, 200, 130, 0, 0, 1});
     out.numbers(std::vector<double>(9 + 12, 0.0));
     topics.push_back({"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, out.message()}}});
-    EXPECT_EQ(open(topics).calibration.has_value(), k5 == 0.0);
+    EXPECT_EQ(open(topics).calibration.has_value(), s1 == 0.0);
   }
 }
 

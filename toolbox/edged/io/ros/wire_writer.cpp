@@ -114,7 +114,7 @@ std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view cam
   out.header(stamp, camera);
   out.number(static_cast<std::uint32_t>(model.height()));
   out.number(static_cast<std::uint32_t>(model.width()));
-  out.text(lens.ros);
+  out.text(lens.ros.empty() ? lens.name : lens.ros);  // our name where ROS has none
   out.number(static_cast<std::uint32_t>(lens.most));
   out.numbers({model.coefficients().data(), lens.most});
   const double fx = model.fx(), fy = model.fy(), cx = model.cx(), cy = model.cy();

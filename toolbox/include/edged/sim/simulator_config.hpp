@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/config.hpp"
@@ -54,15 +55,21 @@ struct SceneConfig {
   void visit(ConfigFields& fields);
 };
 
-/// Size, intrinsics and distortion shared by events and frames; a DAVIS240C.
+/// Size, intrinsics and distortion shared by events and frames; a DAVIS240C. A model takes the coefficients that it
+/// has.
 struct SimulatedCameraConfig {
   int width = 240, height = 180;
   double fx = 199.37143, fy = 199.70787, cx = 133.75438, cy = 113.99217;
   DistortionModel distortion = DistortionModel::RadTan;
   double k1 = -0.38289916, k2 = 0.18933637, p1 = -0.00100247, p2 = -0.00056378;
+  double k3 = 0.0, k4 = 0.0, k5 = 0.0, k6 = 0.0;
+  double xi = 0.1, alpha = 0.6, beta = 1.1, w = 0.9;
 
   void visit(ConfigFields& fields);
   CameraModel model() const;
+
+ private:
+  double coefficient(std::string_view name) const;
 };
 
 /// The model of Hu, Liu, Delbruck, "v2e" (CVPRW 2021): threshold mismatch, refractory time, one-pole bandwidth

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Corrections of a camera's intrinsics, and what they do to a point of its unit plane.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "edged/rig.hpp"
+
+namespace edged {
+
+/// ln of fx and of fy, principal point over the given focal lengths, k1: all are shares of the field of view.
+inline constexpr int kIntrinsics = 5;
+using IntrinsicsCorrection = Eigen::Matrix<double, kIntrinsics, 1>;
+using ByIntrinsics = Eigen::Matrix<double, 2, kIntrinsics>;
+
+/// The derivative by the corrections of the point at which a pixel lies; `point`: that by the given model (C8). A lens
+/// without distortion has no k1.
+ByIntrinsics point_by_intrinsics(const CameraModel& given, const Eigen::Vector2d& point);
+
+/// The model with corrections; the given one where no lens has them, such as a distortion that is not monotone.
+CameraModel corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
+
+}  // namespace edged
