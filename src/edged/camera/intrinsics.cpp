@@ -33,18 +33,19 @@ std::vector<std::uint8_t> mask_of(const CameraModel& model) {
 
 }  // namespace
 
-ByIntrinsics point_by_intrinsics(const CameraModel& given, const Eigen::Vector2d& point) {
-  const LensModel& lens = lens_model(given.distortion());
-  const Distorted at = distorted_by(lens, given.coefficients(), point);
+ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& model, const Eigen::Vector2d& point) {
+  const LensModel& lens = lens_model(model.distortion());
+  const Distorted at = distorted_by(lens, model.coefficients(), point);
   ByIntrinsics by_pixel = ByIntrinsics::Zero();  // of the pixel over the focal lengths, at a fixed point
   by_pixel(0, 0) = at.point.x();
   by_pixel(1, 1) = at.point.y();
-  by_pixel(0, 2) = by_pixel(1, 3) = 1.0;
+  by_pixel(0, 2) = given.fx() / model.fx();
+  by_pixel(1, 3) = given.fy() / model.fy();
   if (lens.by_coefficients) by_pixel.col(4) = lens.by_coefficients(point).col(0);
   return -at.d_point.inverse() * by_pixel;
 }
 
-CameraModel corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction) {
+std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction) {
   if (correction.isZero(0.0)) return given;
   LensCoefficients k = given.coefficients();
   if (given.distortion() != DistortionModel::None) k[0] += correction[4];
@@ -55,7 +56,7 @@ CameraModel corrected_model(const CameraModel& given, const IntrinsicsCorrection
     if (const std::optional<double> limit = given.view_limit()) model = model.within(*limit);
     return given.is_masked() ? model.masked(mask_of(given)) : model;
   } catch (const InputError&) {
-    return given;
+    return std::nullopt;
   }
 }
 

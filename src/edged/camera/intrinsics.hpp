@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "edged/rig.hpp"
 
@@ -14,11 +15,11 @@ inline constexpr int kIntrinsics = 5;
 using IntrinsicsCorrection = Eigen::Matrix<double, kIntrinsics, 1>;
 using ByIntrinsics = Eigen::Matrix<double, 2, kIntrinsics>;
 
-/// The derivative by the corrections of the point at which a pixel lies; `point`: that by the given model (C8). A lens
-/// without distortion has no k1.
-ByIntrinsics point_by_intrinsics(const CameraModel& given, const Eigen::Vector2d& point);
+/// The derivative by the corrections of the point at which a pixel lies (C8); `model`: the given one with corrections,
+/// `point`: by that model. A lens without distortion has no k1.
+ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& model, const Eigen::Vector2d& point);
 
-/// The model with corrections; the given one where no lens has them, such as a distortion that is not monotone.
-CameraModel corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
+/// The model with corrections; nothing where no lens has them, such as a distortion that is not monotone.
+std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
 
 }  // namespace edged

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/statistics.hpp"
@@ -58,9 +59,8 @@ class Fit {
   /// Predicted minus observed position of a landmark on the unit plane; false if it is behind the camera.
   bool error(const Feature& feature, const ObservationKey& view, Eigen::Vector2d& e) const {
     const CameraView anchor = at(*feature.anchor);
-    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).image_point(),
-                                    feature.inverse_depth);
-    return landmark.error(at(view), feature.observations.at(view).image_point(), e);
+    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).image, feature.inverse_depth);
+    return landmark.error(at(view), feature.observations.at(view).image, e);
   }
 
   /// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
@@ -210,6 +210,20 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   for (const auto& [id, view] : taken_out) window.forget_observation(id, view);
   for (const FeatureId id : gone) window.forget_feature(id);
   return wrong;
+}
+
+void predict_observations(Window& window) {
+  const Fit fit(window);
+  std::vector<std::tuple<FeatureId, ObservationKey, Eigen::Vector2d>> due;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor) continue;
+    for (const auto& [view, observation] : feature.observations) {
+      Eigen::Vector2d e;
+      if (observation.predicted || view == *feature.anchor || !fit.error(feature, view, e)) continue;
+      due.emplace_back(id, view, window.point(view, observation) + e);
+    }
+  }
+  for (const auto& [id, view, point] : due) window.predict(id, view, point);
 }
 
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {

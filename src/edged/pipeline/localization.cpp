@@ -216,7 +216,8 @@ void Localization::update_covariance(Timestamp t) {
 Rig Localization::rig() const {
   Rig rig = rig_;
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
-    rig.cameras[camera].model = corrected_model(rig.cameras[camera].model, intrinsics_[camera]);
+    rig.cameras[camera].model =
+        corrected_model(rig.cameras[camera].model, intrinsics_[camera]).value_or(rig.cameras[camera].model);
     rig.cameras[camera].time_offset += given_rig_.cameras[camera].time_offset;
   }
   return rig;

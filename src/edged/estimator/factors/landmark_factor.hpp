@@ -21,10 +21,10 @@ struct BodyRate {
   Eigen::Vector3d v_O = Eigen::Vector3d::Zero();      ///< [m/s]
 };
 
-/// A point of an image.
+/// A point of an image as a linear function of the corrections of the intrinsics.
 struct ImagePoint {
-  Eigen::Vector2d given = Eigen::Vector2d::Zero();    ///< on the unit plane, by the given intrinsics
-  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();  ///< the change of the point by corrections of these
+  Eigen::Vector2d at_zero = Eigen::Vector2d::Zero();  ///< on the unit plane
+  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();
 };
 
 /// T_O_C of a camera whose image was taken `time` after the state: T_O_B extrapolated by the rate, then T_B_C rotated
@@ -38,7 +38,7 @@ struct CameraOnBody {
   Eigen::Matrix3d R_B_C;
   Eigen::Vector3d t_B_C;
   Eigen::Vector2d corrected(const ImagePoint& point) const {
-    return point.given + point.by_intrinsics.lazyProduct(intrinsics);
+    return point.at_zero + point.by_intrinsics.lazyProduct(intrinsics);
   }
 
   Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a rotation of the camera
