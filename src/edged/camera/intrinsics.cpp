@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/camera/intrinsics.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/input_error.hpp"
@@ -20,6 +23,26 @@ Distorted distorted_by(const LensModel& lens, const LensCoefficients& k, const E
   const double tangential = radius.value / r, radial = radius.slope / (1.0 + r * r);
   const Eigen::Matrix2d outward = p * p.transpose() / (r * r);
   return {tangential * p, tangential * Eigen::Matrix2d::Identity() + (radial - tangential) * outward};
+}
+
+using PinholeRadTan = Eigen::Matrix<double, 8, 1>;  // fx fy cx cy k1 k2 p1 p2
+
+LensCoefficients coefficients_of(const PinholeRadTan& x) { return {x[4], x[5], x[6], x[7], 0.0}; }
+
+/// A Gauss-Newton step towards pixel = model(point).
+PinholeRadTan fit_step(const PinholeRadTan& x, const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& seen) {
+  const LensModel& lens = lens_model(DistortionModel::RadTan);
+  Eigen::Matrix<double, 8, 8> H = Eigen::Matrix<double, 8, 8>::Zero();
+  PinholeRadTan g = PinholeRadTan::Zero();
+  for (const auto& [pixel, point] : seen) {
+    const Eigen::Vector2d d = lens.distort(coefficients_of(x), point).point, f = x.head<2>();
+    Eigen::Matrix<double, 2, 8> J = Eigen::Matrix<double, 2, 8>::Zero();
+    J(0, 0) = d.x(), J(1, 1) = d.y(), J(0, 2) = J(1, 3) = 1.0;
+    J.rightCols<4>() = f.asDiagonal() * lens.by_coefficients(point).leftCols<4>();
+    H += J.transpose() * J;
+    g += J.transpose() * (pixel - f.cwiseProduct(d) - x.segment<2>(2));
+  }
+  return H.ldlt().solve(g);
 }
 
 /// Row by row; empty without a mask.
@@ -55,6 +78,31 @@ std::optional<CameraModel> corrected_model(const CameraModel& given, const Intri
                       given.cy() + given.fy() * correction[3], given.distortion(), k);
     if (const std::optional<double> limit = given.view_limit()) model = model.within(*limit);
     return given.is_masked() ? model.masked(mask_of(given)) : model;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<CameraModel> corrected_image_model(const CameraModel& image, const CameraModel& given,
+                                                 const IntrinsicsCorrection& correction) {
+  if (image == given) return corrected_model(given, correction);
+  if (correction.isZero(0.0)) return image;
+  const std::optional<CameraModel> lens = corrected_model(given, correction);
+  if (!lens) return std::nullopt;
+  constexpr int kAcross = 9, kDown = 7, kSteps = 3;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> seen;
+  for (int i = 0; i < kAcross; ++i) {
+    for (int j = 0; j < kDown; ++j) {
+      const Eigen::Vector2d pixel(i * (image.width() - 1.0) / (kAcross - 1), j * (image.height() - 1.0) / (kDown - 1));
+      seen.emplace_back(pixel, lens->pixel_to_point(given.distort_to_pixel(image.pixel_to_point(pixel))));
+    }
+  }
+  PinholeRadTan x = PinholeRadTan::Zero();
+  x.head<4>() << image.fx(), image.fy(), image.cx(), image.cy();
+  for (int step = 0; step < kSteps; ++step) x += fit_step(x, seen);
+  try {
+    return CameraModel(image.width(), image.height(), x[0], x[1], x[2], x[3], DistortionModel::RadTan,
+                       coefficients_of(x));
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/camera/lens_table.hpp"
+#include "edged/camera/undistort.hpp"
 #include "edged/core/angles.hpp"
 
 namespace edged {
@@ -83,6 +84,19 @@ TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
       const Eigen::Vector2d given = camera.pixel_to_point(pixel);
       const Eigen::Vector2d first_order = given + point_by_intrinsics(camera, camera, given) * off;
       EXPECT_LT((first_order - corrected.pixel_to_point(pixel)).norm(), 0.1 / camera.fx());
+    }
+  }
+}
+
+TEST(Intrinsics, TheModelOfAnUndistortedImageFollowsItsLens) {
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  for (const CameraModel& camera : corrected_cameras()) {
+    const CameraModel ideal = ideal_pinhole(camera), image = *corrected_image_model(ideal, camera, off),
+                      lens = *corrected_model(camera, off);
+    for (const Eigen::Vector2d& pixel :
+         {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(200, 150)}) {
+      const Eigen::Vector2d truth = lens.pixel_to_point(camera.distort_to_pixel(ideal.pixel_to_point(pixel)));
+      EXPECT_LT((image.pixel_to_point(pixel) - truth).norm(), 0.1 / camera.fx());
     }
   }
 }
