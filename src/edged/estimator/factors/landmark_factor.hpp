@@ -66,7 +66,8 @@ struct CameraView {
 struct ObservationError {
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
-  /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first.
+  /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first, and the
+  /// second is not set.
   Eigen::Matrix<double, 2, kCalibrationSize> by_anchor_calibration, by_seen_calibration;
   Eigen::Vector2d by_rho;
 };
@@ -74,7 +75,7 @@ struct ObservationError {
 /// A landmark in its anchor view. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
-  /// point: in the anchor view.
+  /// point: in the anchor view; must outlive this.
   AnchoredLandmark(const CameraView& anchor, const ImagePoint& point, double rho);
 
   /// e = predicted - observed, of an observation at `point` of the camera `seen`. False when the landmark is not in
@@ -89,7 +90,7 @@ struct AnchoredLandmark {
   const CameraAt& anchor;
   double rho;
   Eigen::Vector3d bearing_C, bearing_O;
-  ByIntrinsics by_intrinsics;  ///< of bearing_C's first two
+  const ByIntrinsics& by_intrinsics;  ///< of bearing_C's first two
 };
 
 /// The common part of the derivatives of all observations of a landmark: that of its position in O, times rho, by the
