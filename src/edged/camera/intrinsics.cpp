@@ -68,6 +68,19 @@ ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& mo
   return -at.d_point.inverse() * by_pixel;
 }
 
+Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point) {
+  constexpr int kNewtonSteps = 3;  // from 1e-2: the third leaves rounding errors
+  const LensModel& lens = lens_model(model.distortion());
+  const Eigen::Vector2d pixel = given.distort_to_pixel(point);
+  const Eigen::Vector2d distorted((pixel.x() - model.cx()) / model.fx(), (pixel.y() - model.cy()) / model.fy());
+  Eigen::Vector2d p = point;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const Distorted at = distorted_by(lens, model.coefficients(), p);
+    p += at.d_point.inverse() * (distorted - at.point);
+  }
+  return p;
+}
+
 std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction) {
   if (correction.isZero(0.0)) return given;
   LensCoefficients k = given.coefficients();

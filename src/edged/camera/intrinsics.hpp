@@ -19,6 +19,9 @@ using ByIntrinsics = Eigen::Matrix<double, 2, kIntrinsics>;
 /// `point`: by that model. A lens without distortion has no k1.
 ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& model, const Eigen::Vector2d& point);
 
+/// The point by `model` of the pixel that `given` sees at `point`; the two are within a few percent of each other.
+Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point);
+
 /// The model with corrections; nothing where no lens has them, such as a distortion that is not monotone.
 std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
 

@@ -88,6 +88,15 @@ TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
   }
 }
 
+TEST(Intrinsics, PointsByACorrectedModelAreThoseOfTheirPixels) {
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  for (const CameraModel& camera : corrected_cameras()) {
+    const CameraModel model = *corrected_model(camera, off);
+    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(235, 170)})
+      EXPECT_LT((point_by(model, camera, camera.pixel_to_point(pixel)) - model.pixel_to_point(pixel)).norm(), 1e-6);
+  }
+}
+
 TEST(Intrinsics, TheModelOfAnUndistortedImageFollowsItsLens) {
   const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
   for (const CameraModel& camera : corrected_cameras()) {

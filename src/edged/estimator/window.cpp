@@ -280,8 +280,7 @@ void Window::predict(FeatureId id, const ObservationKey& image, const Eigen::Vec
 void Window::linearise(const WindowCamera& camera, WindowObservation& observation) const {
   const CameraModel& given = camera.given.model;
   const bool moved = !camera.linearised_at.isZero(0.0);
-  const Eigen::Vector2d point =
-      moved ? camera.model.pixel_to_point(given.distort_to_pixel(observation.point)) : observation.point;
+  const Eigen::Vector2d point = moved ? point_by(camera.model, given, observation.point) : observation.point;
   const ByIntrinsics by = point_by_intrinsics(given, camera.model, point);
   observation.image = {point - by * camera.linearised_at, by};
   observation.predicted = false;
