@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "edged/rig.hpp"
 
@@ -14,11 +15,19 @@ inline constexpr int kIntrinsics = 5;
 using IntrinsicsCorrection = Eigen::Matrix<double, kIntrinsics, 1>;
 using ByIntrinsics = Eigen::Matrix<double, 2, kIntrinsics>;
 
-/// The derivative by the corrections of the point at which a pixel lies; `point`: that by the given model (C8). A lens
-/// without distortion has no k1.
-ByIntrinsics point_by_intrinsics(const CameraModel& given, const Eigen::Vector2d& point);
+/// The derivative by the corrections of the point at which a pixel lies (C8); `model`: the given one with corrections,
+/// `point`: by that model. A lens without distortion has no k1.
+ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& model, const Eigen::Vector2d& point);
 
-/// The model with corrections; the given one where no lens has them, such as a distortion that is not monotone.
-CameraModel corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
+/// The point by `model` of the pixel that `given` sees at `point`; the two are within a few percent of each other.
+Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point);
+
+/// The model with corrections; nothing where no lens has them, such as a distortion that is not monotone.
+std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
+
+/// Of an image that shows what a lens sees, such as an undistorted one: its model where the lens has corrections. A
+/// radtan fit to the points of its pixels, to half a pixel of corrections of 1 %. Nothing where no lens has them.
+std::optional<CameraModel> corrected_image_model(const CameraModel& image, const CameraModel& given,
+                                                 const IntrinsicsCorrection& correction);
 
 }  // namespace edged

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/camera/lens_table.hpp"
+#include "edged/camera/undistort.hpp"
 #include "edged/core/angles.hpp"
 
 namespace edged {
@@ -45,12 +46,12 @@ TEST(Intrinsics, DerivativeOfAPointByCorrectionsMatchesDifferences) {
   for (const CameraModel& camera : corrected_cameras()) {
     for (const Eigen::Vector2d& pixel :
          {Eigen::Vector2d(5, 7), Eigen::Vector2d(100, 60), Eigen::Vector2d(235, 170), Eigen::Vector2d(210, 9)}) {
-      const ByIntrinsics by = point_by_intrinsics(camera, camera.pixel_to_point(pixel));
+      const ByIntrinsics by = point_by_intrinsics(camera, camera, camera.pixel_to_point(pixel));
       const int known = camera.distortion() == DistortionModel::None ? 4 : kIntrinsics;
       for (int i = 0; i < known; ++i) {
         const IntrinsicsCorrection step = 1e-5 * IntrinsicsCorrection::Unit(i);
-        const Eigen::Vector2d numeric = (corrected_model(camera, step).pixel_to_point(pixel) -
-                                         corrected_model(camera, -step).pixel_to_point(pixel)) /
+        const Eigen::Vector2d numeric = (corrected_model(camera, step)->pixel_to_point(pixel) -
+                                         corrected_model(camera, -step)->pixel_to_point(pixel)) /
                                         2e-5;
         EXPECT_LT((by.col(i) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << i;
       }
@@ -58,15 +59,53 @@ TEST(Intrinsics, DerivativeOfAPointByCorrectionsMatchesDifferences) {
   }
 }
 
-TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
+TEST(Intrinsics, DerivativeAtACorrectedModelMatchesDifferences) {
   const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
   for (const CameraModel& camera : corrected_cameras()) {
-    const CameraModel corrected = corrected_model(camera, off);
+    const Eigen::Vector2d pixel(200, 150);
+    const CameraModel model = *corrected_model(camera, off);
+    const ByIntrinsics by = point_by_intrinsics(camera, model, model.pixel_to_point(pixel));
+    for (int i = 0; i < 4; ++i) {
+      const IntrinsicsCorrection step = 1e-5 * IntrinsicsCorrection::Unit(i);
+      const Eigen::Vector2d numeric = (corrected_model(camera, off + step)->pixel_to_point(pixel) -
+                                       corrected_model(camera, off - step)->pixel_to_point(pixel)) /
+                                      2e-5;
+      EXPECT_LT((by.col(i) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << i;
+    }
+  }
+}
+
+TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
+  const IntrinsicsCorrection off(1e-3, -1e-3, 1e-3, -1e-3, 2e-3);
+  for (const CameraModel& camera : corrected_cameras()) {
+    const CameraModel corrected = *corrected_model(camera, off);
     for (const Eigen::Vector2d& pixel :
          {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(200, 150)}) {
       const Eigen::Vector2d given = camera.pixel_to_point(pixel);
-      const Eigen::Vector2d first_order = given + point_by_intrinsics(camera, given) * off;
-      EXPECT_LT((first_order - corrected.pixel_to_point(pixel)).norm(), 0.2 / camera.fx());
+      const Eigen::Vector2d first_order = given + point_by_intrinsics(camera, camera, given) * off;
+      EXPECT_LT((first_order - corrected.pixel_to_point(pixel)).norm(), 0.1 / camera.fx());
+    }
+  }
+}
+
+TEST(Intrinsics, PointsByACorrectedModelAreThoseOfTheirPixels) {
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  for (const CameraModel& camera : corrected_cameras()) {
+    const CameraModel model = *corrected_model(camera, off);
+    for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(235, 170)})
+      EXPECT_LT((point_by(model, camera, camera.pixel_to_point(pixel)) - model.pixel_to_point(pixel)).norm(), 1e-6);
+  }
+}
+
+TEST(Intrinsics, TheModelOfAnUndistortedImageFollowsItsLens) {
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  for (const CameraModel& camera : corrected_cameras()) {
+    const CameraModel ideal = ideal_pinhole(camera), image = *corrected_image_model(ideal, camera, off),
+                      lens = *corrected_model(camera, off);
+    for (const Eigen::Vector2d& pixel :
+         {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(200, 150)}) {
+      const Eigen::Vector2d truth = lens.pixel_to_point(camera.distort_to_pixel(ideal.pixel_to_point(pixel)));
+      EXPECT_LT((image.pixel_to_point(pixel) - truth).norm(), 0.5 / camera.fx());
     }
   }
 }
@@ -75,7 +114,7 @@ TEST(Intrinsics, CorrectedModelKeepsMaskAndViewLimit) {
   const CameraModel camera = corrected_cameras()[3].within(40.0 * kDegree);
   std::vector<std::uint8_t> used(346 * 260, 1);
   used[5] = 0;
-  const CameraModel corrected = corrected_model(camera.masked(used), IntrinsicsCorrection::Constant(1e-3));
+  const CameraModel corrected = *corrected_model(camera.masked(used), IntrinsicsCorrection::Constant(1e-3));
   EXPECT_NEAR(*corrected.view_limit(), 40.0 * kDegree, 1e-12);
   EXPECT_FALSE(corrected.uses(5, 0));
   EXPECT_TRUE(corrected.uses(6, 0));
@@ -85,7 +124,7 @@ TEST(Intrinsics, ACorrectionThatNoLensHasIsNotApplied) {
   const CameraModel camera = corrected_cameras()[1];
   IntrinsicsCorrection off = IntrinsicsCorrection::Zero();
   off[4] = -1.5;  // turns back within the image
-  EXPECT_EQ(corrected_model(camera, off), camera);
+  EXPECT_FALSE(corrected_model(camera, off));
   EXPECT_EQ(corrected_model(camera, IntrinsicsCorrection::Zero()), camera);
 }
 

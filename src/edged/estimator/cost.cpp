@@ -30,11 +30,11 @@ std::vector<LandmarkTerm> landmark_terms(const Window& window, Observations obse
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     const ObservationKey anchor = *feature.anchor;
-    const ImagePoint point = feature.observations.at(anchor).image_point();
+    const ImagePoint point = feature.observations.at(anchor).image;
     LandmarkTerm term{id, anchor, place.at(anchor.state), point, &feature.inverse_depth, coupled.contains(id), {}};
     for (const TrackStep& step : track_steps(window, feature, observations)) {
       const double correlation = step.before == anchor ? 0.0 : step.correlation;
-      term.residuals.push_back({step.seen, place.at(step.seen.state), feature.observations.at(step.seen).image_point(),
+      term.residuals.push_back({step.seen, place.at(step.seen.state), feature.observations.at(step.seen).image,
                                 correlation, 1.0 / step.sigma});
     }
     terms.push_back(std::move(term));

@@ -71,7 +71,7 @@ TEST(Cost, HoldsEveryObservationOfALandmarkThatTwoCamerasSeeOnce) {
     std::set<ObservationKey> seen = {term.anchor};
     for (const LandmarkResidual& residual : term.residuals) {
       EXPECT_TRUE(seen.insert(residual.seen).second);
-      EXPECT_EQ(residual.point.given, feature.observations.at(residual.seen).point);
+      EXPECT_EQ(residual.point.at_zero, feature.observations.at(residual.seen).point);
     }
     EXPECT_EQ(seen.size(), feature.observations.size());
   }

@@ -90,6 +90,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   result.outliers = reject_unexpected(window_, config_.landmarks);
   triangulate_features(window_, config_.landmarks);
   const bool new_depth = take_depth(input);
+  window_.relinearise_intrinsics();
+  predict_observations(window_);
   optimize(result, config_.iterations);
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);

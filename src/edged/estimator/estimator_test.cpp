@@ -169,7 +169,10 @@ TEST(Estimator, WaitsDuringPureRotationAndSaysForWhat) {
 
 EstimatorConfig self_calibrating() {
   EstimatorConfig config;
-  config.calibration = {.rotation_sigma_deg = 1.0, .time_offset_sigma_ms = 5.0};
+  config.calibration = CalibrationConfig::fixed();
+  config.calibration.rotation_sigma_deg = 1.0;
+  config.calibration.time_offset_sigma_ms = 5.0;
+  config.calibration.imu_sigma = 5e-3;
   return config;
 }
 
@@ -215,7 +218,7 @@ TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
 
 /// Of a lens with distortion, its lever arm and intrinsics off.
 TestWorldOptions miscalibrated(std::uint64_t seed) {
-  TestWorldOptions options{.rest_s = 1.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
+  TestWorldOptions options{.rest_s = 1.0, .turn = 2.0, .tempo = 2.0, .pixel_noise = 0.1, .seed = seed};
   options.distortion = {-0.37, 0.15, -3e-4, -7e-4, 0.0};
   const double sign = seed % 2 == 0 ? -1.0 : 1.0;
   options.intrinsics_error << 0.008 * sign, 0.006, 0.006 * sign, -0.008, -0.015 * sign;
@@ -292,7 +295,7 @@ TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   const TestWorldOptions drifting{.pixel_noise = 0.05, .pixel_walk = 0.3};
   EstimatorConfig config;
   config.sigma_inflation = 1.0;
-  config.calibration = {.rotation_sigma_deg = 0.0, .time_offset_sigma_ms = 0.0, .imu_sigma = 0.0};
+  config.calibration = CalibrationConfig::fixed();
   const VelocityErrors with = velocity_errors(drifting, config);
   config.track_noise.correlation = config.track_noise.event_correlation = 0.0;
   const VelocityErrors without = velocity_errors(drifting, config);

@@ -32,7 +32,7 @@ struct WeightedResidual {
 };
 
 WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& error, const ObservationError& before,
-                          const ceres::LossFunction& loss) {
+                          const ceres::LossFunction& loss, bool other_camera) {
   WeightedResidual out;
   out.r = at.weight * (error.e - at.correlation * before.e);
   double rho[3];
@@ -41,17 +41,27 @@ WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& er
   out.r *= root;
   out.anchor = weight * error.by_anchor.transpose();
   out.calibration = weight * error.by_anchor_calibration.transpose();
-  out.seen_calibration = weight * error.by_seen_calibration.transpose();
+  if (other_camera) out.seen_calibration = weight * error.by_seen_calibration.transpose();
   out.depth = weight * error.by_rho;
   out.seen = weight * error.by_seen.transpose();
   out.before.setZero();
   if (at.correlation == 0.0) return out;
   out.anchor += weight_before * before.by_anchor.transpose();
   out.calibration += weight_before * before.by_anchor_calibration.transpose();
-  out.seen_calibration += weight_before * before.by_seen_calibration.transpose();
+  if (other_camera) out.seen_calibration += weight_before * before.by_seen_calibration.transpose();
   out.depth += weight_before * before.by_rho;
   out.before = weight_before * before.by_seen.transpose();
   return out;
+}
+
+/// J^T J, of its lower triangle the blocks of six.
+template <int Size>
+void add_lower(const Transposed<Size>& J, Eigen::Matrix<double, Size, Size>& H) {
+  static_assert(Size % 6 == 0);
+  for (int i = 0; i < Size; i += 6) {
+    const Transposed<6> row = J.template middleRows<6>(i);
+    for (int j = 0; j <= i; j += 6) H.template block<6, 6>(i, j) += product<6, 6>(row, J.template middleRows<6>(j));
+  }
 }
 
 /// The entry of the block at a column, added if missing.
@@ -125,7 +135,7 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
                                    const LandmarkTerm& term) {
   const LandmarkResidual& at = term.residuals[residual];
   const bool correlated = at.correlation != 0.0;
-  WeightedResidual J = weighted(at, error, before, *loss_);
+  WeightedResidual J = weighted(at, error, before, *loss_, calibration_of_[residual] != 0);
   if (!at_present_) {
     J.r -= J.anchor.transpose() * taken_.moved(term.anchor_place) + J.seen.transpose() * taken_.moved(at.place);
     if (correlated) J.r -= J.before.transpose() * taken_.moved(term.residuals[residual - 1].place);
@@ -161,7 +171,7 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
   }
   Transposed<kOwn> own;
   own << J.anchor, J.calibration;
-  H_ += product(own, own);
+  add_lower(own, H_);
   g_ += own * J.r;
   coupling_ += own * J.depth;
   depth_.h += J.depth.squaredNorm();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/statistics.hpp"
@@ -48,51 +49,62 @@ void triangulate_feature(Window& window, FeatureId id, const Feature& feature, c
   if (inverse_depth) window.make_landmark(id, {*anchor, *inverse_depth});
 }
 
-/// Residuals of observations in the present window.
+/// Where the states of the present window see from.
 class Fit {
  public:
   explicit Fit(const Window& window) : views_(window) {
     for (const auto& [id, state] : window.states()) place_.emplace(id, place_.size());
   }
-
-  /// Predicted minus observed position of a landmark on the unit plane; false if it is behind the camera.
-  bool error(const Feature& feature, const ObservationKey& view, Eigen::Vector2d& e) const {
-    const CameraView anchor = at(*feature.anchor);
-    const AnchoredLandmark landmark(anchor, feature.observations.at(*feature.anchor).image_point(),
-                                    feature.inverse_depth);
-    return landmark.error(at(view), feature.observations.at(view).image_point(), e);
-  }
-
-  /// Of one observation of a landmark, in standard deviations; infinite when it is behind the camera.
-  double sigmas(const Feature& feature, const ObservationKey& view) const {
-    Eigen::Vector2d e;
-    if (!error(feature, view, e)) return std::numeric_limits<double>::infinity();
-    return e.norm() / feature.observations.at(view).sigma;
-  }
-
-  /// Root mean square of a landmark's residuals [sigma]; nothing if it has too few observations.
-  std::optional<double> rms_sigmas(const Feature& feature) const {
-    constexpr std::size_t kFewestObservations = 4;
-    if (!feature.anchor || feature.observations.size() < kFewestObservations) return std::nullopt;
-    double sum = 0.0;
-    for (const auto& [view, observation] : feature.observations) {
-      if (view != *feature.anchor) sum += std::pow(sigmas(feature, view), 2);
-    }
-    return std::sqrt(sum / (2.0 * static_cast<double>(feature.observations.size() - 1)));
-  }
-
- private:
   CameraView at(const ObservationKey& view) const { return views_.at(view.camera, place_.at(view.state)); }
 
+ private:
   CameraViews views_;
   std::map<StateId, std::size_t> place_;  ///< of a state in the window
 };
 
+/// Residuals of the observations of a landmark.
+class LandmarkFit {
+ public:
+  /// Both must outlive this.
+  LandmarkFit(const Fit& fit, const Feature& feature)
+      : fit_(fit),
+        feature_(feature),
+        landmark_(fit.at(*feature.anchor), feature.observations.at(*feature.anchor).image, feature.inverse_depth) {}
+
+  /// Predicted minus observed position on the unit plane; false if it is behind the camera.
+  bool error(const ObservationKey& view, const WindowObservation& observation, Eigen::Vector2d& e) const {
+    return landmark_.error(fit_.at(view), observation.image, e);
+  }
+
+  /// Of one observation, in standard deviations; infinite when it is behind the camera.
+  double sigmas(const ObservationKey& view, const WindowObservation& observation) const {
+    Eigen::Vector2d e;
+    if (!error(view, observation, e)) return std::numeric_limits<double>::infinity();
+    return e.norm() / observation.sigma;
+  }
+
+  /// Root mean square of the residuals [sigma]; nothing if it has too few observations.
+  std::optional<double> rms_sigmas() const {
+    constexpr std::size_t kFewestObservations = 4;
+    if (feature_.observations.size() < kFewestObservations) return std::nullopt;
+    double sum = 0.0;
+    for (const auto& [view, observation] : feature_.observations) {
+      if (view != *feature_.anchor) sum += std::pow(sigmas(view, observation), 2);
+    }
+    return std::sqrt(sum / (2.0 * static_cast<double>(feature_.observations.size() - 1)));
+  }
+
+ private:
+  const Fit& fit_;
+  const Feature& feature_;
+  AnchoredLandmark landmark_;
+};
+
 /// The observations beyond the limit, but for the anchor's.
-std::vector<ObservationKey> bad_observations(const Fit& fit, const Feature& feature, double max_sigmas) {
+std::vector<ObservationKey> bad_observations(const LandmarkFit& fit, const Feature& feature, double max_sigmas) {
   std::vector<ObservationKey> bad;
   for (const auto& [view, observation] : feature.observations) {
-    if (view != *feature.anchor && fit.sigmas(feature, view) > max_sigmas) bad.push_back(view);
+    if (view != *feature.anchor && fit.sigmas(view, observation) > max_sigmas) bad.push_back(view);
   }
   return bad;
 }
@@ -103,7 +115,8 @@ std::vector<double> misfit_limits(const Window& window, const Fit& fit, double m
   constexpr double kLeastMedian = 0.2;  // [sigma] lower bound of the limit
   std::vector<std::vector<double>> rms(window.cameras().size());
   for (const auto& [id, feature] : window.features()) {
-    if (const auto value = fit.rms_sigmas(feature)) rms[feature.anchor->camera].push_back(*value);
+    if (!feature.anchor) continue;
+    if (const auto value = LandmarkFit(fit, feature).rms_sigmas()) rms[feature.anchor->camera].push_back(*value);
   }
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
@@ -176,9 +189,11 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
     std::vector<FeatureId> far;
     std::size_t seen = 0;
     for (const auto& [id, feature] : window.features()) {
-      if (!feature.anchor || !feature.observations.contains({newest, camera})) continue;
+      const auto observation = feature.observations.find({newest, camera});
+      if (!feature.anchor || observation == feature.observations.end()) continue;
       ++seen;
-      if (fit.sigmas(feature, {newest, camera}) > config.max_innovation_sigma) far.push_back(id);
+      if (LandmarkFit(fit, feature).sigmas(observation->first, observation->second) > config.max_innovation_sigma)
+        far.push_back(id);
     }
     if (2 * far.size() > seen) continue;
     for (const FeatureId id : far) window.forget_observation(id, {newest, camera});
@@ -195,9 +210,11 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
     // Before its worst observations are removed: these say more about it than the remaining ones.
+    const LandmarkFit landmark(fit, feature);
     const bool misfit = !depth_in_bounds(feature.inverse_depth, config) ||
-                        fit.rms_sigmas(feature).value_or(0.0) > limits[feature.anchor->camera];
-    const auto bad = misfit ? std::vector<ObservationKey>() : bad_observations(fit, feature, config.max_residual_sigma);
+                        landmark.rms_sigmas().value_or(0.0) > limits[feature.anchor->camera];
+    const auto bad =
+        misfit ? std::vector<ObservationKey>() : bad_observations(landmark, feature, config.max_residual_sigma);
     const bool newest_bad = std::ranges::any_of(bad, [&last_seen = feature.last_seen](const ObservationKey& view) {
       return view.state == last_seen.at(view.camera);
     });
@@ -212,6 +229,21 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   return wrong;
 }
 
+void predict_observations(Window& window) {
+  const Fit fit(window);
+  std::vector<std::tuple<FeatureId, ObservationKey, Eigen::Vector2d>> due;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor) continue;
+    const LandmarkFit landmark(fit, feature);
+    for (const auto& [view, observation] : feature.observations) {
+      Eigen::Vector2d e;
+      if (observation.predicted || view == *feature.anchor || !landmark.error(view, observation, e)) continue;
+      due.emplace_back(id, view, window.point(view, observation) + e);
+    }
+  }
+  for (const auto& [id, view, point] : due) window.predict(id, view, point);
+}
+
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {
   constexpr std::size_t kFewestObservations = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
@@ -220,10 +252,11 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
   std::vector<double> residuals;
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor || !feature.last_seen.contains(camera)) continue;
+    const LandmarkFit landmark(fit, feature);
     Eigen::Vector2d before = Eigen::Vector2d::Zero(), error;
     for (const TrackStep& step : track_steps(window, feature)) {
       if (step.before == *feature.anchor) before.setZero();
-      if (!fit.error(feature, step.seen, error)) break;
+      if (!landmark.error(step.seen, feature.observations.at(step.seen), error)) break;
       if (step.seen.camera == camera && (newness == Newness::Any || step.seen.state == newest)) {
         residuals.push_back((error - step.correlation * before).norm() / step.sigma);
       }

@@ -39,4 +39,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
 std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config);
 
+/// Window::predict of each observation of a landmark where that is due.
+void predict_observations(Window& window);
+
 }  // namespace edged

@@ -73,7 +73,7 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
     share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
   }
   const double inverse_depth = 1.0 / (window.T_O_C(view).inverse() * p_O).z();
-  return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
+  return {id, window.point(view, feature.observations.at(view)), inverse_depth, share * std::abs(inverse_depth)};
 }
 
 /// Remaining keyframes keep a record of a landmark whose observations there are marginalized.

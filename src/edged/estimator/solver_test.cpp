@@ -89,7 +89,7 @@ void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& a
   const auto view = [&](const ObservationKey& image, const ImagePoint& point) {
     const BodyRate rate = window.states().at(image.state).rate();
     const std::size_t pose = place_in(poses, image.state), camera = place_in(cameras, image.camera);
-    return LandmarkView{point.given, rate, pose, camera, point.by_intrinsics};
+    return LandmarkView{point.at_zero, rate, pose, camera, point.by_intrinsics};
   };
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];

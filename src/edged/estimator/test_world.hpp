@@ -31,13 +31,13 @@ struct TestWorldOptions {
   double imu_noise = 1.0;                                ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
-  Eigen::Vector3d rotation_error = {0, 0, 0};  ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
+  Eigen::Vector3d rotation_error = {0, 0, 0};   ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
   Eigen::Vector3d lever_arm_error = {0, 0, 0};  ///< of the cameras: t_B_C true = t_B_C of rig() + error [m]
   IntrinsicsCorrection intrinsics_error = IntrinsicsCorrection::Zero();  ///< true = rig() corrected by it
   LensCoefficients distortion = {};  ///< of the first camera: radtan, if it is not zero
-  double time_error = 0.0;                     ///< images are taken so long after their stamp [s]
-  int walker = 0;               ///< number of the 120 features on a dynamic object of half a metre that passes by
-  double walker_comes_s = 0.0;  ///< when it enters the view
+  double time_error = 0.0;           ///< images are taken so long after their stamp [s]
+  int walker = 0;                    ///< number of the 120 features on a dynamic object of half a metre that passes by
+  double walker_comes_s = 0.0;       ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
@@ -114,7 +114,7 @@ class TestWorld {
     CameraObservations out{camera.name, {}};
     const SE3 T_B_C = SE3(camera.T_B_C.rotation() * so3::exp(options_.rotation_error),
                           camera.T_B_C.translation() + options_.lever_arm_error);
-    const CameraModel model = corrected_model(camera.model, options_.intrinsics_error);
+    const CameraModel model = *corrected_model(camera.model, options_.intrinsics_error);
     const bool exact = options_.intrinsics_error.isZero(0.0);
     const SE3 T_C_W = (T_W_B(t + options_.time_error) * T_B_C).inverse();
     const Eigen::Vector3d walked = (t - options_.walker_comes_s) * Eigen::Vector3d(0.6, 0.1, 0.0);

@@ -93,8 +93,9 @@ Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& dep
       depth_config_(depth),
       visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {
   for (const RigCamera& given : rig.cameras) {
-    cameras_.push_back({given});
-    cameras_.back().calibration[kTimeAt] = to_seconds(given.time_offset);
+    WindowCamera& camera = cameras_.emplace_back(WindowCamera{given});
+    camera.model = given.model;
+    camera.calibration[kTimeAt] = to_seconds(given.time_offset);
   }
   free_calibration(CalibrationConfig::fixed());
   if (depth.enabled) begin_walk(BlockKind::LogScale, 0.0, {depth.scale_sigma, depth.scale_walk});
@@ -124,11 +125,12 @@ IntrinsicsCorrection Window::intrinsics(std::size_t camera) const {
 }
 
 CameraModel Window::model(std::size_t camera) const {
-  return corrected_model(cameras_[camera].given.model, intrinsics(camera));
+  const CameraModel& given = cameras_[camera].given.model;
+  return corrected_model(given, intrinsics(camera)).value_or(given);
 }
 
 Eigen::Vector2d Window::point(const ObservationKey& image, const WindowObservation& observation) const {
-  return observation.point + observation.by_intrinsics * intrinsics(image.camera);
+  return observation.image.at_zero + observation.image.by_intrinsics * intrinsics(image.camera);
 }
 
 SE3 Window::T_O_C(const ObservationKey& image) const {
@@ -185,10 +187,10 @@ void Window::observe(const CameraObservations& view) {
     Feature& feature = features_[observation.id];
     feature.last_seen[index] = newest_id();
     const ObservationKey image{newest_id(), index};
-    const ByIntrinsics by_intrinsics = point_by_intrinsics(camera.given.model, observation.point);
     WindowObservation& kept =
-        feature.observations.insert_or_assign(image, WindowObservation{observation, by_intrinsics}).first->second;
+        feature.observations.insert_or_assign(image, WindowObservation{observation, {}, false}).first->second;
     kept.sigma *= camera.noise_scale;
+    linearise(camera, kept);
   }
 }
 
@@ -262,7 +264,43 @@ void Window::make_landmark(FeatureId id, const NewAnchor& anchor) {
   EDGED_CHECK(track.observations.contains(anchor.key) && state(anchor.key.state).keyframe,
               "state {} is no keyframe whose camera {} sees feature {}", anchor.key.state, anchor.key.camera, id);
   track.anchor = anchor.key;
+  for (auto& [image, observation] : track.observations) observation.predicted = false;
   track.inverse_depth = anchor.inverse_depth;
+}
+
+void Window::predict(FeatureId id, const ObservationKey& image, const Eigen::Vector2d& point) {
+  WindowObservation& observation = feature(id).observations.at(image);
+  const WindowCamera& camera = cameras_[image.camera];
+  const ByIntrinsics by = point_by_intrinsics(camera.given.model, camera.model, point);
+  observation.image.at_zero += (observation.image.by_intrinsics - by) * camera.linearised_at;
+  observation.image.by_intrinsics = by;
+  observation.predicted = true;
+}
+
+void Window::linearise(const WindowCamera& camera, WindowObservation& observation) const {
+  const CameraModel& given = camera.given.model;
+  const bool moved = !camera.linearised_at.isZero(0.0);
+  const Eigen::Vector2d point = moved ? point_by(camera.model, given, observation.point) : observation.point;
+  const ByIntrinsics by = point_by_intrinsics(given, camera.model, point);
+  observation.image = {point - by * camera.linearised_at, by};
+  observation.predicted = false;
+}
+
+void Window::relinearise_intrinsics() {
+  constexpr double kMoved = 1e-3;  // leaves 1e-5 of the field of view of second order
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    WindowCamera& camera = cameras_[i];
+    if ((intrinsics(i) - camera.linearised_at).cwiseAbs().maxCoeff() < kMoved) continue;
+    const std::optional<CameraModel> model = corrected_model(camera.given.model, intrinsics(i));
+    if (!model) continue;
+    camera.linearised_at = intrinsics(i);
+    camera.model = *model;
+    for (auto& [id, feature] : features_) {
+      for (auto& [image, observation] : feature.observations) {
+        if (image.camera == i) linearise(camera, observation);
+      }
+    }
+  }
 }
 
 void Window::forget_observation(FeatureId id, const ObservationKey& image) {
@@ -294,6 +332,7 @@ void Window::free_calibration(const CalibrationConfig& config) {
 
 void Window::set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics) {
   std::ranges::copy(intrinsics, cameras_.at(camera).calibration.begin() + kIntrinsicsAt);
+  relinearise_intrinsics();
   free_calibration(CalibrationConfig::fixed());
 }
 

@@ -53,10 +53,10 @@ struct ObservationKey {
   auto operator<=>(const ObservationKey&) const = default;
 };
 
-/// An observation, and how its point changes with corrections of its camera's intrinsics.
+/// An observation at its point by the given intrinsics, and by others.
 struct WindowObservation : FeatureObservation {
-  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();
-  ImagePoint image_point() const { return {point, by_intrinsics}; }
+  ImagePoint image;
+  bool predicted = false;  ///< image has its derivative where the landmark is predicted
 };
 
 /// The observations under one id and, once triangulated, their landmark.
@@ -81,8 +81,10 @@ struct NewAnchor {
 struct WindowCamera {
   RigCamera given;
   CalibrationBlock calibration{};  ///< correction of `given`: Window::calibrated() has both
-  double noise_scale = 1.0;        ///< multiplies the sigma of its new observations
-  StateId last_image = 0;          ///< the newest state with an image of it
+  IntrinsicsCorrection linearised_at = IntrinsicsCorrection::Zero();  ///< where the points of its observations are
+  CameraModel model = {};                                             ///< with these corrections
+  double noise_scale = 1.0;                                           ///< multiplies the sigma of its new observations
+  StateId last_image = 0;                                             ///< the newest state with an image of it
 };
 
 /// Read access for all; only its own functions change it, and each keeps its invariants: times and ids of states grow;
@@ -146,6 +148,12 @@ class Window {
   /// observations from that state on. `prior` has the information of all that was removed.
   void drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>& inherited = {});
 
+  /// The derivative of an observation's point by the intrinsics is taken where its landmark is predicted. Where it was
+  /// observed, the derivative had the noise of the observation, and the smallest residuals were those of too long focal
+  /// lengths, which shrink the noise.
+  void predict(FeatureId id, const ObservationKey& image, const Eigen::Vector2d& point);
+  /// Points are linearised anew in cameras whose intrinsics have moved away from where they are.
+  void relinearise_intrinsics();
   /// Makes a feature observed by that camera in a keyframe a landmark.
   void make_landmark(FeatureId id, const NewAnchor& anchor);
   /// Removes an observation, not the anchor's.
@@ -193,6 +201,7 @@ class Window {
   WindowState& state(StateId id);
   Feature& feature(FeatureId id);
   void observe(const CameraObservations& view);
+  void linearise(const WindowCamera& camera, WindowObservation& observation) const;
   void check(const Factor& factor) const;
   void set_prior(LinearPrior prior);
   void forget_orphaned_factors();

@@ -44,6 +44,7 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       given_rig_(cameras),
       rig_(without_offsets(given_rig_)),
       intrinsics_(cameras.cameras.size(), IntrinsicsCorrection::Zero()),
+      image_models_(cameras.cameras.size()),
       timings_(&timings),
       estimator_(fresh_estimator()),
       mapper_(config.map, config.status.lost_after_s),
@@ -162,6 +163,17 @@ std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::ve
   return without(seen.images[first_frames], outliers).carried() >= kFeaturesForMap ? first_frames : 0;
 }
 
+const CameraModel& Localization::image_model(std::size_t camera, const CameraModel& given) {
+  constexpr double kMoved = 2e-4;
+  ImageModel& known = image_models_[camera];
+  const IntrinsicsCorrection& now = intrinsics_[camera];
+  if (!known.model || (now - known.intrinsics).cwiseAbs().maxCoeff() > kMoved) {
+    const std::optional<CameraModel> corrected = corrected_image_model(given, rig_.cameras[camera].model, now);
+    known = {now, corrected ? *corrected : known.model.value_or(given)};
+  }
+  return *known.model;
+}
+
 /// True when the body has been relocalized in the map.
 bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result) {
   if (!estimator_.initialized() || !config_.map.enabled) return false;
@@ -170,7 +182,8 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
   mapper_.predict(body_.now());
   const std::size_t camera = mapping_camera(seen, result.outliers);
   if (!seen.images[camera].image.empty()) {
-    const TrackedImage image = without(seen.images[camera], result.outliers);
+    TrackedImage image = without(seen.images[camera], result.outliers);
+    image.model = image_model(camera, image.model);
     const RigCamera& calibrated = rig_.cameras[camera];
     const SE3 T_O_C = body_.moved_on(calibrated.time_offset) * calibrated.T_B_C;
     relocalized = mapper_.localize(t, image, T_O_C);
@@ -217,7 +230,8 @@ void Localization::update_covariance(Timestamp t) {
 Rig Localization::rig() const {
   Rig rig = rig_;
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
-    rig.cameras[camera].model = corrected_model(rig.cameras[camera].model, intrinsics_[camera]);
+    rig.cameras[camera].model =
+        corrected_model(rig.cameras[camera].model, intrinsics_[camera]).value_or(rig.cameras[camera].model);
     rig.cameras[camera].time_offset += given_rig_.cameras[camera].time_offset;
   }
   return rig;

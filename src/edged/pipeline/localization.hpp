@@ -61,6 +61,7 @@ class Localization {
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
   std::size_t mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const;
+  const CameraModel& image_model(std::size_t camera, const CameraModel& given);
   void update_covariance(Timestamp t);
   Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
 
@@ -69,6 +70,12 @@ class Localization {
   Rig given_rig_;  ///< the cameras of the run
   Rig rig_;        ///< the same with online calibration of poses and clocks; with residual time offsets
   std::vector<IntrinsicsCorrection> intrinsics_;  ///< of rig_'s cameras, estimated
+  /// The model of a camera's images with corrections: for the map, whose points have them.
+  struct ImageModel {
+    IntrinsicsCorrection intrinsics = IntrinsicsCorrection::Zero();
+    std::optional<CameraModel> model;
+  };
+  std::vector<ImageModel> image_models_;
   StageTimings* timings_;
   Estimator estimator_;
   ExternalCounters counters_before_;  ///< by the estimators before

@@ -24,7 +24,7 @@ std::vector<std::optional<Descriptor>> descriptors_of(const TrackedImage& image,
   std::vector<Eigen::Vector2d> pixels, points;
   for (const Track& track : image.tracks) {
     pixels.push_back(track.pixel);
-    points.push_back(track.point);
+    points.push_back(image.model.pixel_to_point(track.pixel));
   }
   return describe(image.image, pixels, points, T_O_C.R().transpose() * Eigen::Vector3d::UnitZ());
 }
@@ -176,7 +176,7 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
 /// T_M_O by place recognition, from keyframes of that time.
 std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const {
   std::vector<Eigen::Vector2d> points;
-  for (const Track& track : image.tracks) points.push_back(track.point);
+  for (const Track& track : image.tracks) points.push_back(image.model.pixel_to_point(track.pixel));
   const std::optional<SE3> T_M_C =
       map_.recognise({image.camera, made, filter_.keyframes()}, descriptors_of(image, T_O_C), points, T_O_C.rotation(),
                      image.model.mean_focal());

@@ -90,7 +90,6 @@ bool LandmarkDerivatives::error(const CameraView& view, const ImagePoint& point,
     by.col(kTimeAt) = by_xW * (by_time_ - rho * seen.rate.v_O) - by_xB * seen.rate.omega_B.cross(x_B);
     by.middleCols<3>(kLeverArmAt) = arm_anchor + arm_seen;
     by.rightCols<kIntrinsics>() = by_xW * by_intrinsics_ - point.by_intrinsics;
-    observation.by_seen_calibration.setZero();
   } else {
     auto &by = observation.by_anchor_calibration, &by_seen = observation.by_seen_calibration;
     by.leftCols<3>() = by_xW * by_phi_ * landmark_.camera.by_phi;

@@ -21,10 +21,10 @@ struct BodyRate {
   Eigen::Vector3d v_O = Eigen::Vector3d::Zero();      ///< [m/s]
 };
 
-/// A point of an image.
+/// A point of an image as a linear function of the corrections of the intrinsics.
 struct ImagePoint {
-  Eigen::Vector2d given = Eigen::Vector2d::Zero();    ///< on the unit plane, by the given intrinsics
-  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();  ///< the change of the point by corrections of these
+  Eigen::Vector2d at_zero = Eigen::Vector2d::Zero();  ///< on the unit plane
+  ByIntrinsics by_intrinsics = ByIntrinsics::Zero();
 };
 
 /// T_O_C of a camera whose image was taken `time` after the state: T_O_B extrapolated by the rate, then T_B_C rotated
@@ -38,7 +38,7 @@ struct CameraOnBody {
   Eigen::Matrix3d R_B_C;
   Eigen::Vector3d t_B_C;
   Eigen::Vector2d corrected(const ImagePoint& point) const {
-    return point.given + point.by_intrinsics.lazyProduct(intrinsics);
+    return point.at_zero + point.by_intrinsics.lazyProduct(intrinsics);
   }
 
   Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a rotation of the camera
@@ -66,7 +66,8 @@ struct CameraView {
 struct ObservationError {
   Eigen::Vector2d e = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> by_anchor, by_seen;  ///< poses of the anchor's state and of the observing one
-  /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first.
+  /// Calibrations of the anchor's camera and of the observing one; if these are the same, all is in the first, and the
+  /// second is not set.
   Eigen::Matrix<double, 2, kCalibrationSize> by_anchor_calibration, by_seen_calibration;
   Eigen::Vector2d by_rho;
 };
@@ -74,7 +75,7 @@ struct ObservationError {
 /// A landmark in its anchor view. Everything is scaled by the inverse z-depth rho there [1/m], so that points at
 /// infinity (rho = 0) are ordinary points.
 struct AnchoredLandmark {
-  /// point: in the anchor view.
+  /// point: in the anchor view; must outlive this.
   AnchoredLandmark(const CameraView& anchor, const ImagePoint& point, double rho);
 
   /// e = predicted - observed, of an observation at `point` of the camera `seen`. False when the landmark is not in
@@ -89,7 +90,7 @@ struct AnchoredLandmark {
   const CameraAt& anchor;
   double rho;
   Eigen::Vector3d bearing_C, bearing_O;
-  ByIntrinsics by_intrinsics;  ///< of bearing_C's first two
+  const ByIntrinsics& by_intrinsics;  ///< of bearing_C's first two
 };
 
 /// The common part of the derivatives of all observations of a landmark: that of its position in O, times rho, by the

@@ -65,7 +65,9 @@ class LandmarkCost final : public ceres::CostFunction {
       if (double* J = jacobian(poses_ + views_[0].camera)) {
         OfCalibration(J) += weights_[i] * error.by_anchor_calibration;
       }
-      if (double* J = jacobian(poses_ + view.camera)) OfCalibration(J) += weights_[i] * error.by_seen_calibration;
+      const bool other = view.camera != views_[0].camera;
+      if (double* J = other ? jacobian(poses_ + view.camera) : nullptr)
+        OfCalibration(J) += weights_[i] * error.by_seen_calibration;
       if (double* J = jacobian(depth)) Eigen::Map<Eigen::Vector2d>(J) += weights_[i] * error.by_rho;
     }
     return true;
