@@ -26,7 +26,8 @@ Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, con
 std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
 
 /// Of an image that shows what a lens sees, such as an undistorted one: its model where the lens has corrections. A
-/// radtan fit to the points of its pixels, to half a pixel of corrections of 1 %. Nothing where no lens has them.
+/// radtan fit to the points of its pixels, to a pixel at the corners of corrections of 1 %. Nothing where no lens has
+/// them.
 std::optional<CameraModel> corrected_image_model(const CameraModel& image, const CameraModel& given,
                                                  const IntrinsicsCorrection& correction);
 

@@ -248,7 +248,7 @@ TEST(Estimator, FindsWhatIntrinsicsAndLeverArmAreOffBy) {
 
 /// Motion that does not show them.
 TEST(Estimator, LeavesIntrinsicsAndLeverArmWhereNothingShowsThem) {
-  for (const TestWorldOptions& options : {TestWorldOptions{.rest_s = 20.0},  // at rest
+  for (const TestWorldOptions& options : {TestWorldOptions{.rest_s = 20.0},                                 // at rest
                                           TestWorldOptions{.rest_s = 1.0, .speed = 0.02, .turn = 0.01}}) {  // hover
     const CalibrationVector found = correction_after(options, 8.0);
     EXPECT_LT(found.tail<kIntrinsics>().cwiseAbs().maxCoeff(), 1e-3) << found.transpose();
