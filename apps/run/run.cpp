@@ -51,6 +51,18 @@ RunSummary facts_of(const RunContext& run) {
   return summary;
 }
 
+/// The rig with these calibrated cameras in the place of its own; the mode may not use all. The time offset that was
+/// found for an event camera contains the latency of its pixels, which the ground truth does not have.
+Rig with_calibrated(Rig rig, const Rig& calibrated) {
+  for (RigCamera& camera : rig.cameras) {
+    const auto found = std::ranges::find(calibrated.cameras, camera.name, &RigCamera::name);
+    if (found == calibrated.cameras.end()) continue;
+    camera.T_B_C = found->T_B_C;
+    if (camera.modality == Modality::Frames) camera.time_offset = found->time_offset;
+  }
+  return rig;
+}
+
 }  // namespace
 
 Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
@@ -180,7 +192,9 @@ void Run::compare_with_truth(RunEnd& end) const {
   const Rig& rig = run_.source.calibration.rig;
   const StatesTable states = read_states(run_.folder);
   const Trajectory body = in_one_frame(body_poses(states));
-  if (end.truth && !body.empty()) evaluate_run(end.summary, body, covariance_samples_of(states), rig, *end.truth);
+  if (end.truth && !body.empty())
+    evaluate_run(end.summary, body, covariance_samples_of(states), rig, with_calibrated(rig, run_.odometry.rig()),
+                 *end.truth);
   if (end.summary.evaluation) evaluate_final(end.summary, in_one_frame(end.known.poses), rig, *end.truth);
   end.path = lay_onto_truth(body, {}, rig, run_.frame.name(), end.truth, {});
 }

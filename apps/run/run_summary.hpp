@@ -68,10 +68,12 @@ struct RunSummary {
   std::vector<std::string> unwritten;               ///< outputs that could not be written, and why
 };
 
-/// Compares the body's poses with the ground truth, in the ground truth's frame, and their errors with their
-/// covariances, in the body's. Leaves the summary without evaluation, and logs the reason, if that is not possible.
-void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& claims,
-                  const Rig& rig, const GroundTruth& truth);
+/// Compares the body's poses with the ground truth, in the ground truth's frame by the given calibration, as the
+/// trajectory files have them; and their errors with their covariances, in the body's frame by the calibration that the
+/// run found: a wrong lever arm is no error of the body's pose. Leaves the summary without evaluation, and logs the
+/// reason, if that is not possible.
+void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& samples,
+                  const Rig& given, const Rig& found, const GroundTruth& truth);
 
 /// The same of the final trajectory, which has as many poses.
 void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);

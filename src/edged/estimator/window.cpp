@@ -3,7 +3,6 @@
 #include "edged/estimator/window.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <span>
 
 #include "edged/core/check.hpp"
@@ -12,31 +11,6 @@
 
 namespace edged {
 namespace {
-
-bool is_calibration(BlockKey key) { return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics; }
-
-/// A prior on a block at its present value, with one sigma for each of its numbers. A fixed block gets a negligible
-/// sigma.
-LinearPrior near_present(BlockKey key, std::span<const double> present, const Eigen::VectorXd& sigmas) {
-  constexpr double kHeld = 1e-9;
-  LinearPrior prior;
-  prior.blocks = {key};
-  prior.x0 = {{present.begin(), present.end()}};
-  prior.J = sigmas.cwiseMax(kHeld).cwiseInverse().asDiagonal();
-  prior.r = Eigen::VectorXd::Zero(sigmas.size());
-  return prior;
-}
-
-CalibrationVector sigmas_of(const CalibrationConfig& config, const CameraModel& model) {
-  CalibrationVector sigmas;
-  sigmas.head<3>().setConstant(config.rotation_sigma_deg * std::numbers::pi / 180.0);
-  sigmas[kTimeAt] = config.time_offset_sigma_ms * 1e-3;
-  sigmas.segment<3>(kLeverArmAt).setConstant(config.lever_arm_sigma_mm * 1e-3);
-  const double centre = config.principal_point_sigma_px;
-  sigmas.tail<kIntrinsics>() << config.focal_sigma, config.focal_sigma, centre / model.fx(), centre / model.fy(),
-      config.distortion_sigma;
-  return sigmas;
-}
 
 /// The observations from one state on, up to another.
 void forget(Feature& feature, StateId first, StateId end) {
@@ -106,31 +80,6 @@ std::size_t Window::camera_index(const std::string& name) const {
       std::find_if(cameras_.begin(), cameras_.end(), [&](const auto& c) { return c.given.name == name; });
   EDGED_CHECK(camera != cameras_.end(), "no camera '{}' in the rig", name);
   return static_cast<std::size_t>(camera - cameras_.begin());
-}
-
-RigCamera Window::calibrated(std::size_t camera) const {
-  RigCamera found = cameras_[camera].given;
-  const CalibrationBlock& off = cameras_[camera].calibration;
-  found.T_B_C = T_B_C(camera);
-  found.time_offset = duration_from_seconds(off[kTimeAt]);
-  return found;
-}
-
-SE3 Window::T_B_C(std::size_t camera) const {
-  return camera_pose(SE3(), {}, cameras_[camera].given.T_B_C, cameras_[camera].calibration.data());
-}
-
-IntrinsicsCorrection Window::intrinsics(std::size_t camera) const {
-  return IntrinsicsCorrection(cameras_[camera].calibration.data() + kIntrinsicsAt);
-}
-
-CameraModel Window::model(std::size_t camera) const {
-  const CameraModel& given = cameras_[camera].given.model;
-  return corrected_model(given, intrinsics(camera)).value_or(given);
-}
-
-Eigen::Vector2d Window::point(const ObservationKey& image, const WindowObservation& observation) const {
-  return observation.image.at_zero + observation.image.by_intrinsics * intrinsics(image.camera);
 }
 
 SE3 Window::T_O_C(const ObservationKey& image) const {
@@ -268,41 +217,6 @@ void Window::make_landmark(FeatureId id, const NewAnchor& anchor) {
   track.inverse_depth = anchor.inverse_depth;
 }
 
-void Window::predict(FeatureId id, const ObservationKey& image, const Eigen::Vector2d& point) {
-  WindowObservation& observation = feature(id).observations.at(image);
-  const WindowCamera& camera = cameras_[image.camera];
-  const ByIntrinsics by = point_by_intrinsics(camera.given.model, camera.model, point);
-  observation.image.at_zero += (observation.image.by_intrinsics - by) * camera.linearised_at;
-  observation.image.by_intrinsics = by;
-  observation.predicted = true;
-}
-
-void Window::linearise(const WindowCamera& camera, WindowObservation& observation) const {
-  const CameraModel& given = camera.given.model;
-  const bool moved = !camera.linearised_at.isZero(0.0);
-  const Eigen::Vector2d point = moved ? point_by(camera.model, given, observation.point) : observation.point;
-  const ByIntrinsics by = point_by_intrinsics(given, camera.model, point);
-  observation.image = {point - by * camera.linearised_at, by};
-  observation.predicted = false;
-}
-
-void Window::relinearise_intrinsics() {
-  constexpr double kMoved = 1e-3;  // leaves 1e-5 of the field of view of second order
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    WindowCamera& camera = cameras_[i];
-    if ((intrinsics(i) - camera.linearised_at).cwiseAbs().maxCoeff() < kMoved) continue;
-    const std::optional<CameraModel> model = corrected_model(camera.given.model, intrinsics(i));
-    if (!model) continue;
-    camera.linearised_at = intrinsics(i);
-    camera.model = *model;
-    for (auto& [id, feature] : features_) {
-      for (auto& [image, observation] : feature.observations) {
-        if (image.camera == i) linearise(camera, observation);
-      }
-    }
-  }
-}
-
 void Window::forget_observation(FeatureId id, const ObservationKey& image) {
   EDGED_CHECK(feature(id).anchor != image, "landmark {} is anchored in state {}", id, image.state);
   feature(id).observations.erase(image);
@@ -319,21 +233,6 @@ void Window::rescale_noise(std::size_t camera, double factor) {
       if (image.camera == camera) observation.sigma *= factor;
     }
   }
-}
-
-void Window::free_calibration(const CalibrationConfig& config) {
-  std::erase_if(soft_priors_, [](const auto& soft) { return is_calibration(soft->blocks().front()); });
-  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-    const WindowCamera& of = cameras_[camera];
-    add_soft_prior(near_present({BlockKind::Calibration, camera}, of.calibration, sigmas_of(config, of.given.model)));
-  }
-  add_soft_prior(near_present(kImuIntrinsicsKey, imu_intrinsics_, Eigen::VectorXd::Constant(18, config.imu_sigma)));
-}
-
-void Window::set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics) {
-  std::ranges::copy(intrinsics, cameras_.at(camera).calibration.begin() + kIntrinsicsAt);
-  relinearise_intrinsics();
-  free_calibration(CalibrationConfig::fixed());
 }
 
 void Window::add_soft_prior(LinearPrior prior) {
@@ -362,7 +261,7 @@ void Window::forget_orphaned_factors() {
 void Window::begin_walk(BlockKind kind, double value, const Walk& walk) {
   const auto [scalar, is_new] = walking_.try_emplace(kind, kind, value, walk.per_root_s);
   EDGED_CHECK(is_new, "a second scalar of kind {}", static_cast<int>(kind));
-  add_soft_prior(near_present(scalar->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
+  add_soft_prior(prior_at(scalar->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
 }
 
 std::optional<BlockKey> Window::walking(BlockKind kind) const {

@@ -57,6 +57,11 @@ struct BlockKey {
 /// Of the one block of the IMU's scale and axes.
 inline constexpr BlockKey kImuIntrinsicsKey{BlockKind::ImuIntrinsics, 0};
 
+/// Of a camera or of the IMU.
+constexpr bool is_calibration(BlockKey key) {
+  return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics;
+}
+
 constexpr int block_size(BlockKind kind) {
   switch (kind) {
     case BlockKind::Pose:

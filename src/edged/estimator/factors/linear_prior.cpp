@@ -9,6 +9,16 @@
 
 namespace edged {
 
+LinearPrior prior_at(BlockKey key, std::span<const double> values, const Eigen::VectorXd& sigmas) {
+  constexpr double kHeld = 1e-9;
+  LinearPrior prior;
+  prior.blocks = {key};
+  prior.x0 = {{values.begin(), values.end()}};
+  prior.J = sigmas.cwiseMax(kHeld).cwiseInverse().asDiagonal();
+  prior.r = Eigen::VectorXd::Zero(sigmas.size());
+  return prior;
+}
+
 LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma) {
   LinearPrior prior;
   prior.blocks = {pose};

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "edged/estimator/factors/factor.hpp"
@@ -22,6 +23,9 @@ struct LinearPrior {
 
   bool empty() const { return blocks.empty(); }
 };
+
+/// A block near these values, with one sigma for each of its numbers. A sigma of zero fixes a number.
+LinearPrior prior_at(BlockKey key, std::span<const double> values, const Eigen::VectorXd& sigmas);
 
 /// Fixes position and yaw (rotation about z) of one pose at their present value.
 LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigma, double yaw_sigma);

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The calibrations in the window: cameras and IMU.
+#include <algorithm>
+#include <numbers>
+
+#include "edged/estimator/window.hpp"
+
+namespace edged {
+namespace {
+
+CalibrationVector sigmas_of(const CalibrationConfig& config, const CameraModel& model) {
+  CalibrationVector sigmas;
+  sigmas.head<3>().setConstant(config.rotation_sigma_deg * std::numbers::pi / 180.0);
+  sigmas[kTimeAt] = config.time_offset_sigma_ms * 1e-3;
+  sigmas.segment<3>(kLeverArmAt).setConstant(config.lever_arm_sigma_mm * 1e-3);
+  const double centre = config.principal_point_sigma_px;
+  sigmas.tail<kIntrinsics>() << config.focal_sigma, config.focal_sigma, centre / model.fx(), centre / model.fy(),
+      config.distortion_sigma;
+  return sigmas;
+}
+
+/// Whether two cameras are pixels behind one lens, as events and frames of a DAVIS.
+bool same_lens(const RigCamera& one, const RigCamera& other) {
+  const CameraModel &a = one.model, &b = other.model;
+  return a.width() == b.width() && a.height() == b.height() && a.fx() == b.fx() && a.fy() == b.fy() &&
+         a.cx() == b.cx() && a.cy() == b.cy() && a.distortion() == b.distortion() &&
+         a.coefficients() == b.coefficients() && one.T_B_C.translation() == other.T_B_C.translation() &&
+         one.T_B_C.rotation().coeffs() == other.T_B_C.rotation().coeffs();
+}
+
+/// All corrections of two cameras but the time are equal: those of rotation and lens to 1e-4, of the lever arm to 0.1
+/// mm.
+LinearPrior equal_calibrations(std::size_t one, const CalibrationBlock& at_one, std::size_t other,
+                               const CalibrationBlock& at_other) {
+  constexpr double kEqual = 1e-4;
+  CalibrationVector weights = CalibrationVector::Constant(1.0 / kEqual);
+  weights[kTimeAt] = 0.0;
+  LinearPrior prior;
+  prior.blocks = {{BlockKind::Calibration, one}, {BlockKind::Calibration, other}};
+  prior.x0 = {{at_one.begin(), at_one.end()}, {at_other.begin(), at_other.end()}};
+  const Eigen::MatrixXd W = weights.asDiagonal();
+  prior.J.resize(kCalibrationSize, 2 * kCalibrationSize);
+  prior.J << W, -W;
+  prior.r = weights.cwiseProduct(Eigen::Map<const CalibrationVector>(at_one.data()) -
+                                 Eigen::Map<const CalibrationVector>(at_other.data()));
+  return prior;
+}
+
+}  // namespace
+
+RigCamera Window::calibrated(std::size_t camera) const {
+  RigCamera found = cameras_[camera].given;
+  const CalibrationBlock& off = cameras_[camera].calibration;
+  found.T_B_C = T_B_C(camera);
+  found.time_offset = duration_from_seconds(off[kTimeAt]);
+  return found;
+}
+
+SE3 Window::T_B_C(std::size_t camera) const {
+  return camera_pose(SE3(), {}, cameras_[camera].given.T_B_C, cameras_[camera].calibration.data());
+}
+
+IntrinsicsCorrection Window::intrinsics(std::size_t camera) const {
+  return IntrinsicsCorrection(cameras_[camera].calibration.data() + kIntrinsicsAt);
+}
+
+CameraModel Window::model(std::size_t camera) const {
+  const CameraModel& given = cameras_[camera].given.model;
+  return corrected_model(given, intrinsics(camera)).value_or(given);
+}
+
+Eigen::Vector2d Window::point(const ObservationKey& image, const WindowObservation& observation) const {
+  return observation.image.at_zero + observation.image.by_intrinsics * intrinsics(image.camera);
+}
+
+void Window::predict(FeatureId id, const ObservationKey& image, const Eigen::Vector2d& point) {
+  WindowObservation& observation = feature(id).observations.at(image);
+  const WindowCamera& camera = cameras_[image.camera];
+  const ByIntrinsics by = point_by_intrinsics(camera.given.model, camera.model, point);
+  observation.image.at_zero += (observation.image.by_intrinsics - by) * camera.linearised_at;
+  observation.image.by_intrinsics = by;
+  observation.predicted = true;
+}
+
+void Window::linearise(const WindowCamera& camera, WindowObservation& observation) const {
+  const CameraModel& given = camera.given.model;
+  const bool moved = !camera.linearised_at.isZero(0.0);
+  const Eigen::Vector2d point = moved ? point_by(camera.model, given, observation.point) : observation.point;
+  const ByIntrinsics by = point_by_intrinsics(given, camera.model, point);
+  observation.image = {point - by * camera.linearised_at, by};
+  observation.predicted = false;
+}
+
+void Window::relinearise_intrinsics() {
+  constexpr double kMoved = 1e-3;  // leaves 1e-5 of the field of view of second order
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    WindowCamera& camera = cameras_[i];
+    if ((intrinsics(i) - camera.linearised_at).cwiseAbs().maxCoeff() < kMoved) continue;
+    const std::optional<CameraModel> model = corrected_model(camera.given.model, intrinsics(i));
+    if (!model) continue;
+    camera.linearised_at = intrinsics(i);
+    camera.model = *model;
+    for (auto& [id, feature] : features_) {
+      for (auto& [image, observation] : feature.observations) {
+        if (image.camera == i) linearise(camera, observation);
+      }
+    }
+  }
+}
+
+void Window::free_calibration(const CalibrationConfig& config) {
+  std::erase_if(soft_priors_, [](const auto& soft) { return is_calibration(soft->blocks().front()); });
+  for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+    const WindowCamera& of = cameras_[camera];
+    CalibrationVector sigmas = sigmas_of(config, of.given.model);
+    const auto twin = std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
+                                           [&](const WindowCamera& other) { return same_lens(of.given, other.given); });
+    if (const auto first = static_cast<std::size_t>(twin - cameras_.begin()); first < camera) {
+      add_soft_prior(equal_calibrations(first, twin->calibration, camera, of.calibration));
+      for (int i = 0; i < kCalibrationSize; ++i)  // one lens has one prior
+        if (i != kTimeAt && sigmas[i] > 0.0) sigmas[i] = kFree;
+    }
+    add_soft_prior(prior_at({BlockKind::Calibration, camera}, of.calibration, sigmas));
+  }
+  add_soft_prior(prior_at(kImuIntrinsicsKey, imu_intrinsics_, Eigen::VectorXd::Constant(18, config.imu_sigma)));
+}
+
+void Window::set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics) {
+  std::ranges::copy(intrinsics, cameras_.at(camera).calibration.begin() + kIntrinsicsAt);
+  relinearise_intrinsics();
+  free_calibration(CalibrationConfig::fixed());
+}
+
+}  // namespace edged
