@@ -47,6 +47,23 @@ Calibration turned_and_late(Calibration calibration) {
   return calibration;
 }
 
+/// The mean angle [deg] between the rays of some pixels in the body's frame: a shift of the principal point is a
+/// rotation, too, and a run estimates both.
+double turned_deg_between(const RigCamera& right, const RigCamera& found) {
+  double sum = 0.0;
+  int count = 0;
+  for (const double x : {0.25, 0.5, 0.75}) {
+    for (const double y : {0.25, 0.5, 0.75}) {
+      const Eigen::Vector2d pixel(x * right.model.width(), y * right.model.height());
+      const Eigen::Vector3d a = right.T_B_C.R() * right.model.pixel_to_ray(pixel).normalized(),
+                            b = found.T_B_C.R() * found.model.pixel_to_ray(pixel).normalized();
+      sum += std::atan2(a.cross(b).norm(), a.dot(b)) / kDeg;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 struct LeftOver {
   double turned_deg = 0.0, off_ms = 0.0;
 };
@@ -59,7 +76,7 @@ std::map<std::string, LeftOver> left_over(const Flight& flight, const FlightRun&
     const RigCamera& right = flight.calibration.rig.camera(found.name);
     // An edge must have moved a part of a pixel before its event fires: that is late by what the right one finds, too.
     const RigCamera& reachable = found.modality == Modality::Events ? of_right.rig.camera(found.name) : right;
-    const double turned_deg = so3::log((right.T_B_C.inverse() * found.T_B_C).rotation()).norm() / kDeg;
+    const double turned_deg = turned_deg_between(right, found);
     const double off_ms = std::abs(1e3 * to_seconds(found.time_offset - reachable.time_offset));
     left[found.name] = {turned_deg, off_ms};
     std::cout << "  " << found.name << ": " << turned_deg << " deg and " << off_ms

@@ -59,8 +59,8 @@ Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const
   return cost;
 }
 
-/// A landmark in one of its views. The errors of a track are a random walk, so the view farthest from the anchor has
-/// almost all information on its depth.
+/// A landmark in one of its views, at the point by the given intrinsics. The errors of a track are a random walk, so
+/// the view farthest from the anchor has almost all information on its depth.
 KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
   const SE3 T_O_A = window.T_O_C(*feature.anchor);
   const Eigen::Vector3d p_O = window.position(feature);
@@ -73,7 +73,7 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
     share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
   }
   const double inverse_depth = 1.0 / (window.T_O_C(view).inverse() * p_O).z();
-  return {id, window.point(view, feature.observations.at(view)), inverse_depth, share * std::abs(inverse_depth)};
+  return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
 }
 
 /// Remaining keyframes keep a record of a landmark whose observations there are marginalized.
@@ -81,6 +81,17 @@ void keep_points(Window& window, FeatureId id, const Feature& feature, const std
   for (const auto& [view, observation] : feature.observations) {
     if (view.state == feature.anchor->state || (anchor && view.state >= anchor->state)) continue;
     if (window.states().at(view.state).keyframe) window.keep_point(view, point_of(window, id, feature, view));
+  }
+}
+
+/// All points of a view by the intrinsics that belong to its T_B_C: some were kept when the estimates were others, and
+/// a shift of the principal point is a rotation of the camera.
+void correct_points(const Window& window, KeyframeRecord& record) {
+  for (std::size_t camera = 0; camera < record.views.size(); ++camera) {
+    if (window.intrinsics(camera).isZero(0.0)) continue;
+    const CameraModel model = window.model(camera);
+    for (KeyframePoint& point : record.views[camera].points)
+      point.point = point_by(model, window.cameras()[camera].given.model, point.point);
   }
 }
 
@@ -100,6 +111,7 @@ KeyframeRecord record_of(const Window& window, StateId id) {
       record.views[seen->first.camera].points.push_back(point_of(window, feature_id, feature, seen->first));
     }
   }
+  correct_points(window, record);
   return record;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "edged/camera/field_of_view.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
@@ -18,15 +19,6 @@ CalibrationVector sigmas_of(const CalibrationConfig& config, const CameraModel& 
   sigmas.tail<kIntrinsics>() << config.focal_sigma, config.focal_sigma, centre / model.fx(), centre / model.fy(),
       config.distortion_sigma;
   return sigmas;
-}
-
-/// Whether two cameras are pixels behind one lens, as events and frames of a DAVIS.
-bool same_lens(const RigCamera& one, const RigCamera& other) {
-  const CameraModel &a = one.model, &b = other.model;
-  return a.width() == b.width() && a.height() == b.height() && a.fx() == b.fx() && a.fy() == b.fy() &&
-         a.cx() == b.cx() && a.cy() == b.cy() && a.distortion() == b.distortion() &&
-         a.coefficients() == b.coefficients() && one.T_B_C.translation() == other.T_B_C.translation() &&
-         one.T_B_C.rotation().coeffs() == other.T_B_C.rotation().coeffs();
 }
 
 /// All corrections of two cameras but the time are equal: those of rotation and lens to 1e-4, of the lever arm to 0.1
@@ -114,8 +106,13 @@ void Window::free_calibration(const CalibrationConfig& config) {
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
     const WindowCamera& of = cameras_[camera];
     CalibrationVector sigmas = sigmas_of(config, of.given.model);
-    const auto twin = std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
-                                           [&](const WindowCamera& other) { return same_lens(of.given, other.given); });
+    if (of.given.modality == Modality::Events && std::ranges::none_of(cameras_, [&](const WindowCamera& other) {
+          return other.given.modality == Modality::Frames && is_same_lens(of.given, other.given);
+        }))
+      sigmas.segment<2>(kCentreAt).setZero();  // events alone do not tell its shift from a rotation of the camera
+    const auto twin =
+        std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
+                             [&](const WindowCamera& other) { return is_same_lens(of.given, other.given); });
     if (const auto first = static_cast<std::size_t>(twin - cameras_.begin()); first < camera) {
       add_soft_prior(equal_calibrations(first, twin->calibration, camera, of.calibration));
       for (int i = 0; i < kCalibrationSize; ++i)  // one lens has one prior

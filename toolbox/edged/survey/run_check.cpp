@@ -216,9 +216,11 @@ std::vector<Finding> RunCheck::news() {
 
 bool RunCheck::agrees_with(const RigCamera& estimated) const {
   constexpr double kLeast = 1.5 * kDegree, kSureOf = 2.0 * kDegree, kSigmas = 3.0;
+  const auto own = std::ranges::find(cameras_, estimated.name, [](const Camera& camera) { return camera.given.name; });
+  if (own == cameras_.end()) return false;
   return std::ranges::any_of(cameras_, [&](const Camera& camera) {
-    const bool behind_its_lens = camera.given.name == estimated.name || is_same_lens(camera.given, estimated);
-    if (!behind_its_lens || !agrees(camera.agreement) || camera.agreement->mirrored) return false;
+    if (!is_same_lens(camera.given, own->given) || !agrees(camera.agreement) || camera.agreement->mirrored)
+      return false;
     const double sigma = camera.agreement->rotation_sigma;
     const double off = Eigen::AngleAxisd(estimated.T_B_C.R().transpose() * camera.agreement->R_B_C).angle();
     return sigma < kSureOf && off < std::max(kLeast, kSigmas * sigma);

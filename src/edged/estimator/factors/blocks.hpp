@@ -25,6 +25,7 @@ using MotionBlock = std::array<double, 9>;
 /// Correction of a camera's calibration: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi); time [s] with
 /// t_imu = t_given + time; lever arm [m] with t_B_C = t_B_C,given + it; intrinsics (IntrinsicsCorrection).
 inline constexpr int kTimeAt = 3, kLeverArmAt = 4, kIntrinsicsAt = 7, kCalibrationSize = kIntrinsicsAt + kIntrinsics;
+inline constexpr int kCentreAt = kIntrinsicsAt + 2;  ///< the principal point
 using CalibrationBlock = std::array<double, kCalibrationSize>;
 static_assert(kCalibrationSize == CalibrationCovariance::RowsAtCompileTime);
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
