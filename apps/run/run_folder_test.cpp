@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/files.hpp"
+#include "common/step_facts.hpp"
 #include "edged/core/check.hpp"
 #include "report/states_table.hpp"
 #include "run/run_summary.hpp"
