@@ -11,6 +11,7 @@
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
+#include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/zip_writer.hpp"
 #include "program.hpp"
@@ -51,14 +52,17 @@ RunSummary facts_of(const RunContext& run) {
   return summary;
 }
 
-/// The rig with these calibrated cameras in the place of its own; the mode may not use all. The time offset that was
-/// found for an event camera contains the latency of its pixels, which the ground truth does not have.
-Rig with_calibrated(Rig rig, const Rig& calibrated) {
+/// The rig with the poses of these calibrated cameras, and of cameras behind the same lenses, as the mode may not use
+/// all. The time offset that was found for an event camera contains the latency of its pixels, which the ground truth
+/// does not have.
+Rig with_calibrated(const Rig& given, const Rig& calibrated) {
+  Rig rig = given;
   for (RigCamera& camera : rig.cameras) {
-    const auto found = std::ranges::find(calibrated.cameras, camera.name, &RigCamera::name);
-    if (found == calibrated.cameras.end()) continue;
-    camera.T_B_C = found->T_B_C;
-    if (camera.modality == Modality::Frames) camera.time_offset = found->time_offset;
+    for (const RigCamera& found : calibrated.cameras) {
+      if (!is_same_lens(given.camera(camera.name), given.camera(found.name))) continue;
+      camera.T_B_C = found.T_B_C;
+      if (camera.modality == Modality::Frames && camera.name == found.name) camera.time_offset = found.time_offset;
+    }
   }
   return rig;
 }
