@@ -46,7 +46,8 @@ class LandmarkCost final : public ceres::CostFunction {
     }
     const std::size_t depth = poses_ + cameras.size();
     const CameraView anchor{cameras[views_[0].camera], at[0]};
-    const AnchoredLandmark anchored(anchor, views_[0].image_point(), *blocks[depth]);
+    const ImagePoint point = views_[0].image_point();  // must outlive the landmark
+    const AnchoredLandmark anchored(anchor, point, *blocks[depth]);
     const LandmarkDerivatives landmark(anchored);
     const auto jacobian = [&](std::size_t block) { return jacobians == nullptr ? nullptr : jacobians[block]; };
     for (std::size_t i = 0; i <= depth; ++i) {
