@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/step_facts.hpp"
+#include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "report/report_rows.hpp"
@@ -95,8 +96,7 @@ Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
   // Of a model without a name there: a pinhole with the focal length near the axis.
   const auto k = std::span(m.coefficients()).first(lens.foxglove.empty() ? 0 : lens.most);
   const std::vector<double> D(k.begin(), k.end());
-  const double on_axis = 2.0 * m.mean_focal() / (m.fx() + m.fy());
-  const double fx = scale * m.fx() * on_axis, fy = scale * m.fy() * on_axis;
+  const double on_axis = axis_slope(m), fx = scale * m.fx() * on_axis, fy = scale * m.fy() * on_axis;
   // The centre of the first pixel is at zero, whatever its size.
   const double cx = scale * (m.cx() + 0.5) - 0.5, cy = scale * (m.cy() + 0.5) - 0.5;
   return {{"timestamp", time(t)},

@@ -11,7 +11,6 @@
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
-#include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/zip_writer.hpp"
 #include "program.hpp"
@@ -52,18 +51,12 @@ RunSummary facts_of(const RunContext& run) {
   return summary;
 }
 
-/// The rig with the poses of these calibrated cameras, and of cameras behind the same lenses, as the mode may not use
-/// all. The time offset that was found for an event camera contains the latency of its pixels, which the ground truth
-/// does not have.
-Rig with_calibrated(const Rig& given, const Rig& calibrated) {
-  Rig rig = given;
-  for (RigCamera& camera : rig.cameras) {
-    for (const RigCamera& found : calibrated.cameras) {
-      if (!is_same_lens(given.camera(camera.name), given.camera(found.name))) continue;
-      camera.T_B_C = found.T_B_C;
-      if (camera.modality == Modality::Frames && camera.name == found.name) camera.time_offset = found.time_offset;
-    }
-  }
+/// The rig that the run found, for the poses of the ground truth. The time offset that was found for an event camera
+/// contains the latency of its pixels, which the ground truth does not have.
+Rig found_for_truth(const Calibration& given, const Rig& found) {
+  Rig rig = with_found(given, found).rig;
+  for (RigCamera& camera : rig.cameras)
+    if (camera.modality == Modality::Events) camera.time_offset = given.rig.camera(camera.name).time_offset;
   return rig;
 }
 
@@ -197,8 +190,8 @@ void Run::compare_with_truth(RunEnd& end) const {
   const StatesTable states = read_states(run_.folder);
   const Trajectory body = in_one_frame(body_poses(states));
   if (end.truth && !body.empty())
-    evaluate_run(end.summary, body, covariance_samples_of(states), rig, with_calibrated(rig, run_.odometry.rig()),
-                 *end.truth);
+    evaluate_run(end.summary, body, covariance_samples_of(states), rig,
+                 found_for_truth(run_.source.calibration, run_.odometry.rig()), *end.truth);
   if (end.summary.evaluation) evaluate_final(end.summary, in_one_frame(end.known.poses), rig, *end.truth);
   end.path = lay_onto_truth(body, {}, rig, run_.frame.name(), end.truth, {});
 }

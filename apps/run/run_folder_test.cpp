@@ -12,6 +12,7 @@
 
 #include "common/files.hpp"
 #include "common/step_facts.hpp"
+#include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
 #include "report/states_table.hpp"
 #include "run/run_summary.hpp"
@@ -190,6 +191,26 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
     EXPECT_EQ(read[i].covariance.rotation, samples.all()[i].covariance.rotation);
     EXPECT_EQ(read[i].covariance.velocity, samples.all()[i].covariance.velocity);
   }
+}
+
+TEST(WithFound, GivesAllCamerasBehindALensItsCalibration) {
+  Calibration given;
+  const RigCamera events{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()};
+  RigCamera frames = events, other = events;
+  frames.name = "frames", frames.modality = Modality::Frames;
+  other.name = "other", other.T_B_C.translation().x() = 0.1;
+  given.rig.cameras = {events, frames, other};
+  Rig found;
+  found.cameras = {frames};
+  found.cameras[0].model = CameraModel(240, 180, 201, 202, 121, 91);
+  found.cameras[0].T_B_C.translation().z() = 0.02;
+  found.cameras[0].time_offset = std::chrono::milliseconds(3);
+  const Rig rig = with_found(given, found).rig;
+  EXPECT_TRUE(is_same_lens(rig.camera("events"), found.cameras[0]));
+  EXPECT_TRUE(is_same_lens(rig.camera("frames"), found.cameras[0]));
+  EXPECT_TRUE(is_same_lens(rig.camera("other"), other));
+  EXPECT_EQ(rig.camera("events").time_offset, Duration(0));
+  EXPECT_EQ(rig.camera("frames").time_offset, std::chrono::milliseconds(3));
 }
 
 TEST(TimingJson, ListsEveryStage) {

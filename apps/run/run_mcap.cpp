@@ -9,6 +9,7 @@
 
 #include "common/json_text.hpp"
 #include "common/pictures.hpp"
+#include "edged/camera/field_of_view.hpp"
 #include "edged/camera/undistort.hpp"
 #include "program.hpp"
 #include "run/run_observer.hpp"
@@ -52,7 +53,7 @@ std::vector<T> evenly(const std::vector<T>& values) {
 /// One pyramid per keyframe: the camera and the corners of its image at some distance.
 foxglove::Lines frusta(const std::vector<StampedPose>& bodies, const RigCamera& camera) {
   const CameraModel& m = camera.model;
-  const double on_axis = 2.0 * m.mean_focal() / (m.fx() + m.fy()), fx = on_axis * m.fx(), fy = on_axis * m.fy();
+  const double on_axis = axis_slope(m), fx = on_axis * m.fx(), fy = on_axis * m.fy();
   foxglove::Lines lines{"keyframes", {}, {}, {0.2, 0.6, 1.0, 0.8}};
   for (const StampedPose& body : bodies) {
     const auto apex = static_cast<unsigned>(lines.points.size());

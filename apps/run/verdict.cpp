@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/camera/field_of_view.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
@@ -268,12 +269,14 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
 }
 
 Calibration with_found(Calibration given, const Rig& found) {
+  const Rig before = given.rig;
   for (RigCamera& camera : given.rig.cameras) {
-    const auto same = std::ranges::find(found.cameras, camera.name, &RigCamera::name);
-    if (same == found.cameras.end()) continue;
-    camera.model = same->model;
-    camera.T_B_C = same->T_B_C;
-    camera.time_offset = same->time_offset;
+    for (const RigCamera& calibrated : found.cameras) {
+      if (!is_same_lens(before.camera(camera.name), before.camera(calibrated.name))) continue;
+      camera.model = calibrated.model;
+      camera.T_B_C = calibrated.T_B_C;
+      if (camera.name == calibrated.name) camera.time_offset = calibrated.time_offset;
+    }
   }
   return given;
 }

@@ -19,7 +19,8 @@ namespace edged {
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config);
 
-/// The given calibration with the estimated rotation and clock of the cameras.
+/// The given calibration with the estimated lens, pose and clock of these cameras. Other cameras behind the same lens
+/// get its lens and pose, and so remain behind one lens in the next run.
 Calibration with_found(Calibration given, const Rig& found);
 
 struct Verdict {

@@ -27,6 +27,8 @@ FieldOfView field_of_view(const CameraModel& camera) {
                    angle_between_pixels(camera, {0.0, bottom}, {right, 0.0}))};
 }
 
+double axis_slope(const CameraModel& camera) { return 2.0 * camera.mean_focal() / (camera.fx() + camera.fy()); }
+
 bool is_same_lens(const RigCamera& a, const RigCamera& b) {
   return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
 }

@@ -17,6 +17,9 @@ struct FieldOfView {
 
 FieldOfView field_of_view(const CameraModel& camera);
 
+/// CameraModel::mean_focal() over (fx + fy) / 2: the slope of the radius by the angle on the axis.
+double axis_slope(const CameraModel& camera);
+
 /// Of a DAVIS, whose lens gives events and frames.
 bool is_same_lens(const RigCamera& a, const RigCamera& b);
 

@@ -117,7 +117,7 @@ TEST(Odometry, CountsWhatIsBadAndNeverThrows) {
   Odometry odometry(rig, {}, Mode::Events, {}, {kInOrder});
   const cv::Mat image = blocks();
   for (Measurement m : std::initializer_list<Measurement>{
-           Frame{stamp(1), "cam", image}, Frame{stamp(1), "elsewhere", image},
+           Frame{stamp(1), "cam", image}, Frame{stamp(1), "unknown", image},
            EventBatch{"cam", {{stamp(1), 1, 1, true}}},
            EventBatch{"dvs", {{stamp(1), kWidth, 1, true}, {stamp(1), 1, kHeight, true}, {stamp(2), 1, 1, true}}},
            EventBatch{"dvs", {{Timestamp::max(), 1, 1, true}}}, EventBatch{"dvs", {}}, resting(Timestamp::min()),
