@@ -112,6 +112,35 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   EXPECT_EQ(window.soft_priors().back()->blocks().front().kind, BlockKind::ImuIntrinsics);
 }
 
+TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
+  Rig rig;
+  rig.cameras = {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()}};
+  rig.cameras.push_back(rig.cameras.front());
+  rig.cameras[1].name = "frames", rig.cameras[1].modality = Modality::Frames;
+  rig.cameras.push_back(rig.cameras[1]);
+  rig.cameras[2].name = "other", rig.cameras[2].T_B_C.translation().x() = 0.1;
+  Window window(rig, 1.0);
+  window.free_calibration({});
+  const auto tie =
+      std::ranges::find_if(window.soft_priors(), [](const auto& soft) { return soft->blocks().size() == 2; });
+  ASSERT_NE(tie, window.soft_priors().end());
+  const std::vector<BlockKey> of_the_lens{{BlockKind::Calibration, 0}, {BlockKind::Calibration, 1}};
+  EXPECT_EQ((*tie)->blocks(), of_the_lens);
+  EXPECT_EQ(window.soft_priors().size(), 5U);  // three cameras, one tie, the IMU
+  const auto misfit = [&](const CalibrationBlock& events, const CalibrationBlock& frames) {
+    const std::array<const double*, 2> blocks{events.data(), frames.data()};
+    CalibrationVector residuals;
+    EXPECT_TRUE((*tie)->Evaluate(blocks.data(), residuals.data(), nullptr));
+    return residuals.norm();
+  };
+  CalibrationBlock off{};
+  for (int i = 0; i < kCalibrationSize; ++i) off[static_cast<std::size_t>(i)] = 0.01 * (i + 1);
+  CalibrationBlock later = off;
+  later[kTimeAt] += 0.005;
+  EXPECT_NEAR(misfit(off, later), 0.0, 1e-9);
+  EXPECT_GT(misfit(off, {}), 100.0);
+}
+
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
   const TestWorldOptions options;
   TestWorld world(options);
