@@ -79,6 +79,23 @@ TEST(TwoOfAKind, AreNoWorseThanOneAndAllAreUsed) {
   }
 }
 
+/// Two cameras beside each other share landmarks: depth and scale are known from the first images on.
+TEST(TwoOfAKind, StartAtOnceAndAreMoreAccurate) {
+  for (const auto& [mode, one, two] :
+       {std::tuple{Mode::Frames, "frames", "frames,frames2"}, {Mode::Events, "events", "events,events2"}}) {
+    const FlightRun alone = fly(pair_flight(), mode, one), both = fly(pair_flight(), mode, two);
+    const auto first_good = [](const FlightRun& run) {
+      const auto good = std::ranges::find(run.steps, TrackingStatus::Good, &Step::status);
+      return good == run.steps.end() ? std::numeric_limits<double>::infinity()
+                                     : to_seconds(good->t - run.steps.front().t);
+    };
+    std::cout << two << ": Good after " << first_good(both) << " s, one camera " << first_good(alone) << " s\n";
+    // The body rests at first: event cameras see nothing.
+    EXPECT_LE(first_good(both), mode == Mode::Frames ? 0.15 : first_good(alone)) << two;
+    EXPECT_LT(error_of(pair_flight(), both, two), 0.9 * error_of(pair_flight(), alone, one));
+  }
+}
+
 TEST(TwoOfAKind, GiveTheSameBitsTwice) {
   const FlightRun first = fly(pair_flight(), Mode::Fused, "events,events2,frames,frames2");
   const FlightRun second = fly(pair_flight(), Mode::Fused, "frames2,frames,events2,events");

@@ -72,6 +72,7 @@ struct OdometryConfig {
   LowLightConfig low_light;     ///< standard frames in the dark
   TrackerConfig event_tracker;  ///< `tracker.*` sets both trackers, but those of kPerCameraKind
   TrackerConfig frame_tracker;
+  StereoConfig stereo;
   KeyframeConfig keyframes;
   DepthConfig depth;
   EstimatorConfig estimator;

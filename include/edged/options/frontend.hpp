@@ -69,6 +69,16 @@ struct TemplateConfig {
   void visit(ConfigFields& fields);
 };
 
+/// Landmarks that cameras of one kind share.
+struct StereoConfig {
+  bool enabled = true;
+  static constexpr double nearest_m = 0.3;  ///< z-depth from which features of unknown depth are searched
+  double max_epipolar_px = 2.0;             ///< on the axis of the lens
+  static constexpr PatchConfig patch = {};
+
+  void visit(ConfigFields& fields);
+};
+
 struct TrackerConfig {
   DetectorConfig detector;
   KltConfig klt;

@@ -32,6 +32,7 @@ struct Alignment {
   std::vector<OdomState> states;  ///< one a frame; O z-up, origin and yaw at the first body pose
   double gravity_error = 0.0;     ///< |g| estimated without the constraint, relative to 9.81: a check of the solution
   double scale_sigma = 0.0;       ///< standard deviation of the longest baseline over its length, from the features
+  double baseline_sigma = 0.0;    ///< the same by the baselines between cameras; infinite with one
   std::set<FeatureId> outliers;   ///< features of dynamic objects
   /// Of the observations that it explains, the share that a running estimate explains too, 0 to 1: small if that one
   /// follows a dynamic object.

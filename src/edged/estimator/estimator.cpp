@@ -113,7 +113,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   result.waiting_for = std::move(found.waiting_for);
   if (!found.start) return false;
   const bool at_rest = found.start->scale_sigma == 0.0;
-  agreed_ = at_rest || (now && agrees(*now, found.start->window.newest().nav()));
+  agreed_ = at_rest || found.start->by_baselines || (now && agrees(*now, found.start->window.newest().nav()));
   agreed_by_itself_ = input.t + kUncontradicted;
   window_ = std::move(found.start->window);
   for (std::size_t camera = 0; camera < known_intrinsics_.size(); ++camera)

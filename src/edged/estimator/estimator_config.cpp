@@ -69,6 +69,13 @@ void CalibrationConfig::visit(ConfigFields& fields) {
   fields.add(
       "distortion_sigma", distortion_sigma,
       {"1", 0, 0.5, "Prior uncertainty of the first distortion coefficient of each camera. 0 keeps the given value."});
+  fields.add("relative_rotation_sigma_deg", relative_rotation_sigma_deg,
+             {"deg", 0.001, 10, "Prior uncertainty of the rotation between a camera and the first one of its kind."});
+  fields.add(
+      "baseline_sigma_mm", baseline_sigma_mm,
+      {"mm", 0, 500,
+       "Prior uncertainty of the position of a camera relative to the first one of its kind. 0: none but that of "
+       "lever_arm_sigma_mm."});
   fields.add("imu_sigma", imu_sigma,
              {"1", 0, 0.1,
               "Prior uncertainty of scale factors and axis misalignment of gyroscope and accelerometer. 0 keeps them "

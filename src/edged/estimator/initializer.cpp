@@ -33,6 +33,12 @@ constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
 constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias alone causes 0.9
 constexpr double kMaxBiasSigmas = 4.0;     // of the accelerometer bias
 constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
+// Where cameras share features: three views determine velocity and gravity, as depths are known.
+constexpr int kStereoViews = 3;
+constexpr double kStereoSpacing_s = 0.04;
+// [rad/s] around zero: in so short a time the alignment takes slow motion for a bias.
+constexpr double kPairGyroBiasSigma = 0.05;
+constexpr double kMaxSpeedSigma = 0.06;  // [m/s] of the newest state, worst direction
 constexpr double kAlignmentSlack =
     1.5;  // the scale of the solved window may be more certain than that of the alignment
 
@@ -58,6 +64,16 @@ double visual_rms(const Window& window) {
   return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / (2.0 * n));
 }
 
+/// Whether cameras observe enough features together for a start.
+bool shares_features(const std::vector<CameraObservations>& observations) {
+  std::set<FeatureId> seen;
+  std::ptrdiff_t shared = 0;
+  for (const CameraObservations& view : observations) {
+    for (const FeatureObservation& feature : view.features) shared += seen.insert(feature.id).second ? 0 : 1;
+  }
+  return shared >= kMinStartLandmarks;
+}
+
 /// Total angle of the body's rotation over the samples, back and forth both counted [rad].
 double turned_rad(const std::vector<ImuSample>& imu) {
   double angle = 0.0;
@@ -68,6 +84,14 @@ double turned_rad(const std::vector<ImuSample>& imu) {
 std::string scale_text(double sigma, double most) {
   return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % required",
                      100.0 * std::min(sigma, 9.99), 100.0 * most);
+}
+
+/// The reason to wait for more views of a pair; empty where the velocity is known.
+std::string doubt_about_speed(const Window& window) {
+  const std::optional<Matrix15d> P = covariance(window, window.newest_id());
+  const double sigma = P ? std::sqrt(P->diagonal().segment<3>(6).maxCoeff()) : kFree;
+  if (sigma <= kMaxSpeedSigma) return "";
+  return fmt::format("views that determine the velocity: known to {:.2f} m/s, {:.2f} required", sigma, kMaxSpeedSigma);
 }
 
 /// Standard deviation of the newest state's tilt, of the worst direction [rad].
@@ -131,7 +155,8 @@ bool Initializer::buffer_view(const EstimatorInput& input) {
 
 /// In a fast rotation a feature crosses the view within a tenth of a second, so views must be close.
 bool Initializer::view_due(const EstimatorInput& input) const {
-  return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(config_.init_spacing_s) ||
+  const double spacing_s = shares_features(input.observations) ? kStereoSpacing_s : config_.init_spacing_s;
+  return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(spacing_s) ||
          turned_rad(pending_imu_) > config_.init_turn_deg * kDegree;
 }
 
@@ -185,8 +210,9 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
 }
 
 StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
-  if (buffer_.size() < static_cast<std::size_t>(config_.init_min_views)) {
-    return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
+  const int wanted = shares_features(buffer_.back().observations) ? kStereoViews : config_.init_min_views;
+  if (buffer_.size() < static_cast<std::size_t>(wanted)) {
+    return {{}, fmt::format("{} of {} views in motion", buffer_.size(), wanted)};
   }
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
@@ -212,17 +238,20 @@ StartResult Initializer::start_from(const Alignment& alignment, External externa
     const double seen = kGravity * (1.0 + alignment.gravity_error);
     return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
   }
-  if (!(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
+  const bool by_baselines = alignment.baseline_sigma <= config_.init_scale_sigma;
+  if (!by_baselines && !(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
-  next_solve_ = buffer_.back().t + kSolveEvery;
+  next_solve_ = buffer_.back().t + (by_baselines ? Duration(0) : kSolveEvery);
   Window window = aligned_window(alignment, external);
   solve_start(window);
-  std::string doubt = doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma);
+  const double slack = by_baselines ? 1.0 : most_scale_sigma / config_.init_scale_sigma;
+  std::string doubt = doubt_about(window, kMaxTiltSigma_deg * slack);
+  if (doubt.empty() && by_baselines) doubt = doubt_about_speed(window);
   if (!doubt.empty()) return {{}, std::move(doubt)};
-  const double sigma = scale_sigma(window);
+  const double sigma = by_baselines ? alignment.baseline_sigma : scale_sigma(window);
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
-  return {StartWindow{std::move(window), sigma, alignment.outliers}};
+  return {StartWindow{std::move(window), by_baselines, sigma, alignment.outliers}};
 }
 
 void Initializer::solve_start(Window& window) const {
@@ -283,8 +312,13 @@ Window Initializer::aligned_window(const Alignment& alignment, External external
   window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
   OdomState unbiased = state.nav();
   unbiased.bias_accel.setZero();
+  double gyro_bias_sigma = config_.gyro_bias_sigma;
+  if (alignment.baseline_sigma <= config_.init_scale_sigma) {
+    unbiased.bias_gyro.setZero();
+    gyro_bias_sigma = kPairGyroBiasSigma;
+  }
   window.add_soft_prior(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
-                                     {kFree, config_.gyro_bias_sigma, config_.accel_bias_sigma}));
+                                     {kFree, gyro_bias_sigma, config_.accel_bias_sigma}));
   if (external == External::Unused) return window;
   ExternalFactors factors(config_.height, config_.velocity);
   auto at = window.states().begin();

@@ -22,6 +22,7 @@ namespace edged {
 /// The initial window: its newest state is that of the packet.
 struct StartWindow {
   Window window;
+  bool by_baselines = false;          ///< between cameras the scale is known, not by motion
   double scale_sigma = 0.0;           ///< of ln scale; 0 at rest, where no landmark has been scaled yet
   std::set<FeatureId> outliers = {};  ///< features of dynamic objects
 };

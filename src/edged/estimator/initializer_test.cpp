@@ -114,6 +114,32 @@ INSTANTIATE_TEST_SUITE_P(
                     StartCase{"without_turning", {.turn = 0.0}, 4.0}, StartCase{"two_cameras", {.cameras = 2}, 3.0}),
     [](const auto& test) { return test.param.name; });
 
+/// Two cameras that share features need no motion; with noise of half a pixel they need more views.
+TEST(Initializer, WithAPairStartsWhateverTheMotion) {
+  const std::pair<const char*, TestWorldOptions> kinds[] = {{"rest", {.rest_s = 5.0}},
+                                                            {"slow", {.tempo = 0.15}},
+                                                            {"rotation", {.speed = 0.0}},
+                                                            {"usual", {}},
+                                                            {"fast", {.tempo = 2.5}}};
+  for (const auto& [noise_px, within_s] : {std::pair{0.15, 0.41}, {0.5, 1.51}}) {
+    for (auto [name, options] : kinds) {
+      options.cameras = 2, options.shared_ids = true, options.pixel_noise = noise_px;
+      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        options.seed = seed;
+        std::vector<std::string> waited_for;
+        const double begin_s = options.rest_s > 0.0 ? 0.0 : 1.0 + 0.7 * static_cast<double>(seed);
+        const auto started = start(options, begin_s, 2.0, &waited_for);
+        ASSERT_TRUE(started) << name << ' ' << seed << ": " << waited_for.back();
+        std::printf("%.2f px, %s %d: after %.2f s, tilt %.2f deg, speed %.3f of %.3f m/s off\n", noise_px, name,
+                    static_cast<int>(seed), started->after_s, started->tilt_deg, started->speed_error, started->speed);
+        EXPECT_LT(started->after_s, within_s) << name;
+        EXPECT_LT(started->tilt_deg, 3.0) << name;
+        EXPECT_LT(started->speed_error, 0.03 * started->speed + 0.06) << name;
+      }
+    }
+  }
+}
+
 TEST(Initializer, RefusesPureRotationWithNumbers) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const double pixel_walk : {0.0, 0.7}) {

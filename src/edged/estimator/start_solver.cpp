@@ -6,8 +6,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+
+#include "edged/estimator/baseline_scale.hpp"
 
 namespace edged {
 
@@ -280,6 +283,19 @@ double StartSolver::relative_sigma(const RefinedStart& start) const {
   const Vector3d way = farthest.position(start.x);
   const Start d_way = farthest.d_position().transpose() * way;
   return std::sqrt(d_way.dot(start.covariance * d_way)) / way.squaredNorm();
+}
+
+/// Of each track the first frame that two cameras have it in: later ones have the same errors.
+double StartSolver::baseline_sigma() const {
+  BaselineScale scale;
+  const auto ray = [&](const StartObservation& seen) {
+    return Vector3d(rig_->cameras[seen.camera].T_B_C.R() * seen.point.homogeneous());
+  };
+  for (const StartTrack& track : tracks_) {
+    const auto first = std::ranges::adjacent_find(track.observations, {}, &StartObservation::frame);
+    if (first != track.observations.end()) scale.add(ray(*first), ray(*std::next(first)), first->sigma);
+  }
+  return scale.sigma();
 }
 
 Vector3d StartSolver::direction(std::size_t track) const {

@@ -103,6 +103,9 @@ class StartSolver {
   /// Standard deviation of the longest baseline over its length.
   double relative_sigma(const RefinedStart& start) const;
 
+  /// Standard deviation of ln scale by the baselines between cameras.
+  double baseline_sigma() const;
+
   /// Direction of a track in the middle of its life, in the first body frame.
   Eigen::Vector3d direction(std::size_t track) const;
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/estimator/relative_pose_prior.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
@@ -119,6 +120,12 @@ void Window::free_calibration(const CalibrationConfig& config) {
         if (i != kTimeAt && sigmas[i] > 0.0) sigmas[i] = kFree;
     }
     add_soft_prior(prior_at({BlockKind::Calibration, camera}, of.calibration, sigmas));
+    const auto beside = std::ranges::find_if(
+        cameras_, [&](const WindowCamera& other) { return other.given.modality == of.given.modality; });
+    if (const auto first = static_cast<std::size_t>(beside - cameras_.begin());
+        first < camera && config.baseline_sigma_mm > 0.0)
+      add_soft_prior(relative_pose_prior({first, beside->given.T_B_C, beside->calibration},
+                                         {camera, of.given.T_B_C, of.calibration}, config));
   }
   add_soft_prior(prior_at(kImuIntrinsicsKey, imu_intrinsics_, Eigen::VectorXd::Constant(18, config.imu_sigma)));
 }

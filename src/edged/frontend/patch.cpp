@@ -140,6 +140,17 @@ std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corn
   return patch;
 }
 
+std::vector<double> correlations(const Patch& patch, const cv::Mat& image, std::span<const PatchPlace> places) {
+  std::vector<double> found(places.size(), -1.0);
+  const std::optional<Template> wanted = template_of(patch);
+  if (!wanted) return found;
+  Samples seen;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (sample(image, places[i].pixel, places[i].A, seen)) found[i] = seen.dot(wanted->grey);
+  }
+  return found;
+}
+
 std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, const Eigen::Vector2d& expected,
                                       const Eigen::Matrix2d& A, double radius_px, const PatchConfig& config) {
   constexpr double kConverged_px = 0.02, kFarthest_px = 2.0;

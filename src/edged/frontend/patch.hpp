@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "edged/options/frontend.hpp"
 
@@ -24,6 +26,15 @@ struct Patch {
 
 /// Nothing where it would reach beyond the image. image: CV_8UC1.
 std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner);
+
+/// Where a patch is looked for: its middle [px], and pixels of the image by pixels of the patch.
+struct PatchPlace {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix2d A;
+};
+
+/// Normalised cross correlation of the patch at each place; -1 where it leaves the image or is uniform.
+std::vector<double> correlations(const Patch& patch, const cv::Mat& image, std::span<const PatchPlace> places);
 
 struct PatchMatch {
   Eigen::Vector2d pixel;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "edged/frontend/patch.hpp"
+#include "edged/frontend/patch_outline.hpp"
 #include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
@@ -37,11 +38,10 @@ class Templates {
  private:
   struct Look {
     Patch patch;
-    SE3 T_cur_look;                        ///< camera at the reference patch to camera now
-    Eigen::Vector2d corner, right, below;  ///< on the unit plane: the corner and two neighbouring points
-    bool fits = true;                      ///< at the last call of match
+    SE3 T_cur_look;  ///< camera at the reference patch to camera now
+    PatchOutline outline;
+    bool fits = true;  ///< at the last call of match
   };
-  std::optional<Eigen::Matrix2d> warp(const Look& look, const Eigen::Vector3d& p_C) const;
 
   CameraModel camera_;
   PatchConfig config_;

@@ -122,6 +122,15 @@ OutlierResult FeatureTracker::reject_outliers(Reference reference, const std::op
   return result;
 }
 
+Track FeatureTracker::first_track(FeatureId id, const Eigen::Vector2d& pixel) const {
+  Track track;
+  track.id = id;
+  track.pixel = track.previous_pixel = pixel;
+  track.point = track.previous_point = camera_.pixel_to_point(pixel);
+  track.first_seen = now_;
+  return track;
+}
+
 int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id, int most) {
   if (image.empty()) return 0;
   check_image(image);
@@ -131,14 +140,21 @@ int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id, int most) {
   if (limit <= 0) return 0;
   const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector, unused_);
   for (const Corner& corner : corners) {
-    Track track;
-    track.id = next_id++;
-    track.pixel = track.previous_pixel = corner.pixel;
-    track.point = track.previous_point = camera_.pixel_to_point(corner.pixel);
-    track.first_seen = now_;
-    tracks_.push_back(track);
+    tracks_.push_back(first_track(next_id++, corner.pixel));
   }
   return static_cast<int>(corners.size());
+}
+
+const Track* FeatureTracker::find(FeatureId id) const {
+  const auto track = std::ranges::lower_bound(tracks_, id, {}, &Track::id);
+  return track != tracks_.end() && track->id == id ? &*track : nullptr;
+}
+
+void FeatureTracker::adopt(FeatureId id, const Eigen::Vector2d& pixel) {
+  std::erase_if(tracks_, [&](const Track& track) { return (track.pixel - pixel).norm() < config_.merge_px; });
+  const auto next = std::ranges::lower_bound(tracks_, id, {}, &Track::id);
+  EDGED_CHECK(next == tracks_.end() || next->id != id, "camera {} follows feature {} already", name_, id);
+  tracks_.insert(next, first_track(id, pixel));
 }
 
 bool FeatureTracker::needs_corners() const {

@@ -67,6 +67,12 @@ class FeatureTracker {
   /// next_id. Returns how many. most: live tracks to end up with, if fewer than the configured number.
   int detect(const cv::Mat& image, FeatureId& next_id, int most = std::numeric_limits<int>::max());
 
+  /// Adds the feature of another camera, found here in the newest image; not one that is followed already. A track at
+  /// that place is the same feature under another name and ends.
+  void adopt(FeatureId id, const Eigen::Vector2d& pixel);
+  /// Null where it is not followed.
+  const Track* find(FeatureId id) const;
+
   /// True when fewer tracks are alive than refill_share of max_features.
   bool needs_corners() const;
 
@@ -97,6 +103,7 @@ class FeatureTracker {
   };
 
   void check_image(const cv::Mat& image) const;
+  Track first_track(FeatureId id, const Eigen::Vector2d& pixel) const;
   std::vector<Eigen::Vector3d> expected(const TrackPrediction& prediction) const;
   std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
                                      const Eigen::Vector2d& offset_px) const;

@@ -339,5 +339,24 @@ TEST(Tracker, FindsAndFollowsNothingUnderTheMask) {
   }
 }
 
+TEST_F(Tracking, FollowsAFeatureOfAnotherCameraUnderItsId) {
+  FeatureTracker tracker = start(SE3());
+  const std::size_t before = tracker.tracks().size();
+  const Track own = tracker.tracks()[before / 2];
+  const FeatureId other = 100'000;
+  tracker.adopt(other, own.pixel + Eigen::Vector2d(0.4, 0.0));
+  ASSERT_EQ(tracker.tracks().size(), before) << "it takes the place of the track there";
+  EXPECT_EQ(tracker.find(own.id), nullptr);
+  tracker.adopt(own.id, Eigen::Vector2d(5.0, 5.0));
+  EXPECT_TRUE(std::ranges::is_sorted(tracker.tracks(), {}, &Track::id));
+  EXPECT_THROW(tracker.adopt(other, {50.0, 50.0}), CheckError);
+  tracker.mark_keyframe();
+  const SE3 moved = pose({0.01, -0.01, 0.02}, {0.03, 0.02, 0.02});
+  tracker.track(scene_.image(moved), at(1), std::nullopt);
+  ASSERT_NE(tracker.find(other), nullptr);
+  EXPECT_LT((tracker.find(other)->pixel - *scene_.moved(own.pixel + Eigen::Vector2d(0.4, 0.0), SE3(), moved)).norm(),
+            0.2);
+}
+
 }  // namespace
 }  // namespace edged

@@ -63,8 +63,7 @@ void Channel::reject(const SE3& T_O_B, bool trust_gyro) {
   tracker.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
-void Channel::mark_keyframe(const cv::Mat& image, const SE3& T_O_B, FeatureId& next_feature, int most) {
-  tracker.detect(image, next_feature, most);
+void Channel::mark_keyframe(const SE3& T_O_B) {
   tracker.mark_keyframe();
   T_O_Bkeyframe = T_O_B;
 }

@@ -8,6 +8,7 @@
 
 #include "edged/frontend/tracker.hpp"
 #include "edged/options.hpp"
+#include "edged/pipeline/body_motion.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -20,6 +21,8 @@ class Channel {
       : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
 
   SE3 T_O_C(const SE3& T_O_B) const { return T_O_B * camera.T_B_C; }
+  /// The body at the instant of the image of a packet: at its time, plus the residual time offset of the camera.
+  SE3 T_O_B_now(const BodyMotion& body) const { return body.moved_on(camera.time_offset); }
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
   Eigen::Matrix3d since_keyframe(const SE3& T_O_B) const;
 
@@ -27,8 +30,8 @@ class Channel {
   void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with the rotation of the gyro.
   void reject(const SE3& T_O_B, bool trust_gyro);
-  /// Detects new features in the image, up to `most` live ones, and makes it the keyframe.
-  void mark_keyframe(const cv::Mat& image, const SE3& T_O_B, FeatureId& next_feature, int most);
+  /// Makes the newest image the keyframe.
+  void mark_keyframe(const SE3& T_O_B);
 
   /// Track survival rate: running mean of the share of tracks that survive an image, 0 .. 1.
   double survival_rate() const { return survival_rate_; }

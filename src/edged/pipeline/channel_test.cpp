@@ -19,7 +19,8 @@ class ChannelHealth : public testing::Test {
   Channel start() {
     Channel channel(camera_, scene_.camera(), {}, {}, {});
     show(channel, scene_.image({}), 0);
-    channel.mark_keyframe(scene_.image({}), {}, next_id_, 1000);
+    channel.tracker.detect(scene_.image({}), next_id_, 1000);
+    channel.mark_keyframe({});
     return channel;
   }
 
@@ -55,7 +56,8 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
   const double after_one = channel.survival_rate();
   EXPECT_LT(after_one, 1.0);
   for (int i = 2; i <= 30; ++i) {
-    channel.mark_keyframe(darkness(), {}, next_id_, 1000);
+    channel.tracker.detect(darkness(), next_id_, 1000);
+    channel.mark_keyframe({});
     show(channel, darkness(), i);
   }
   EXPECT_LT(channel.survival_rate(), HealthConfig{}.min_survival_rate);
@@ -65,12 +67,14 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
 TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
   Channel channel = start();
   for (int i = 1; i <= 30; ++i) {
-    channel.mark_keyframe(darkness(), {}, next_id_, 1000);
+    channel.tracker.detect(darkness(), next_id_, 1000);
+    channel.mark_keyframe({});
     show(channel, darkness(), i);
   }
   for (int i = 31; i <= 80; ++i) {
     show(channel, scene_.image({}), i);
-    channel.mark_keyframe(scene_.image({}), {}, next_id_, 1000);
+    channel.tracker.detect(scene_.image({}), next_id_, 1000);
+    channel.mark_keyframe({});
   }
   EXPECT_GT(channel.survival_rate(), 0.95);
   EXPECT_FALSE(channel.observations().features.empty());
@@ -79,9 +83,11 @@ TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
 TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
   Channel channel(camera_, scene_.camera(), {}, {}, {});
   show(channel, scene_.image({}), 0);
-  channel.mark_keyframe(scene_.image({}), {}, next_id_, 25);
+  channel.tracker.detect(scene_.image({}), next_id_, 25);
+  channel.mark_keyframe({});
   EXPECT_EQ(channel.tracker.tracks().size(), 25U);
-  channel.mark_keyframe(scene_.image({}), {}, next_id_, 10);
+  channel.tracker.detect(scene_.image({}), next_id_, 10);
+  channel.mark_keyframe({});
   EXPECT_EQ(channel.tracker.tracks().size(), 25U) << "live tracks stay";
 }
 
@@ -89,8 +95,8 @@ TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
   const cv::Mat image = scene_.image({});
   Channel few(camera_, scene_.camera(), {}, {}, {}), many = few;
   for (Channel* channel : {&few, &many}) show(*channel, image, 0);
-  few.mark_keyframe(image, {}, next_id_, 40);
-  many.mark_keyframe(image, {}, next_id_, 1000);
+  few.tracker.detect(image, next_id_, 40);
+  many.tracker.detect(image, next_id_, 1000);
   const std::vector<ChannelView> views = {{&many, image, image}, {&few, image, image}};
   EXPECT_EQ(leading_channel({}), nullptr);
   EXPECT_EQ(leading_channel(views), &many);

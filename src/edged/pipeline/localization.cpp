@@ -145,11 +145,13 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
 }
 
 LandmarkDepths Localization::landmark_depths() const {
-  LandmarkDepths depths;
+  LandmarkDepths depths(rig_.cameras.size());
   for (const auto& [id, feature] : estimator_.window().features()) {
     if (!feature.anchor) continue;
-    const std::string& camera = rig_.cameras[feature.anchor->camera].name;
-    if (const std::optional<double> z = estimator_.depth(id, camera)) depths.emplace_hint(depths.end(), id, *z);
+    for (const auto& [camera, last_seen] : feature.last_seen) {
+      if (const std::optional<double> z = estimator_.depth(id, rig_.cameras[camera].name))
+        depths[camera].emplace(id, *z);
+    }
   }
   return depths;
 }

@@ -62,12 +62,12 @@ TEST_F(LocalizationInTheTestWorld, TellsVisionTheDepthsOfLandmarks) {
   const LocalizationOutput output = run(4.0);
   EXPECT_FALSE(output.correction.provisional);
   ASSERT_TRUE(output.correction.landmarks);
-  ASSERT_GT(output.correction.landmarks->size(), 30U);
+  ASSERT_GT(output.correction.landmarks->front().size(), 30U);
   const SE3 T_C_W = (world_.T_W_B(t()) * world_.rig().cameras.front().T_B_C).inverse();
   int all = 0, right = 0;
   for (const Landmark& landmark : output.step.landmarks) {
-    const auto depth = output.correction.landmarks->find(landmark.id);
-    if (depth == output.correction.landmarks->end()) continue;
+    const auto depth = output.correction.landmarks->front().find(landmark.id);
+    if (depth == output.correction.landmarks->front().end()) continue;
     const double truth = (T_C_W * world_.point_W(landmark.id)).z();
     right += std::abs(depth->second - truth) < 0.2 * truth ? 1 : 0;
     ++all;

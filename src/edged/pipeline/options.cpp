@@ -101,6 +101,7 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("health", health);
   fields.group("low_light", low_light);
   fields.pair("tracker", "events", event_tracker, "frames", frame_tracker, kPerCameraKind);
+  fields.group("stereo", stereo);
   fields.group("keyframes", keyframes);
   fields.group("depth", depth);
   fields.group("height", estimator.height);

@@ -11,8 +11,11 @@ namespace {
 /// After this time without a frame, event frames keep all their features.
 constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
-/// The body at the instant of the channel's image: that of the packet, plus the residual time offset of the camera.
-SE3 T_O_B_of(const Channel& channel, const BodyMotion& body) { return body.moved_on(channel.camera.time_offset); }
+/// The features of one of several cameras of a kind, whose budget is a third larger than that of one: more views of the
+/// same scene should not cost much more, but observe less of it with half of the features each.
+int part_of_budget(int features, std::size_t cameras) {
+  return cameras == 1 ? features : features * 4 / (3 * static_cast<int>(cameras));
+}
 
 }  // namespace
 
@@ -58,11 +61,11 @@ VisionOutput Vision::process(const VisionInput& input) {
   output.event_images = render(input, output.scene_depth);
   const std::vector<ChannelView> views = views_of(packet, output.event_images);
   for (const ChannelView& view : views) track(view, input, output.scene_depth);
-  for (const ChannelView& view : views) reject(view, input.body);
+  reject(views, input.body);
   output.keyframe = is_keyframe(input, views);
   if (output.keyframe) mark_keyframe(input, views);
   for (const ChannelView& view : views) {
-    view.channel->settle(T_O_B_of(*view.channel, input.body), output.keyframe);
+    view.channel->settle(view.channel->T_O_B_now(input.body), output.keyframe);
     output.observations.push_back(view.channel->observations());
   }
   output.images = images_of(views);
@@ -82,7 +85,7 @@ void Vision::correct(const VisionCorrection& correction, const BodyMotion& body)
     Channel& channel = channels_[i];
     if (correction.T_new_old) channel.move(*correction.T_new_old);
     channel.camera = rig_.cameras[i];
-    if (channel.has_image_of(t)) channel.settle(T_O_B_of(channel, body), last_keyframe_ == t);
+    if (channel.has_image_of(t)) channel.settle(channel.T_O_B_now(body), last_keyframe_ == t);
   }
   depth_.add_landmarks(t, landmarks_seen_by(channels_.front(), body));
   if (correction.ended) landmarks_.reset();
@@ -135,13 +138,13 @@ std::vector<EventImage> Vision::render(const VisionInput& input, double scene_de
 /// The landmarks of all cameras, in that one now.
 std::vector<SeenDepth> Vision::landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const {
   std::vector<SeenDepth> seen;
-  const SE3 T_C_O = viewer.T_O_C(T_O_B_of(viewer, body)).inverse();
+  const SE3 T_C_O = viewer.T_O_C(viewer.T_O_B_now(body)).inverse();
   for (const Channel& channel : channels_) {
     const SE3 T_C_last = T_C_O * channel.T_O_C(channel.T_O_Blast);
     for (const Track& track : channel.tracker.tracks()) {
-      const auto landmark = landmarks_->find(track.id);
-      if (landmark == landmarks_->end()) continue;
-      const Eigen::Vector3d p_C = T_C_last * (landmark->second * track.point.homogeneous());
+      const std::optional<double> depth = landmark_depth(channel, track.id);
+      if (!depth) continue;
+      const Eigen::Vector3d p_C = T_C_last * (*depth * track.point.homogeneous());
       if (p_C.z() > 0.0) seen.push_back({p_C.hnormalized(), p_C.z()});
     }
   }
@@ -182,20 +185,20 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
   const auto timer = timings_->measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
   TrackPrediction prediction;
   prediction.scene_depth = scene_depth;
-  prediction.depth = [this](FeatureId id) -> std::optional<double> {
-    if (!landmarks_) return std::nullopt;
-    const auto landmark = landmarks_->find(id);
-    return landmark == landmarks_->end() ? std::nullopt : std::optional(landmark->second);
-  };
+  prediction.depth = [&](FeatureId id) { return landmark_depth(channel, id); };
   // With one reference patch all errors of a track correlate, which the thresholds of initialization do not model: with
   // events alone 3 of 72 initializations have a wrong scale, 1 without.
   prediction.reference_patches = !provisional_;
-  channel.track(view.track, input.packet.t, T_O_B_of(channel, input.body), std::move(prediction));
+  channel.track(view.track, input.packet.t, channel.T_O_B_now(input.body), std::move(prediction));
 }
 
-void Vision::reject(const ChannelView& view, const BodyMotion& body) {
+void Vision::reject(std::span<const ChannelView> views, const BodyMotion& body) {
   const auto timer = timings_->measure("reject");
-  view.channel->reject(T_O_B_of(*view.channel, body), !gyro_saturated_);
+  for (auto view = views.begin(); view != views.end(); ++view) {
+    for (auto other = views.begin(); other != view; ++other)
+      if (comparable(*other, *view, config_.stereo)) drop_mismatches(*other, *view, body, config_.stereo);
+  }
+  for (const ChannelView& view : views) view.channel->reject(view.channel->T_O_B_now(body), !gyro_saturated_);
 }
 
 bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const {
@@ -212,7 +215,7 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   since.time = packet.t - *last_keyframe_;
   // Only the camera with most tracks: features on event frames drift and end earlier, and would cause keyframes that
   // good frames do not need.
-  const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(T_O_B_of(*leader, input.body));
+  const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(leader->T_O_B_now(input.body));
   since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
   since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
   return keyframe_reason(since, config_.keyframes) != KeyframeReason::None;
@@ -220,13 +223,27 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
 
 void Vision::mark_keyframe(const VisionInput& input, std::span<const ChannelView> views) {
   const auto timer = timings_->measure("detect");
-  for (const ChannelView& view : views) {
-    Channel& channel = *view.channel;
-    channel.mark_keyframe(view.detect, T_O_B_of(channel, input.body), next_feature_,
-                          features_wanted(channel, input.body.now().t));
+  for (auto view = views.begin(); view != views.end(); ++view) {
+    for (auto other = views.begin(); other != view; ++other) share(*other, *view, input.body);
+    view->channel->tracker.detect(view->detect, next_feature_, features_wanted(*view->channel, input.body.now().t));
+    for (auto other = views.begin(); other != view; ++other) share(*view, *other, input.body);
   }
+  for (const ChannelView& view : views) view.channel->mark_keyframe(view.channel->T_O_B_now(input.body));
   last_keyframe_ = input.packet.t;
   gyro_saturated_ = false;
+}
+
+void Vision::share(const ChannelView& from, const ChannelView& to, const BodyMotion& body) {
+  if (!comparable(from, to, config_.stereo)) return;
+  const auto depth = [this](const Channel& channel, FeatureId id) { return landmark_depth(channel, id); };
+  share_features(from, to, body, depth, features_wanted(*to.channel, body.now().t), config_.stereo);
+}
+
+std::optional<double> Vision::landmark_depth(const Channel& channel, FeatureId id) const {
+  if (!landmarks_) return std::nullopt;
+  const auto& of_camera = landmarks_->at(static_cast<std::size_t>(&channel - channels_.data()));
+  const auto landmark = of_camera.find(id);
+  return landmark == of_camera.end() ? std::nullopt : std::optional(landmark->second);
 }
 
 double Vision::carried_by_frames() const {
@@ -245,14 +262,14 @@ bool Vision::frames_carry(Timestamp t) const {
 }
 
 /// Frames give more accurate observations than events, if they show the feature: in good light a few features on the
-/// event frame are enough; in the dark, in glare and without frames it keeps all. Cameras of a kind share the budget of
-/// one: more views of the same scene should not cost more.
+/// event frame are enough; in the dark, in glare and without frames it keeps all.
 int Vision::features_wanted(const Channel& channel, Timestamp t) const {
   if (channel.camera.modality == Modality::Frames)
-    return config_.frame_tracker.detector.max_features / static_cast<int>(low_light_.size());
-  const int all = config_.event_tracker.detector.max_features, cameras = static_cast<int>(event_views_.size());
-  if (!frames_at_work(t)) return all / cameras;
-  return std::max(config_.health.min_event_features, all - static_cast<int>(carried_by_frames())) / cameras;
+    return part_of_budget(config_.frame_tracker.detector.max_features, low_light_.size());
+  const int all = config_.event_tracker.detector.max_features;
+  if (!frames_at_work(t)) return part_of_budget(all, event_views_.size());
+  return part_of_budget(std::max(config_.health.min_event_features, all - static_cast<int>(carried_by_frames())),
+                        event_views_.size());
 }
 
 bool Vision::is_quiet(const Packet& packet) const {

@@ -16,6 +16,7 @@
 #include "edged/pipeline/event_view.hpp"
 #include "edged/pipeline/packet.hpp"
 #include "edged/pipeline/scene_depth.hpp"
+#include "edged/pipeline/stereo.hpp"
 #include "edged/pipeline/tracked_image.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
@@ -39,8 +40,8 @@ struct VisionOutput {
   std::optional<RegionDepth> depth;              ///< for Eq. 5
 };
 
-/// z-depths of landmarks, each in its own camera at the newest state [m].
-using LandmarkDepths = std::map<FeatureId, double>;
+/// z-depths of landmarks in each camera at the newest state [m].
+using LandmarkDepths = std::vector<std::map<FeatureId, double>>;
 
 /// The feedback of localization.
 struct VisionCorrection {
@@ -81,8 +82,10 @@ class Vision {
   std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const;
   std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> event_images);
   void track(const ChannelView& view, const VisionInput& input, double scene_depth);
-  void reject(const ChannelView& view, const BodyMotion& body);
+  void reject(std::span<const ChannelView> views, const BodyMotion& body);
   bool is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const;
+  void share(const ChannelView& from, const ChannelView& to, const BodyMotion& body);
+  std::optional<double> landmark_depth(const Channel& channel, FeatureId id) const;
   void mark_keyframe(const VisionInput& input, std::span<const ChannelView> views);
   bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
   double carried_by_frames() const;

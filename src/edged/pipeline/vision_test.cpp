@@ -50,8 +50,8 @@ class PlaneVision : public testing::Test {
 
   /// All live tracks are landmarks at that depth.
   VisionCorrection landmarks_at(double depth_m, const VisionOutput& output) const {
-    VisionCorrection correction{{}, LandmarkDepths(), rig_.cameras};
-    for (const Track& track : output.images.front().tracks) correction.landmarks->emplace(track.id, depth_m);
+    VisionCorrection correction{{}, LandmarkDepths(1), rig_.cameras};
+    for (const Track& track : output.images.front().tracks) correction.landmarks->front().emplace(track.id, depth_m);
     return correction;
   }
 
@@ -146,6 +146,40 @@ TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
   ASSERT_EQ(cameras.size(), 1U);
   EXPECT_EQ(cameras.front().events.size(), 1U);
   EXPECT_EQ(cameras.front().rendered, 0U);
+}
+
+TEST_F(PlaneVision, GivesTheFeaturesOfTwoCamerasOneIdEach) {
+  const SE3 beside(so3::exp({0.0, 0.01, 0.0}), {0.1, 0.0, 0.0});
+  rig_.cameras.push_back({"beside", Modality::Frames, scene_.camera(), beside, Duration(0)});
+  for (const bool enabled : {true, false}) {
+    OdometryConfig config;
+    config.stereo.enabled = enabled;
+    Vision vision(rig_, config, Inference::Synchronous, timings_);
+    std::size_t shared = 0, of_one = 0;
+    for (int image = 0; image < 6; ++image) {
+      Packet both = packet(image);
+      both.frames.push_back({both.t, "cam", scene_.image(pose(image))});
+      both.frames.push_back({both.t, "beside", scene_.image(pose(image) * beside)});
+      const VisionOutput output = process(vision, both, image);
+      ASSERT_EQ(output.observations.size(), 2U);
+      of_one = output.observations[0].features.size();
+      shared = 0;
+      for (const FeatureObservation& feature : output.observations[0].features) {
+        const auto there = std::ranges::find(output.observations[1].features, feature.id, &FeatureObservation::id);
+        if (there == output.observations[1].features.end()) continue;
+        ++shared;
+        const auto pixel =
+            scene_.moved(*scene_.camera().project(feature.point.homogeneous()), pose(image), pose(image) * beside);
+        EXPECT_LT((*pixel - *scene_.camera().project(there->point.homogeneous())).norm(), 1.0) << feature.id;
+      }
+      vision.correct({{}, std::nullopt}, body_);
+    }
+    if (enabled) {
+      EXPECT_GT(shared, of_one / 2);
+    } else {
+      EXPECT_EQ(shared, 0U);
+    }
+  }
 }
 
 }  // namespace
