@@ -72,16 +72,16 @@ def measured(edged):
             f"`{shlex.join([str(name), *sys.argv[1:]])}`:")
 
 
-def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(), name=None):
+def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(), name=None, extra=()):
     """The folder of the recording in the cache, made if it is not there or was made with other options. name: in place of
-    the preset's."""
-    chosen = ["--preset", preset, "--seed", str(seed)]
+    the preset's; extra: further arguments."""
+    chosen = ["--preset", preset, "--seed", str(seed), *extra]
     if duration is not None:
         chosen += ["--duration", f"{duration:g}"]
     for setting in settings:
         chosen += ["--set", setting]
     folder = cache / (f"{name or preset}_{seed}" + ("" if duration is None else f"_{duration:g}s"))
-    resolved = call([edged, "simulate", *chosen, "--list"])
+    resolved = call([edged, "simulate", *chosen, "--list"]) + "".join(f"# {argument}\n" for argument in extra)
     made_with = folder / "simulation.yaml"
     if not fresh and made_with.is_file() and made_with.read_text() == resolved:
         return folder
