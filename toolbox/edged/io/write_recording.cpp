@@ -32,6 +32,7 @@ constexpr std::array kWritable = {
                    .imu = true,
                    .ground_truth = true,
                    .external = true,
+                   .several_cameras = true,
                    .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
@@ -39,18 +40,30 @@ constexpr std::array kWritable = {
                    .extension = ".aedat4",
                    .frames = true,
                    .imu = true,
+                   .several_cameras = true,
                    .tick = kMicrosecond,
                    .open = write_aedat4},
     WritableFormat{.name = "csv", .extension = ".csv", .open = write_csv},
-    WritableFormat{
-        .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
-    WritableFormat{
-        .name = "mcap", .extension = ".mcap", .frames = true, .imu = true, .ground_truth = true, .open = write_mcap},
+    WritableFormat{.name = "bag",
+                   .extension = ".bag",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .several_cameras = true,
+                   .open = write_ros1_bag},
+    WritableFormat{.name = "mcap",
+                   .extension = ".mcap",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .several_cameras = true,
+                   .open = write_mcap},
     WritableFormat{.name = "hdf5",
                    .extension = ".h5",
                    .frames = true,
                    .imu = true,
                    .ground_truth = true,
+                   .several_cameras = true,
                    .tick = kMicrosecond,
                    .open = write_hdf5},
 };
@@ -106,6 +119,13 @@ class Sieve {
   bool round_;
 };
 
+void refuse_several_event_cameras(const DatasetInfo& info, const WritableFormat& format) {
+  for (const RecordedCamera& camera : info.more_cameras)
+    if (camera.modality == Modality::Events)
+      throw InputError::format("{}: format {} holds one event camera, not both {} and {}: choose one with --cameras",
+                               info.name, format.name, info.event_camera, camera.name);
+}
+
 }  // namespace
 
 std::span<const WritableFormat> writable_formats() { return kWritable; }
@@ -135,6 +155,7 @@ WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, cons
   if (is_file && existed) throw InputError::format("{}: is there already: give another name", path.string());
   if (!dataset.info().has_events && !format.frames && !format.imu)
     throw InputError::format("{}: holds no events, and format {} holds nothing else", dataset.info().name, format.name);
+  if (!format.several_cameras) refuse_several_event_cameras(dataset.info(), format);
   try {
     const std::unique_ptr<RecordingWriter> writer = format.open({path, dataset.info(), calibration});
     Sieve sieve(*writer, format, options.round);
