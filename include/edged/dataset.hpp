@@ -55,7 +55,7 @@ struct DatasetInfo {
   std::string event_camera = "events";  ///< camera name of its event batches
   std::string frame_camera = "frames";  ///< camera name of its frames
   /// Those beside the first of a kind, which the two names above are: event cameras, then frame cameras.
-  std::vector<RecordedCamera> more_cameras;
+  std::vector<RecordedCamera> more_cameras = {};
 };
 
 /// All cameras whose measurements the recording delivers: event cameras, then frame cameras, of each kind the first

@@ -87,6 +87,15 @@ std::string usual_camera_name(Modality modality, std::size_t index) {
   return kind_name(modality) + (index == 0 ? "" : std::to_string(index + 1));
 }
 
+std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name) {
+  std::size_t events = 0, frames = 0;
+  for (const RecordedCamera& camera : all) {
+    std::size_t& place = camera.modality == Modality::Events ? events : frames;
+    if (name == usual_camera_name(camera.modality, place++)) return camera.name;
+  }
+  return std::nullopt;
+}
+
 NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<std::string>& streams,
                           const std::vector<std::string>& wanted, const std::string& file) {
   NamedStreams named;

@@ -30,6 +30,7 @@ std::size_t WriterSetup::cameras(Modality modality) const {
 
 std::size_t WriterSetup::place_of(const std::string& camera, Modality modality) const {
   const std::vector<RecordedCamera> known = of_kind(modality);
+  if (known.size() < 2) return 0;
   const auto found = std::ranges::find(known, camera, &RecordedCamera::name);
   if (found == known.end())
     throw InputError::format("{}: camera '{}' is not among those that the recording names", info.name, camera);

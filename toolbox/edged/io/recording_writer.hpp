@@ -38,7 +38,8 @@ struct WriterSetup {
 
   /// Number of cameras of a kind in the recording, at least 1.
   std::size_t cameras(Modality modality) const;
-  /// The place of that camera of the recording among those of its kind. Throws InputError for an unknown one.
+  /// The place of that camera of the recording among those of its kind: 0 of a single one, whatever its name. Throws
+  /// InputError for an unknown one.
   std::size_t place_of(const std::string& camera, Modality modality) const;
 
   /// The calibration with the usual names (usual_camera_name) of the cameras, as readers of formats without names give

@@ -144,12 +144,21 @@ class CameraChooser {
     free_ = candidates(topics_, role());
     take_wanted();
     if (!wishes_.wanted.contains(kind_name(modality_))) {
+      const std::size_t by_user = chosen_.size();
       take_calibrated();
-      if (chosen_.empty()) take_by_names(ties);
+      if (chosen_.size() == by_user) take_by_names(ties);
     }
     std::ranges::stable_sort(chosen_, {}, [this](const CameraTopic& camera) { return rank(camera.name); });
-    keep_those_to_read();
     return chosen_;
+  }
+
+  /// Those of the chosen cameras that are read.
+  std::vector<CameraTopic> to_read() const {
+    std::vector<std::string> names;
+    for (const CameraTopic& camera : chosen_) names.push_back(camera.name);
+    std::vector<CameraTopic> read;
+    for (const std::size_t i : cameras_to_read(names, wishes_.cameras, wishes_.all_cameras)) read.push_back(chosen_[i]);
+    return read;
   }
 
  private:
@@ -236,25 +245,29 @@ class CameraChooser {
   }
 
   void take_by_names(std::string& ties) {
+    const auto by_user = [this](const std::string& name) {
+      return std::ranges::find(chosen_, name, &CameraTopic::name) != chosen_.end();
+    };
+    Rig rest = wishes_.rig ? *wishes_.rig : Rig{};
+    std::erase_if(rest.cameras, [&](const RigCamera& camera) { return by_user(camera.name); });
+    const auto left = std::ranges::count(rest.cameras, modality_, &RigCamera::modality);
     std::ranges::stable_sort(free_, {}, [this](std::size_t i) { return topics_[i].name; });
-    if (free_.size() > 1 && !rig_.empty() && free_.size() > rig_.size()) {
+    if (free_.size() > 1 && !rig_.empty() && free_.size() > static_cast<std::size_t>(left)) {
       ties += fmt::format("; {}: {}", kind_name(modality_), listed(topics_, free_));
       return;
     }
     std::vector<std::string> streams;
     for (const std::size_t i : free_) streams.push_back(topics_[i].name);
-    const NamedStreams named = name_streams(wishes_.rig, modality_, streams, wishes_.cameras, file_);
+    NamedStreams named = name_streams(&rest, modality_, streams, wishes_.cameras, file_);
+    for (std::string& name : named.names)  // two cameras of one name are none
+      for (std::size_t i = 0; by_user(name); ++i) name = usual_camera_name(modality_, i);
     if (!named.said.empty()) spdlog::warn(fmt::format("{}; --topic CAMERA=NAME assigns others", named.said));
+    if (named.said.empty() && streams.size() > 1 && !wishes_.all_cameras)
+      spdlog::warn(fmt::format("{}: topics of {} are the cameras {} in the order {}; --topic CAMERA=NAME assigns others",
+                               file_, kind_name(modality_), fmt::join(named.names, ", "), fmt::join(streams, ", ")));
     const std::vector<std::size_t> all = free_;
-    for (std::size_t i = 0; i < all.size(); ++i) take(named.names[i], all[i]);
-  }
-
-  void keep_those_to_read() {
-    std::vector<std::string> names;
-    for (const CameraTopic& camera : chosen_) names.push_back(camera.name);
-    std::vector<CameraTopic> read;
-    for (const std::size_t i : cameras_to_read(names, wishes_.cameras, wishes_.all_cameras)) read.push_back(chosen_[i]);
-    chosen_ = std::move(read);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!wishes_.wanted.contains(named.names[i])) take(named.names[i], all[i]);  // else the user leaves it out
   }
 
   const std::vector<Topic>& topics_;
@@ -293,7 +306,10 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const TopicWishes& w
   for (std::size_t r = 0; r < kRoleNames.size(); ++r) {
     const auto role = static_cast<Role>(r);
     if (const auto modality = modality_of(role)) {
-      const std::vector<CameraTopic> cameras = CameraChooser(topics, wishes, file, *modality).choose(ties);
+      CameraChooser chooser(topics, wishes, file, *modality);
+      for (const CameraTopic& camera : chooser.choose(ties))
+        choice.known.push_back({camera.name, camera.modality, topics[camera.topic].name});
+      const std::vector<CameraTopic> cameras = chooser.to_read();
       if (!cameras.empty()) choice.topics[r] = cameras.front().topic;
       choice.cameras.insert(choice.cameras.end(), cameras.begin(), cameras.end());
       continue;

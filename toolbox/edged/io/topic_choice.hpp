@@ -66,6 +66,7 @@ struct CameraTopic {
 struct TopicChoice {
   std::array<std::optional<std::size_t>, kRoleNames.size()> topics;  ///< of events and frames the first camera's
   std::vector<CameraTopic> cameras;  ///< that are read: event cameras, then frame cameras, of each kind the first first
+  std::vector<RecordedCamera> known;  ///< the same with those that are not read
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
   /// As StreamedDataset needs them.
   std::vector<RecordedCamera> recorded(const std::vector<Topic>& of) const;

@@ -39,7 +39,7 @@ class Aedat4File final : public Aedat4Dataset {
         last_at_(packets_at),
         end_(file_.size()) {
     choose(header_.streams, rig, options);
-    info_.pose_frame = header_.pose_frame;
+    set_pose_frame(header_.pose_frame);
     read_table();
     begin_chosen();
   }

@@ -73,6 +73,10 @@ void Aedat4Dataset::choose(const std::vector<Aedat4Stream>& streams, const Rig* 
   }
 }
 
+void Aedat4Dataset::set_pose_frame(const std::string& name) {
+  info_.pose_frame = camera_by_usual_name(choice_.known, name).value_or(name);
+}
+
 bool Aedat4Dataset::reads(std::size_t stream) const {
   if (const auto camera = choice_.camera_of(stream)) return wants(camera->modality);
   return choice_.of(Role::Imu) == stream;

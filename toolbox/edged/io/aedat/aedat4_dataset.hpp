@@ -18,6 +18,8 @@ class Aedat4Dataset : public StreamedDataset {
   /// Chooses the streams: the only one of its type, those that the user names, or several cameras. The sizes of event
   /// sensors are those of the rig, else options.geometry, else those of the streams. Throws InputError.
   void choose(const std::vector<Aedat4Stream>& streams, const Rig* rig, const RecordingOptions& options);
+  /// The frame of poses that the header names.
+  void set_pose_frame(const std::string& name);
   void begin_chosen() { begin(cameras_, choice_.of(Role::Imu).has_value()); }
 
   /// Whether the packets of that stream, by its place in choose(), are needed.

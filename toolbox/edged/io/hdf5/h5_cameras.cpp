@@ -59,15 +59,15 @@ std::vector<EventsPlace> event_places(const H5File& file, const Hdf5Layout& layo
   return places;
 }
 
-/// The names of the cameras of a kind and the places of those that are read. Logs how they are assigned to the rig.
-std::pair<std::vector<std::string>, std::vector<std::size_t>> choose_cameras(const std::vector<std::string>& streams,
-                                                                             Modality modality, const fs::path& file,
-                                                                             const Rig* rig,
-                                                                             const RecordingOptions& options) {
-  NamedStreams named = name_streams(rig, modality, streams, options.cameras, file.string());
-  std::vector<std::size_t> places = cameras_to_read(named.names, options.cameras, options.all_cameras);
+/// Names the cameras of a kind and adds them to those that are known. Returns the places of those that are read. Logs
+/// how they are assigned to the rig.
+std::vector<std::size_t> choose_cameras(H5Cameras& cameras, const std::vector<std::string>& streams, Modality modality,
+                                        const Rig* rig, const RecordingOptions& options) {
+  if (streams.empty()) return {};
+  const NamedStreams named = name_streams(rig, modality, streams, options.cameras, streams.front());
   if (!named.said.empty()) spdlog::warn(named.said);
-  return {std::move(named.names), std::move(places)};
+  for (std::size_t i = 0; i < streams.size(); ++i) cameras.known.push_back({named.names[i], modality, streams[i]});
+  return cameras_to_read(named.names, options.cameras, options.all_cameras);
 }
 
 void add_event_cameras(H5Cameras& cameras, const H5File& main, const Hdf5Layout& layout,
@@ -76,19 +76,20 @@ void add_event_cameras(H5Cameras& cameras, const H5File& main, const Hdf5Layout&
   std::vector<std::string> streams;
   for (const EventsPlace& place : places)
     streams.push_back(place.file == main.path() ? path_of_camera(layout.events, place.camera) : place.file.string());
-  const auto [names, read] = choose_cameras(streams, Modality::Events, main.path(), rig, options);
-  for (const std::size_t i : read) {
+  for (const std::size_t i : choose_cameras(cameras, streams, Modality::Events, rig, options)) {
+    RecordedCamera recorded = cameras.known[i];
     const auto& [path, camera] = places[i];
     const H5File file(path);
     auto events = H5Events::find(file, layout, camera);
     if (!events)
       throw InputError::format("{}: has no events as {} has them; leave it out with --set cameras={}", path.string(),
-                               main.path().filename().string(), names.front());
+                               main.path().filename().string(), cameras.known.front().name);
     if (file.cut()) cameras.cut.push_back(path);
     auto said = options.geometry ? options.geometry : stated_sensor(file, layout, camera);
     if (!said) said = usual_sensor;
     if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);
-    cameras.recorded.push_back({names[i], Modality::Events, streams[i], event_sensor_size(path, said, rig, names[i])});
+    recorded.sensor = event_sensor_size(path, said, rig, recorded.name);
+    cameras.recorded.push_back(recorded);
     cameras.events.push_back(std::move(*events));
   }
 }
@@ -106,9 +107,9 @@ void add_frame_cameras(H5Cameras& cameras, const H5File& file, const Hdf5Layout&
       streams.push_back(list.file.string());
       frames.emplace_back(list);
     }
-  const auto [names, read] = choose_cameras(streams, Modality::Frames, file.path(), rig, options);
-  for (const std::size_t i : read) {
-    cameras.recorded.push_back({names[i], Modality::Frames, streams[i]});
+  const std::size_t before = cameras.known.size();
+  for (const std::size_t i : choose_cameras(cameras, streams, Modality::Frames, rig, options)) {
+    cameras.recorded.push_back(cameras.known[before + i]);
     cameras.frames.push_back(std::move(frames[i]));
   }
 }

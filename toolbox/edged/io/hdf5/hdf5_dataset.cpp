@@ -10,6 +10,7 @@
 #include <span>
 
 #include "edged/core/check.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/hdf5/h5_cameras.hpp"
 #include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/hdf5/layouts.hpp"
@@ -57,7 +58,7 @@ class Hdf5Dataset final : public StreamedDataset {
   Hdf5Dataset(const H5File& file, const Hdf5Layout& layout, H5Cameras cameras, SideFiles side)
       : StreamedDataset(file.path(), side.set.empty() ? std::string(layout.name) : side.set), side_(std::move(side)) {
     if (!side_.truth.read) side_.truth = find_h5_truth(file, layout);
-    info_.pose_frame = side_.truth.frame;
+    info_.pose_frame = camera_by_usual_name(cameras.known, side_.truth.frame).value_or(side_.truth.frame);
     for (const fs::path& cut : cameras.cut)
       repairs_.add("file: cut", cut.string() + ": the file ends too early; what it has is read");
     for (std::size_t i = 0; i < cameras.events.size(); ++i) {
@@ -87,7 +88,9 @@ class Hdf5Dataset final : public StreamedDataset {
 
   std::optional<GroundTruth> ground_truth() const override {
     Repairs logged;
-    return side_.truth.read ? side_.truth.read(logged) : std::nullopt;
+    auto truth = side_.truth.read ? side_.truth.read(logged) : std::nullopt;
+    if (truth) truth->frame = info_.pose_frame;
+    return truth;
   }
 
  private:

@@ -49,16 +49,6 @@ void RosDataset::name_roles() {
   if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
 }
 
-/// "events" is the first event camera, "events2" the second, whatever the calibration calls them.
-std::optional<std::string> RosDataset::camera_of_usual_name(std::string_view name) const {
-  std::size_t events = 0, frames = 0;
-  for (const CameraTopic& camera : choice_.cameras) {
-    std::size_t& place = camera.modality == Modality::Events ? events : frames;
-    if (name == usual_camera_name(camera.modality, place++)) return camera.name;
-  }
-  return std::nullopt;
-}
-
 /// The frame of the poses in the first message.
 std::string RosDataset::truth_frame() const {
   const auto topic = choice_.of(Role::Truth);
@@ -67,7 +57,7 @@ std::string RosDataset::truth_frame() const {
   while (const auto message = source->next_of(*topic)) {
     try {
       const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
-      return camera_of_usual_name(named.frame).value_or("body");
+      return camera_by_usual_name(choice_.known, named.frame).value_or("body");
     } catch (const Damage&) {
       // Skips a damaged message: the next one is as good.
     }

@@ -35,7 +35,6 @@ class RosDataset final : public StreamedDataset {
   void feed_frame(std::size_t camera, const std::string& type, WireReader message);
   void name_roles();
   std::string truth_frame() const;
-  std::optional<std::string> camera_of_usual_name(std::string_view name) const;
   void judge(std::size_t topic, Role role, const std::string& reason);
 
   std::unique_ptr<MessageSource> source_;
