@@ -152,9 +152,12 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
       ->check(CLI::Range(1e-3, 1.0));
 }
 
-void add_cameras_option(CLI::App& command, SourceOptions& options) {
-  options.all_cameras = true;
-  command.add_option("--cameras", options.cameras, "Names of the cameras to read, separated by commas [all]")
+void add_cameras_option(CLI::App& command, SourceOptions& options, bool all) {
+  options.all_cameras = all;
+  command
+      .add_option("--cameras", options.cameras,
+                  fmt::format("Names of the cameras to read, separated by commas [{}]",
+                              all ? "all" : "the first of each kind"))
       ->delimiter(',')
       ->allow_extra_args(false);
 }

@@ -60,8 +60,8 @@ void add_reading_options(CLI::App& command, SourceOptions& options);
 /// Adds RECORDING, --imu, a flag for each external sensor, and the options of add_reading_options().
 void add_source_options(CLI::App& command, SourceOptions& options);
 
-/// Adds --cameras, and reads all cameras without it.
-void add_cameras_option(CLI::App& command, SourceOptions& options);
+/// Adds --cameras. all: without it all cameras are read, else the first of each kind.
+void add_cameras_option(CLI::App& command, SourceOptions& options, bool all = true);
 
 /// Opens the recording with the chosen calibration, else with that of the recording, if any. Throws InputError if it
 /// cannot be opened.
