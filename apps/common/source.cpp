@@ -155,9 +155,9 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
 void add_cameras_option(CLI::App& command, SourceOptions& options, bool all) {
   options.all_cameras = all;
   command
-      .add_option("--cameras", options.cameras,
-                  fmt::format("Names of the cameras to read, separated by commas [{}]",
-                              all ? "all" : "the first of each kind"))
+      .add_option(
+          "--cameras", options.cameras,
+          fmt::format("Names of the cameras to read, separated by commas [{}]", all ? "all" : "the first of each kind"))
       ->delimiter(',')
       ->allow_extra_args(false);
 }

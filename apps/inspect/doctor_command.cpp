@@ -80,10 +80,10 @@ int run_doctor(const DoctorOptions& options) {
 
   std::vector<CameraCheck> checks;
   for (std::size_t i = 0; i < cameras.size(); ++i)
-    checks.push_back({cameras[i].camera, recording.calibration->has_extrinsics,
-                      compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
-                      other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset,
-                                       read.survey.imu_span_ratio())});
+    checks.push_back(
+        {cameras[i].camera, recording.calibration->has_extrinsics,
+         compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
+         other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio())});
   std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
   external.judge(gyro, read.survey.external, findings);
   if (read.survey.events.count + read.survey.frames.count == 0)

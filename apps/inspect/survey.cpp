@@ -82,9 +82,9 @@ std::string cameras_text(const DatasetInfo& info) {
   std::string text;
   if (info.more_cameras.empty()) return text;
   for (const RecordedCamera& camera : recorded_cameras(info))
-    text += survey_line("  camera", fmt::format("{} ({}){}", camera.name,
-                                                camera.modality == Modality::Events ? "events" : "frames",
-                                                camera.stream.empty() ? "" : ": " + camera.stream));
+    text += survey_line("  camera",
+                        fmt::format("{} ({}){}", camera.name, camera.modality == Modality::Events ? "events" : "frames",
+                                    camera.stream.empty() ? "" : ": " + camera.stream));
   return text;
 }
 
@@ -122,20 +122,19 @@ nlohmann::ordered_json events_json(const Survey& s) {
   nlohmann::ordered_json json = stream_json(s.events);
   if (s.events.count > 0) {
     json.update({{"width", s.info.event_sensor.width},
-                           {"height", s.info.event_sensor.height},
-                           {"max_x", e.extent.width - 1},
-                           {"max_y", e.extent.height - 1},
-                           {"positive_share", e.positive_share},
-                           {"active_share", e.active_share},
-                           {"peak_rate_hz", e.peak_rate_hz},
-                           {"rate_bands_hz", EventSurvey::kRateBands},
-                           {"rate_shares", e.rate_shares},
-                           {"hot_known", e.hot_known},
-                           {"hot_pixels", e.hot_pixels},
-                           {"hot_share", e.hot_share}});
+                 {"height", s.info.event_sensor.height},
+                 {"max_x", e.extent.width - 1},
+                 {"max_y", e.extent.height - 1},
+                 {"positive_share", e.positive_share},
+                 {"active_share", e.active_share},
+                 {"peak_rate_hz", e.peak_rate_hz},
+                 {"rate_bands_hz", EventSurvey::kRateBands},
+                 {"rate_shares", e.rate_shares},
+                 {"hot_known", e.hot_known},
+                 {"hot_pixels", e.hot_pixels},
+                 {"hot_share", e.hot_share}});
     for (const HotPixel& pixel : e.hottest)
-      json["hottest"].push_back(
-          {{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
+      json["hottest"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
   }
   return json;
 }

@@ -119,8 +119,8 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
 }
 
-/// Copies of the images, at the rate of a viewer, as the odometry continues with the originals. Only this thread changes
-/// the shots.
+/// Copies of the images, at the rate of a viewer, as the odometry continues with the originals. Only this thread
+/// changes the shots.
 void LiveFeed::take_shots(const Step& step) {
   const auto now = LiveClockTime::now();
   for (const CameraStep& camera : step.cameras) {

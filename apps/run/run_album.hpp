@@ -47,7 +47,7 @@ class RunAlbum {
   /// JPEG, empty if the step has none.
   struct Picture {
     Timestamp t;
-    std::vector<unsigned char> events, frame;  ///< of the first camera of each kind
+    std::vector<unsigned char> events, frame;                       ///< of the first camera of each kind
     std::map<std::string, std::vector<unsigned char>> others = {};  ///< by camera
   };
 

@@ -141,10 +141,7 @@ bool RunMcap::Pace::due(Timestamp t) {
 }
 
 RunMcap::RunMcap(const std::filesystem::path& file, Rig rig, const RunFacts& facts)
-    : file_(file, ""),
-      rig_(std::move(rig)),
-      path_pace_(kPathPeriod),
-      map_pace_(kMapPeriodOfFile) {
+    : file_(file, ""), rig_(std::move(rig)), path_pace_(kPathPeriod), map_pace_(kMapPeriodOfFile) {
   for (RigCamera& camera : rig_.cameras)
     if (camera.modality == Modality::Events) camera.model = ideal_pinhole(camera.model);
   file_.write_metadata("edged", facts);

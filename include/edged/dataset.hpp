@@ -63,8 +63,9 @@ struct DatasetInfo {
 std::vector<RecordedCamera> recorded_cameras(const DatasetInfo& info);
 
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
-/// ties broken external samples, IMU, events, frame, and of a kind the first camera. Streams: holds a bounded part of the recording in memory at any
-/// time; if the clocks of the sensors differ by more, only each sensor by itself is in order.
+/// ties broken external samples, IMU, events, frame, and of a kind the first camera. Streams: holds a bounded part of
+/// the recording in memory at any time; if the clocks of the sensors differ by more, only each sensor by itself is in
+/// order.
 class Dataset {
  public:
   virtual ~Dataset() = default;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
@@ -14,6 +15,7 @@
 #include "edged/io/open_recording.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "edged/sim/simulated_pair.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged::python {
@@ -157,7 +159,8 @@ void bind_info(py::module_& module) {
   py::class_<RecordedCamera>(module, "RecordedCamera")
       .def_readonly("name", &RecordedCamera::name)
       .def_property_readonly(
-          "kind", [](const RecordedCamera& camera) { return camera.modality == Modality::Events ? "events" : "frames"; })
+          "kind",
+          [](const RecordedCamera& camera) { return camera.modality == Modality::Events ? "events" : "frames"; })
       .def_readonly("stream", &RecordedCamera::stream)
       .def_property_readonly("sensor", [](const RecordedCamera& camera) {
         return py::make_tuple(camera.sensor.width, camera.sensor.height);

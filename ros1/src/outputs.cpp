@@ -58,7 +58,7 @@ void Outputs::extend_path(Timestamp t, const nav_msgs::Odometry& odometry) {
 void Outputs::publish_images(const Step& step) const {
   for (const CameraStep& camera : step.cameras) {
     const auto other = other_tracks_.find(camera.name);
-    const ros::Publisher& publisher = other != other_tracks_.end()            ? other->second
+    const ros::Publisher& publisher = other != other_tracks_.end()          ? other->second
                                       : camera.modality == Modality::Events ? event_tracks_
                                                                             : frame_tracks_;
     if (!camera.image.empty() && publisher.getNumSubscribers() > 0)

@@ -6,6 +6,9 @@
 #include <nav_msgs/Path.h>
 #include <ros/node_handle.h>
 
+#include <map>
+#include <string>
+
 #include "diagnostics.hpp"
 #include "messages.hpp"
 

@@ -11,8 +11,8 @@ std::vector<RecordedCamera> recorded_cameras(const DatasetInfo& info) {
   const auto add = [&](bool there, Modality modality, const std::string& name, cv::Size sensor) {
     if (!there) return;
     const std::string kind = modality == Modality::Events ? "events" : "frames";
-    const auto stream = std::ranges::find_if(
-        info.streams, [&](const StreamInfo& s) { return s.role == name || s.role == kind; });
+    const auto stream =
+        std::ranges::find_if(info.streams, [&](const StreamInfo& s) { return s.role == name || s.role == kind; });
     cameras.push_back({name, modality, stream == info.streams.end() ? "" : stream->name, sensor});
     std::ranges::copy_if(info.more_cameras, std::back_inserter(cameras),
                          [modality](const RecordedCamera& camera) { return camera.modality == modality; });

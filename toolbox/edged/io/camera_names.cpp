@@ -44,7 +44,8 @@ void check_further_cameras(const Rig& rig, const DatasetInfo& info, Modality mod
           "{}: holds {}; rig '{}' has the cameras {}: none is called '{}'; name it so in the calibration, or choose "
           "others in the option cameras",
           info.name, stream_list(info), rig.name, camera_list(rig), recorded.name);
-    if (named->modality != modality) refuse(rig, info, modality, fmt::format("'{}' is not of {}", recorded.name, kind_name(modality)));
+    if (named->modality != modality)
+      refuse(rig, info, modality, fmt::format("'{}' is not of {}", recorded.name, kind_name(modality)));
   }
 }
 

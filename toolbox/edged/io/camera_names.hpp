@@ -27,8 +27,8 @@ std::vector<std::size_t> cameras_to_read(const std::vector<std::string>& names, 
 /// "events", "events2", ..., "frames", "frames2", ...: the names of cameras in formats that do not name them.
 std::string usual_camera_name(Modality modality, std::size_t index);
 
-/// The camera that readers without names of their own would call so: "events2" is the second event camera of `all`, which
-/// are those of the recording, read or not, of each kind the first first.
+/// The camera that readers without names of their own would call so: "events2" is the second event camera of `all`,
+/// which are those of the recording, read or not, of each kind the first first.
 std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name);
 
 /// "events" or "frames".

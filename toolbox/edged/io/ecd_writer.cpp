@@ -102,10 +102,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
 
 class EcdWriter final : public RecordingWriter {
  public:
-  explicit EcdWriter(const WriterSetup& setup)
-      : setup_(setup),
-        folder_(setup.path),
-        imu_(folder_ / "imu.txt") {
+  explicit EcdWriter(const WriterSetup& setup) : setup_(setup), folder_(setup.path), imu_(folder_ / "imu.txt") {
     for (std::size_t i = 0; i < setup.cameras(Modality::Events); ++i)
       events_.emplace_back(folder_ / ("events" + ecd_number(i) + ".txt"));
     for (std::size_t i = 0; i < setup.cameras(Modality::Frames); ++i)

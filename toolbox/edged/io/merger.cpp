@@ -181,9 +181,7 @@ Timestamp Merger::horizon() const {
   const auto wait_for = [&](const Pace& pace) {
     if (!pace.expected && !pace.last) return;
     const bool silent = *newest_ - pace.heard.value_or(*begin_) > kPatience;
-    settled = std::min(settled, silent      ? *newest_ - kPatience
-                                : pace.last ? *pace.last - kDisorder
-                                            : Timestamp::min());
+    settled = std::min(settled, silent ? *newest_ - kPatience : pace.last ? *pace.last - kDisorder : Timestamp::min());
   };
   const auto wait_for_all = [&](const auto& cameras) {
     for (const auto& camera : cameras) {

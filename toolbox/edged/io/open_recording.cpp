@@ -136,8 +136,7 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
     read.merge(images_of(folder, i));
     read.insert(list->name());
   }
-  read.insert(
-      {"imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
+  read.insert({"imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
   read.merge(external_file_names());
   tell_unread(folder, read);
   recording.dataset = with_external_files(std::move(recording.dataset), folder);

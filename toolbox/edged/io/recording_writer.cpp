@@ -24,9 +24,7 @@ cv::Size WriterSetup::event_sensor(std::size_t camera) const {
   return event_sensor_size(info.name, size.empty() ? std::nullopt : std::optional(size), rig, name);
 }
 
-std::size_t WriterSetup::cameras(Modality modality) const {
-  return std::max<std::size_t>(of_kind(modality).size(), 1);
-}
+std::size_t WriterSetup::cameras(Modality modality) const { return std::max<std::size_t>(of_kind(modality).size(), 1); }
 
 std::size_t WriterSetup::place_of(const std::string& camera, Modality modality) const {
   const std::vector<RecordedCamera> known = of_kind(modality);
@@ -66,8 +64,7 @@ std::string WriterSetup::name_when_read(const std::string& frame) const {
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     const std::vector<RecordedCamera> cameras = of_kind(modality);
     const auto found = std::ranges::find(cameras, frame, &RecordedCamera::name);
-    if (found != cameras.end())
-      return usual_camera_name(modality, static_cast<std::size_t>(found - cameras.begin()));
+    if (found != cameras.end()) return usual_camera_name(modality, static_cast<std::size_t>(found - cameras.begin()));
   }
   if (calibration) {
     const std::vector<RigCamera>& cameras = calibration->rig.cameras;

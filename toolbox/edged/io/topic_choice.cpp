@@ -199,9 +199,8 @@ class CameraChooser {
   /// event camera with images.
   void take_calibrated() {
     const auto named = [&](const std::string& topic) {
-      return std::ranges::find_if(free_, [&](std::size_t i) {
-        return topics_[i].name == topic || topics_[i].name == topic + "/compressed";
-      });
+      return std::ranges::find_if(
+          free_, [&](std::size_t i) { return topics_[i].name == topic || topics_[i].name == topic + "/compressed"; });
     };
     const auto in_name_space = [&](const std::string& topic) {
       const std::string space = name_space(topic);
@@ -210,8 +209,8 @@ class CameraChooser {
         const auto other = wishes_.calibrated.find(camera);
         return other != wishes_.calibrated.end() && name_space(other->second) == space;
       };
-      const bool unique = space.size() > 1 && std::ranges::count_if(free_, fits) == 1 &&
-                          std::ranges::count_if(rig_, shares) == 1;
+      const bool unique =
+          space.size() > 1 && std::ranges::count_if(free_, fits) == 1 && std::ranges::count_if(rig_, shares) == 1;
       return unique ? std::ranges::find_if(free_, fits) : free_.end();
     };
     check_calibrated();
@@ -263,8 +262,9 @@ class CameraChooser {
       for (std::size_t i = 0; by_user(name); ++i) name = usual_camera_name(modality_, i);
     if (!named.said.empty()) spdlog::warn(fmt::format("{}; --topic CAMERA=NAME assigns others", named.said));
     if (named.said.empty() && streams.size() > 1 && !wishes_.all_cameras)
-      spdlog::warn(fmt::format("{}: topics of {} are the cameras {} in the order {}; --topic CAMERA=NAME assigns others",
-                               file_, kind_name(modality_), fmt::join(named.names, ", "), fmt::join(streams, ", ")));
+      spdlog::warn(
+          fmt::format("{}: topics of {} are the cameras {} in the order {}; --topic CAMERA=NAME assigns others", file_,
+                      kind_name(modality_), fmt::join(named.names, ", "), fmt::join(streams, ", ")));
     const std::vector<std::size_t> all = free_;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (!wishes_.wanted.contains(named.names[i])) take(named.names[i], all[i]);  // else the user leaves it out
@@ -327,8 +327,8 @@ TopicChoice choose_topics(const std::vector<Topic>& topics, const TopicWishes& w
       ties += fmt::format("; {}: {}", kRoleNames[r], listed(topics, fitting));
   }
   if (!ties.empty())
-    throw InputError::format("{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none, CAMERA=NAME){}", file,
-                             ties);
+    throw InputError::format(
+        "{}: several topics for one role, choose with --topic ROLE=NAME (or ROLE=none, CAMERA=NAME){}", file, ties);
   for (const CameraTopic& camera : choice.cameras) refuse_old_events(topics[camera.topic], file);
   if (!choice.of(Role::Events) && !choice.of(Role::Frames) && !choice.of(Role::Imu))
     refuse_without_sensor(topics, file);

@@ -35,7 +35,8 @@ struct Survey {
   ExternalSurveys external;
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
-  /// Of the cameras beside the first of a kind, in the order of DatasetInfo::more_cameras: their events or frames alone.
+  /// Of the cameras beside the first of a kind, in the order of DatasetInfo::more_cameras: their events or frames
+  /// alone.
   std::vector<Survey> more;
   /// The name of such a camera.
   const std::string& camera() const { return info.has_events ? info.event_camera : info.frame_camera; }

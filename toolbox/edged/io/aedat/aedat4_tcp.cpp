@@ -71,8 +71,8 @@ Aedat4Header wait_for_header(TcpConnection& connection) {
 struct LiveStream {
   TcpConnection connection;
   Aedat4Header header;
-  std::size_t first = 0;                                  ///< place of its first stream among those of all servers
-  std::uint64_t taken = 0;                                ///< bytes of packets so far
+  std::size_t first = 0;    ///< place of its first stream among those of all servers
+  std::uint64_t taken = 0;  ///< bytes of packets so far
 };
 
 class Aedat4Live final : public Aedat4Dataset {

@@ -76,7 +76,8 @@ std::string Aedat4Encoder::header_xml() const {
   for (std::size_t i = 0; i < frame_cameras_; ++i)
     add(Modality::Frames, "FRME", i, sensors_[std::min(i, sensors_.size() - 1)]);
   std::string xml = R"(<dv version="2.0">)";
-  if (pose_frame_ != "body") xml += fmt::format(R"(<attr key="{}" type="string">{}</attr>)", kAedat4PoseFrame, pose_frame_);
+  if (pose_frame_ != "body")
+    xml += fmt::format(R"(<attr key="{}" type="string">{}</attr>)", kAedat4PoseFrame, pose_frame_);
   xml += R"(<node name="outInfo" path="/mainloop/Recorder/outInfo/">)";
   for (const auto& [number, stream] : streams) xml += stream;
   return xml + "</node></dv>";
@@ -109,8 +110,9 @@ std::string Aedat4Encoder::events(std::span<const Event> events, std::size_t cam
   const auto start = b.StartTable();
   b.AddOffset(slot(0), list);
   const int stream = stream_of(Modality::Events, camera);
-  return packet({0, stream, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
-                finished(b, start, "EVTS"));
+  return packet(
+      {0, stream, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
+      finished(b, start, "EVTS"));
 }
 
 std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure, std::size_t camera) {

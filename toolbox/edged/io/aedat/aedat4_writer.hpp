@@ -13,8 +13,8 @@
 
 namespace edged {
 
-/// Encodes the parts of a file in the order of the calls. Stream 0 holds the events, 1 the frames, 2 the IMU; events and
-/// frames of further cameras follow. Stamps are rounded down to whole microseconds.
+/// Encodes the parts of a file in the order of the calls. Stream 0 holds the events, 1 the frames, 2 the IMU; events
+/// and frames of further cameras follow. Stamps are rounded down to whole microseconds.
 class Aedat4Encoder {
  public:
   /// The numbers in the header: none, LZ4, LZ4 high, zstd, zstd high.

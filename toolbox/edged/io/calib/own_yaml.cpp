@@ -79,7 +79,8 @@ CameraModel masked(const CameraModel& model, const std::vector<std::uint8_t>& us
 
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
-                   "coefficients", "max_angle", "mask", "mask_runs", "T_B_C", "T_C_B", "q_B_C", "time_offset", "topic"});
+                   "coefficients", "max_angle", "mask", "mask_runs", "T_B_C", "T_C_B", "q_B_C", "time_offset",
+                   "topic"});
   Lens lens;
   const auto same_as = node.find("same_as");
   if (same_as) lens = read_base(node, *same_as, above);

@@ -113,8 +113,7 @@ void RosDataset::judge(std::size_t index, Role role, const std::string& reason) 
   const std::string detail = fmt::format("{}: {} ({}): {}", name_, topic.name, topic.type, reason);
   repairs_.add(fmt::format("{}: message unreadable", kRoleNames[static_cast<std::size_t>(role)]), detail);
   ++bad_[index];
-  if (external_sensor_of(role))
-    return;  // the topic may have another meaning: a pressure in water is no air pressure
+  if (external_sensor_of(role)) return;  // the topic may have another meaning: a pressure in water is no air pressure
   if (good_[index] == 0 && bad_[index] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
     throw InputError::format("{}; none of its first {} messages can be read: give --topic {}=NAME or none", detail,
                              bad_[index], name);
@@ -125,8 +124,9 @@ void RosDataset::feed_events(std::size_t camera, const std::string& type, WireRe
   const cv::Size size(static_cast<int>(array.width), static_cast<int>(array.height));
   if (sensor(camera).empty()) {
     const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
-    set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr, choice_.cameras[camera].name),
-               camera);
+    set_sensor(
+        event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr, choice_.cameras[camera].name),
+        camera);
   }
   push_events(array.events, camera);
 }

@@ -20,9 +20,7 @@ namespace {
 class RosWriter final : public RecordingWriter {
  public:
   RosWriter(const WriterSetup& setup, std::unique_ptr<MessageSink> sink)
-      : setup_(setup),
-        name_(setup.path.string()),
-        sink_(std::move(sink)) {
+      : setup_(setup), name_(setup.path.string()), sink_(std::move(sink)) {
     for (std::size_t i = 0; setup.info.has_events && i < setup.cameras(Modality::Events); ++i)
       sensors_.push_back(setup.event_sensor(i));
   }

@@ -54,7 +54,8 @@ struct FirstCameras {
   std::string events = "events", frames = "frames";
 };
 
-/// Adds the cameras of the folder that are read, with their names: events.txt, events2.txt and so on, and lists of images.
+/// Adds the cameras of the folder that are read, with their names: events.txt, events2.txt and so on, and lists of
+/// images.
 FirstCameras add_cameras(TextLayout& layout, const SourcePath& folder, const Rig* rig,
                          const RecordingOptions& options) {
   const auto chosen = [&](Modality modality, const auto& find_file) {

@@ -65,8 +65,7 @@ void TextDataset::name_cameras() {
     if (e.camera != info.event_camera)
       info.more_cameras.push_back({e.camera, Modality::Events, e.file.name(), {e.width, e.height}});
   for (const FrameFile& f : layout_.frames)
-    if (f.camera != info.frame_camera)
-      info.more_cameras.push_back({f.camera, Modality::Frames, f.lines.file.name()});
+    if (f.camera != info.frame_camera) info.more_cameras.push_back({f.camera, Modality::Frames, f.lines.file.name()});
 }
 
 void TextDataset::find_ends() {

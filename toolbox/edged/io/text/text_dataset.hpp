@@ -30,7 +30,7 @@ struct FrameFile {
 
 /// The files of a recording, and the format of their lines.
 struct TextLayout {
-  DatasetInfo info;  ///< name, format and pose_frame
+  DatasetInfo info;               ///< name, format and pose_frame
   std::vector<EventFile> events;  ///< one per camera, with different names, as are the frames
   std::vector<FrameFile> frames;
   std::optional<StampedLines<ImuSample>::Spec> imu;
