@@ -114,6 +114,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->footer(
       "Examples:\n"
       "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
+      "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
       "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
   simulate->callback([options, list, &chosen] {
     chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };

@@ -286,7 +286,18 @@ Finding cameras_start_later(double start_s) {
           fmt::format("use --start {:g}", later_start_s(start_s))};
 }
 
-void match_cameras(Source& source, Mode mode) {
+void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted) {
+  const std::vector<RecordedCamera> recorded = recorded_cameras(source.dataset->info());
+  for (const RigCamera& camera : source.calibration.rig.cameras) {
+    const bool is_wanted = std::ranges::find(wanted, camera.name) != wanted.end() && uses(mode, camera.modality);
+    if (!is_wanted || std::ranges::find(recorded, camera.name, &RecordedCamera::name) != recorded.end()) continue;
+    std::string list;
+    for (const RecordedCamera& there : recorded) list += (list.empty() ? "" : ", ") + there.name;
+    throw InputError::format(
+        "{}: has no camera '{}', which the option cameras wants; it has {}; for a bag, --topic {}=NAME assigns its "
+        "topic",
+        source.dataset->info().name, camera.name, list, camera.name);
+  }
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     if (!uses(mode, modality)) continue;
     const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);

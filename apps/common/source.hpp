@@ -93,7 +93,7 @@ Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
 
 /// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
-/// InputError if that is ambiguous.
-void match_cameras(Source& source, Mode mode);
+/// InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the calibration has.
+void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted = {});
 
 }  // namespace edged

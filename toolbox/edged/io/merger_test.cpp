@@ -50,6 +50,27 @@ TEST(Merger, SortsStreamsThatArriveAtDifferentDelaysAndBreaksTiesAsDatasetSays) 
   EXPECT_TRUE(repairs.counts().empty());
 }
 
+TEST(Merger, CamerasOfAKindAreApartAndTheFirstIsFirstAtEqualStamps) {
+  Repairs repairs;
+  Merger merger(repairs);
+  merger.expect({{"left", "right"}, {"cam0", "cam1"}, false});
+  merger.push(events_at({1, 2, 4}), 1);
+  merger.push(events_at({0, 1, 3, 5}), 0);
+  merger.push(Frame{at_ms(3), "", {}}, 1);
+  EXPECT_EQ(popped(merger), "") << "the first frame camera may still precede";
+  merger.push(Frame{at_ms(3), "", {}}, 0);
+  merger.finish();
+  std::string order;
+  while (const auto m = merger.pop()) {
+    if (const auto* batch = std::get_if<EventBatch>(&*m))
+      order += fmt::format("{}{} ", batch->camera, batch->events.size());
+    if (const auto* frame = std::get_if<Frame>(&*m)) order += frame->camera + " ";
+  }
+  EXPECT_EQ(order, "left3 right2 cam0 cam1 right1 left1 ")
+      << "batches of two cameras overlap, but none goes beyond a frame";
+  EXPECT_TRUE(repairs.counts().empty());
+}
+
 TEST(Merger, BatchesSpanAtMostFiveMilliseconds) {
   Repairs repairs;
   Merger merger(repairs);
