@@ -68,7 +68,9 @@ void print_summary(const ConvertOptions& options, const WritableFormat& format, 
 int run_convert(const ConvertOptions& options) {
   catch_interrupts();
   const WritableFormat& format = writable_format(options.format, options.target);
-  const Recording recording = open_uncalibrated(options.source);
+  SourceOptions source = options.source;
+  source.all_cameras = format.several_cameras;
+  const Recording recording = open_uncalibrated(source);
   StatusLine status(options.quiet);
   WriteOptions write{.round = options.round};
   write.progress = [&](Timestamp t) {
@@ -89,6 +91,7 @@ void add_convert_command(CLI::App& app, std::function<int()>& chosen) {
   for (const WritableFormat& format : writable_formats()) names.push_back(format.name);
   CLI::App* convert = app.add_subcommand("convert", "Convert a recording to another format without loss of any event");
   add_source_options(*convert, options->source);
+  add_cameras_option(*convert, options->source);
   convert->add_option("TARGET", options->target, "File or folder to write; the extension determines the format")
       ->required();
   convert->add_option("--format", options->format, fmt::format("One of {} [by extension]", fmt::join(names, ", ")));

@@ -12,9 +12,12 @@
 
 #include "commands.hpp"
 #include "common/interrupt.hpp"
+#include "common/numbers.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/recording.hpp"
 #include "edged/io/write_recording.hpp"
+#include "edged/sim/simulated_pair.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {
@@ -23,6 +26,7 @@ namespace {
 struct SimulateOptions {
   std::string preset = "room";
   std::optional<std::string> seed, duration_s;
+  std::optional<double> baseline_m;  ///< of a second camera of each kind
   std::vector<std::string> assignments;
   std::filesystem::path out;
   bool quiet = false;
@@ -38,10 +42,20 @@ SimulatorConfig load_config(const SimulateOptions& options) {
   return config;
 }
 
+/// The simulator with its calibration; with a baseline, of two cameras of each kind.
+Recording make_simulator(const SimulatorConfig& config, const std::optional<double>& baseline_m) {
+  const auto opened = [](auto simulator) -> Recording {
+    Calibration calibration = simulator->calibration();
+    return {std::move(simulator), std::move(calibration)};
+  };
+  if (baseline_m) return opened(std::make_unique<SimulatedPair>(config, *baseline_m));
+  return opened(std::make_unique<Simulator>(config));
+}
+
 int run_simulate(const SimulateOptions& options) {
   catch_interrupts();
   const SimulatorConfig config = load_config(options);
-  Simulator simulator(config);
+  const Recording recording = make_simulator(config, options.baseline_m);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("recordings") / fmt::format("{}_{}", options.preset, config.seed)
                           : options.out;
@@ -50,9 +64,9 @@ int run_simulate(const SimulateOptions& options) {
   write.progress = [&](Timestamp t) {
     if (status.due()) status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s));
   };
-  InterruptibleDataset dataset(simulator);
+  InterruptibleDataset dataset(*recording.dataset);
   const WriteCounts counts =
-      write_recording(dataset, writable_format("ecd", folder), folder, simulator.calibration(), write);
+      write_recording(dataset, writable_format("ecd", folder), folder, recording.calibration, write);
   status.clear();
   if (options.json) {
     const nlohmann::ordered_json json = {{"folder", folder.string()},  {"preset", options.preset},
@@ -86,6 +100,11 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->capture_default_str();
   simulate->add_option("--seed", options->seed, "Another flight, other noise [1]");
   simulate->add_option("--duration", options->duration_s, "[s] [that of the preset]");
+  simulate
+      ->add_option("--baseline", options->baseline_m,
+                   "Distance of a second event camera and a second frame camera, events2 and frames2, to the right of "
+                   "the first [m] [no second cameras]")
+      ->check(positive_number());
   simulate->add_option("--set", options->assignments, "One option as key=value; may be repeated")
       ->allow_extra_args(false);
   simulate->add_flag("--list", *list, "Print every option as chosen, with unit and effect, instead");
@@ -95,6 +114,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->footer(
       "Examples:\n"
       "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
+      "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
       "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
   simulate->callback([options, list, &chosen] {
     chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };

@@ -3,6 +3,7 @@
 #include "common/source.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -44,7 +45,23 @@ std::string rig_list() {
   return list;
 }
 
-RecordingOptions recording_options(const SourceOptions& options) {
+/// ROLE=NAME of each --topic.
+std::map<std::string, std::string> wanted_topics(const std::vector<std::string>& texts) {
+  std::map<std::string, std::string> topics;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw InputError::format("--topic {}: write ROLE=NAME, such as events=/dvs/events", text);
+    const std::string role = text.substr(0, equals), name = text.substr(equals + 1);
+    const auto [place, is_new] = topics.emplace(role, name);
+    if (!is_new)
+      throw InputError::format("--topic {}: {} is {} already: give each role and each camera once", text, role,
+                               place->second);
+  }
+  return topics;
+}
+
+RecordingOptions recording_options(const SourceOptions& options, const std::optional<Calibration>& calibration) {
   RecordingOptions chosen;
   if (!options.geometry.empty()) {
     chosen.geometry = parse_geometry(options.geometry);
@@ -52,15 +69,12 @@ RecordingOptions recording_options(const SourceOptions& options) {
       throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
   chosen.cameras = options.cameras;
+  chosen.all_cameras = options.all_cameras && options.cameras.empty();
+  if (calibration) chosen.camera_topics = calibration->topics;
   chosen.own_imu = options.imu.empty();
   chosen.interrupted = [] { return interrupt_signal() != 0; };
   if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
-  for (const std::string& text : options.topics) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos)
-      throw InputError::format("--topic {}: write ROLE=NAME, such as events=/dvs/events", text);
-    chosen.topics[text.substr(0, equals)] = text.substr(equals + 1);
-  }
+  chosen.topics = wanted_topics(options.topics);
   return chosen;
 }
 
@@ -76,8 +90,8 @@ Recording open_whole(const SourceOptions& options) {
     if (both) return opened(std::make_unique<SimulatedPair>(*config));
     return opened(std::make_unique<Simulator>(*config));
   }
-  Recording recording =
-      open_recording(options.recording, calibration ? &calibration->rig : nullptr, recording_options(options));
+  Recording recording = open_recording(options.recording, calibration ? &calibration->rig : nullptr,
+                                       recording_options(options, calibration));
   if (calibration) recording.calibration = std::move(calibration);
   return recording;
 }
@@ -118,10 +132,10 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
       ->check(CLI::Range(0.1, 10.0));
   command
       .add_option("--topic", options.topics,
-                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height or "
-                  "velocity; NAME none leaves "
-                  "it out; may be repeated "
-                  "[the only topic of a fitting type]")
+                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height, "
+                  "velocity, or the name of a camera; NAME none leaves it out; may be repeated "
+                  "[of several cameras the topics in the calibration (rostopic), else by name; else the only topic of "
+                  "a fitting type]")
       ->allow_extra_args(false);
   command
       .add_option("--from,--start", options.piece.from_s, "Skip what comes earlier [s from the start of the recording]")
@@ -136,6 +150,16 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
       .add_option("--dim-frames", options.dim_frames,
                   "Darken the frames by this factor, with the noise of their camera: 0.06 leaves about 20 grey levels")
       ->check(CLI::Range(1e-3, 1.0));
+}
+
+void add_cameras_option(CLI::App& command, SourceOptions& options, bool all) {
+  options.all_cameras = all;
+  command
+      .add_option(
+          "--cameras", options.cameras,
+          fmt::format("Names of the cameras to read, separated by commas [{}]", all ? "all" : "the first of each kind"))
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
@@ -228,6 +252,10 @@ std::string command_line(const std::string& command, const SourceOptions& source
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);
   for (const std::string& topic : source.topics) add("--topic", topic);
+  if (!source.cameras.empty()) {
+    const bool run = command == "run";
+    add(run ? "--set" : "--cameras", fmt::format("{}{}", run ? "cameras=" : "", fmt::join(source.cameras, ",")));
+  }
   if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
   if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
   if (source.duration_s) add("--duration", fmt::format("{}", *source.duration_s));
@@ -258,7 +286,18 @@ Finding cameras_start_later(double start_s) {
           fmt::format("use --start {:g}", later_start_s(start_s))};
 }
 
-void match_cameras(Source& source, Mode mode) {
+void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted) {
+  const std::vector<RecordedCamera> recorded = recorded_cameras(source.dataset->info());
+  for (const RigCamera& camera : source.calibration.rig.cameras) {
+    const bool is_wanted = std::ranges::find(wanted, camera.name) != wanted.end() && uses(mode, camera.modality);
+    if (!is_wanted || std::ranges::find(recorded, camera.name, &RecordedCamera::name) != recorded.end()) continue;
+    std::string list;
+    for (const RecordedCamera& there : recorded) list += (list.empty() ? "" : ", ") + there.name;
+    throw InputError::format(
+        "{}: has no camera '{}', which the option cameras wants; it has {}; for a bag, --topic {}=NAME assigns its "
+        "topic",
+        source.dataset->info().name, camera.name, list, camera.name);
+  }
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     if (!uses(mode, modality)) continue;
     const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);

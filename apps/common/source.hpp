@@ -29,8 +29,9 @@ struct SourceOptions {
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                                        ///< "WIDTHxHEIGHT" of the event sensor; "" if not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" if not given
-  std::vector<std::string> topics;        ///< of bags: ROLE=NAME
+  std::vector<std::string> topics;        ///< of bags: ROLE=NAME or CAMERA=NAME
   std::vector<std::string> cameras = {};  ///< names of cameras to read, if the recording has several of a modality
+  bool all_cameras = false;               ///< reads all, if no names are given
   PieceBounds piece;
   std::optional<double> duration_s;  ///< length of the piece, instead of its end
   std::optional<double> dim_frames;  ///< factor on the light of the frames
@@ -58,6 +59,9 @@ void add_reading_options(CLI::App& command, SourceOptions& options);
 
 /// Adds RECORDING, --imu, a flag for each external sensor, and the options of add_reading_options().
 void add_source_options(CLI::App& command, SourceOptions& options);
+
+/// Adds --cameras. all: without it all cameras are read, else the first of each kind.
+void add_cameras_option(CLI::App& command, SourceOptions& options, bool all = true);
 
 /// Opens the recording with the chosen calibration, else with that of the recording, if any. Throws InputError if it
 /// cannot be opened.
@@ -89,7 +93,7 @@ Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
 
 /// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
-/// InputError if that is ambiguous.
-void match_cameras(Source& source, Mode mode);
+/// InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the calibration has.
+void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted = {});
 
 }  // namespace edged

@@ -12,6 +12,7 @@
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/survey/diagnosis.hpp"
 #include "edged/survey/external_agreement.hpp"
 #include "inspect/survey.hpp"
@@ -24,15 +25,24 @@ struct DoctorOptions {
   bool quiet = false, json = false;
 };
 
-/// The first camera of each kind, as the odometry uses them.
-std::vector<RigCamera> cameras_to_check(const Recording& recording) {
-  std::vector<RigCamera> cameras;
-  if (!recording.calibration) return cameras;
+/// A camera of the calibration, and its name in the recording.
+struct CheckedCamera {
+  RigCamera camera;
+  std::string recorded;
+};
+
+/// The recorded cameras that the calibration has: those of the same name, and of each kind its first for the first.
+std::vector<CheckedCamera> cameras_to_check(const Recording& recording) {
+  std::vector<CheckedCamera> cameras;
   const DatasetInfo& info = recording.dataset->info();
-  for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    const bool recorded = modality == Modality::Events ? info.has_events : info.has_frames;
-    const RigCamera* camera = recording.calibration->rig.find(modality);
-    if (recorded && info.has_imu && camera) cameras.push_back(*camera);
+  if (!recording.calibration || !info.has_imu) return cameras;
+  const Rig& rig = recording.calibration->rig;
+  for (const RecordedCamera& recorded : recorded_cameras(info)) {
+    const auto named = std::ranges::find(rig.cameras, recorded.name, &RigCamera::name);
+    const bool known = named != rig.cameras.end() && named->modality == recorded.modality;
+    const bool first = recorded.name == info.event_camera || recorded.name == info.frame_camera;
+    const RigCamera* camera = known ? &*named : first ? rig.find(recorded.modality) : nullptr;
+    if (camera) cameras.push_back({*camera, recorded.name});
   }
   return cameras;
 }
@@ -57,20 +67,23 @@ int run_doctor(const DoctorOptions& options) {
   std::vector<VisualTurns> visual;
   GyroIntegral gyro;
   ExternalCheck external;
-  const std::vector<RigCamera> cameras = cameras_to_check(recording);
-  for (const RigCamera& camera : cameras) visual.emplace_back(camera);
+  const std::vector<CheckedCamera> cameras = cameras_to_check(recording);
+  for (const CheckedCamera& checked : cameras) visual.emplace_back(checked.camera);
   const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
     if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample);
     if (const auto* sample = std::get_if<ExternalSample>(&measurement)) external.add(*sample);
-    for (VisualTurns& turns : visual) turns.add(measurement);
+    for (std::size_t i = 0; i < cameras.size(); ++i)
+      if (const std::string* camera = camera_of(measurement); camera && *camera == cameras[i].recorded)
+        visual[i].add(measurement);
   });
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
 
   std::vector<CameraCheck> checks;
   for (std::size_t i = 0; i < cameras.size(); ++i)
-    checks.push_back({cameras[i], recording.calibration->has_extrinsics,
-                      compare_with_gyro(visual[i].turns(), gyro, cameras[i].time_offset),
-                      other_clock_rate(visual[i].turns(), gyro, cameras[i].time_offset, read.survey.imu_span_ratio())});
+    checks.push_back(
+        {cameras[i].camera, recording.calibration->has_extrinsics,
+         compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
+         other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio())});
   std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
   external.judge(gyro, read.survey.external, findings);
   if (read.survey.events.count + read.survey.frames.count == 0)
@@ -91,6 +104,7 @@ void add_doctor_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* doctor = app.add_subcommand(
       "doctor", "Check a recording and its calibration and propose remedies (exit code 3 for errors)");
   add_source_options(*doctor, options->source);
+  add_cameras_option(*doctor, options->source);
   doctor->add_flag("--quiet", options->quiet, "No status line");
   doctor->add_flag("--json", options->json, "Print JSON");
   doctor->footer("Example:\n  edged doctor flight.bag --calib camchain-imucam.yaml");

@@ -60,6 +60,7 @@ void add_info_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* info = app.add_subcommand("info", "Describe a recording: streams, rates, gaps, hot pixels, IMU noise");
   add_source_options(*info, options->source);
+  add_cameras_option(*info, options->source);
   info->add_flag("--quiet", options->quiet, "No status line");
   info->add_flag("--json", options->json, "Print JSON");
   info->footer("Example:\n  edged info flight.bag");

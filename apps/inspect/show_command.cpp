@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -156,6 +157,9 @@ int show_recording(const ShowOptions& options) {
   Dataset& dataset = *recording.dataset;
   if (!dataset.info().has_events)
     throw InputError::format("{}: has no events to show; take another recording", dataset.info().name);
+  if (!dataset.info().more_cameras.empty())
+    throw InputError::format("--cameras {}: one camera of a kind is shown: leave out {}",
+                             fmt::join(options.source.cameras, ","), dataset.info().more_cameras.front().name);
   const cv::Size sensor = recording_event_sensor(recording);
   const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
   if (shown.pictures == 0) spdlog::warn(fmt::format("{}: no events", dataset.info().name));
@@ -169,6 +173,7 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<ShowOptions>();
   CLI::App* show = app.add_subcommand("show", "Show events beside frames: a page that plays them, or images");
   add_source_options(*show, options->source);
+  add_cameras_option(*show, options->source, false);
   show->add_option("--out", options->out, "NAME.html: a page for a browser; otherwise a folder of PNG images")
       ->required();
   CLI::Option* window = show->add_option("--window", options->window_s, "Time window of one image [s]");

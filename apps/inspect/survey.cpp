@@ -54,9 +54,9 @@ std::string histogram(const EventSurvey& events) {
   return text;
 }
 
-std::string events_text(const Survey& s) {
+std::string events_text(const Survey& s, const std::string& name) {
   const EventSurvey& e = s.event_details;
-  std::string text = survey_line("events", stream_text(s.events, "ev/s"));
+  std::string text = survey_line(name, stream_text(s.events, "ev/s"));
   text += survey_line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
                                       size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
                                       100 * e.positive_share, 100 * e.active_share));
@@ -70,6 +70,22 @@ std::string events_text(const Survey& s) {
     hot +=
         fmt::format("{} ({}, {}) {:.0f} Hz", i == 0 ? ":" : ",", e.hottest[i].x, e.hottest[i].y, e.hottest[i].rate_hz);
   return text + survey_line("", hot);
+}
+
+std::string frames_text(const Survey& s, const std::string& name) {
+  return survey_line(name, stream_text(s.frames)) + survey_line("", gap_text(s.frames)) +
+         survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
+}
+
+/// One line for each camera, if there are several of a kind.
+std::string cameras_text(const DatasetInfo& info) {
+  std::string text;
+  if (info.more_cameras.empty()) return text;
+  for (const RecordedCamera& camera : recorded_cameras(info))
+    text += survey_line("  camera",
+                        fmt::format("{} ({}){}", camera.name, camera.modality == Modality::Events ? "events" : "frames",
+                                    camera.stream.empty() ? "" : ": " + camera.stream));
+  return text;
 }
 
 std::string imu_text(const Survey& s) {
@@ -98,6 +114,51 @@ nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
                                  {"gaps", stream.gaps},          {"missing_s", to_seconds(stream.missing)}};
   for (const Gap& gap : stream.longest)
     json["longest_gaps"].push_back({{"after_ns", to_ns(gap.after)}, {"length_s", to_seconds(gap.length)}});
+  return json;
+}
+
+nlohmann::ordered_json events_json(const Survey& s) {
+  const EventSurvey& e = s.event_details;
+  nlohmann::ordered_json json = stream_json(s.events);
+  if (s.events.count > 0) {
+    json.update({{"width", s.info.event_sensor.width},
+                 {"height", s.info.event_sensor.height},
+                 {"max_x", e.extent.width - 1},
+                 {"max_y", e.extent.height - 1},
+                 {"positive_share", e.positive_share},
+                 {"active_share", e.active_share},
+                 {"peak_rate_hz", e.peak_rate_hz},
+                 {"rate_bands_hz", EventSurvey::kRateBands},
+                 {"rate_shares", e.rate_shares},
+                 {"hot_known", e.hot_known},
+                 {"hot_pixels", e.hot_pixels},
+                 {"hot_share", e.hot_share}});
+    for (const HotPixel& pixel : e.hottest)
+      json["hottest"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json frames_json(const Survey& s) {
+  nlohmann::ordered_json json = stream_json(s.frames);
+  if (s.frames.count > 0)
+    json.update(
+        {{"width", s.image_size.width}, {"height", s.image_size.height}, {"mean_brightness", s.mean_brightness}});
+  return json;
+}
+
+/// All cameras by name, if there are several of a kind.
+nlohmann::ordered_json cameras_json(const Survey& s) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  const auto add = [&json](const Survey& of, const RecordedCamera& camera) {
+    const bool events = camera.modality == Modality::Events;
+    json[camera.name] = {{"kind", events ? "events" : "frames"}, {"stream", camera.stream}};
+    json[camera.name].update(events ? events_json(of) : frames_json(of));
+  };
+  for (const RecordedCamera& camera : recorded_cameras(s.info)) {
+    const auto further = std::ranges::find(s.more, camera.name, &Survey::camera);
+    add(further == s.more.end() ? s : *further, camera);
+  }
   return json;
 }
 
@@ -140,12 +201,15 @@ std::string to_text(const Survey& s) {
     text += survey_line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
                                                 stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
                                                 stream.role.empty() ? "" : " -> " + stream.role));
+  text += cameras_text(s.info);
   text += survey_line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
-  if (s.events.count > 0) text += events_text(s);
-  if (s.frames.count > 0) {
-    text += survey_line("frames", stream_text(s.frames)) + survey_line("", gap_text(s.frames));
-    text +=
-        survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
+  const bool several = !s.more.empty();
+  if (s.events.count > 0) text += events_text(s, several ? s.info.event_camera : "events");
+  if (s.frames.count > 0) text += frames_text(s, several ? s.info.frame_camera : "frames");
+  for (const Survey& camera : s.more) {
+    if (camera.events.count > 0) text += events_text(camera, camera.camera());
+    if (camera.frames.count > 0) text += frames_text(camera, camera.camera());
+    if (camera.events.count + camera.frames.count == 0) text += survey_line(camera.camera(), "nothing recorded");
   }
   if (s.imu.count > 0) text += imu_text(s);
   for (const auto& [name, survey] : s.external) text += external_survey_text(name, survey);
@@ -157,35 +221,15 @@ std::string to_text(const Survey& s) {
 }
 
 nlohmann::ordered_json to_json(const Survey& s) {
-  const EventSurvey& e = s.event_details;
   nlohmann::ordered_json json = {
       {"name", s.info.name}, {"format", s.info.format}, {"overlap_s", to_seconds(s.overlap())}};
   json["streams"] = nlohmann::ordered_json::array();
   for (const StreamInfo& stream : s.info.streams)
     json["streams"].push_back(
         {{"name", stream.name}, {"type", stream.type}, {"count", stream.count}, {"role", stream.role}});
-  json["events"] = stream_json(s.events);
-  if (s.events.count > 0) {
-    json["events"].update({{"width", s.info.event_sensor.width},
-                           {"height", s.info.event_sensor.height},
-                           {"max_x", e.extent.width - 1},
-                           {"max_y", e.extent.height - 1},
-                           {"positive_share", e.positive_share},
-                           {"active_share", e.active_share},
-                           {"peak_rate_hz", e.peak_rate_hz},
-                           {"rate_bands_hz", EventSurvey::kRateBands},
-                           {"rate_shares", e.rate_shares},
-                           {"hot_known", e.hot_known},
-                           {"hot_pixels", e.hot_pixels},
-                           {"hot_share", e.hot_share}});
-    for (const HotPixel& pixel : e.hottest)
-      json["events"]["hottest"].push_back(
-          {{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
-  }
-  json["frames"] = stream_json(s.frames);
-  if (s.frames.count > 0)
-    json["frames"].update(
-        {{"width", s.image_size.width}, {"height", s.image_size.height}, {"mean_brightness", s.mean_brightness}});
+  json["events"] = events_json(s);
+  json["frames"] = frames_json(s);
+  if (!s.more.empty()) json["cameras"] = cameras_json(s);
   json["imu"] = stream_json(s.imu);
   if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0) {
     json["imu"].update({{"mean_accel", imu.mean_accel}, {"mean_gyro", imu.mean_gyro}, {"max_gyro", imu.max_gyro}});

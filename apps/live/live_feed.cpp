@@ -119,18 +119,21 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
 }
 
-/// Copies of the first camera of each kind, at the rate of a viewer, as the odometry continues with the originals.
+/// Copies of the images, at the rate of a viewer, as the odometry continues with the originals. Only this thread
+/// changes the shots.
 void LiveFeed::take_shots(const Step& step) {
   const auto now = LiveClockTime::now();
-  const auto take = [&](std::shared_ptr<const Shot>& shot, const CameraStep* camera) {
-    if (camera == nullptr || camera->image.empty() || (shot && now < shot->taken + kShotPeriod)) return;
-    auto taken =
-        std::make_shared<const Shot>(Shot{shot ? shot->number + 1 : 1, now, camera->image.clone(), camera->tracks});
+  for (const CameraStep& camera : step.cameras) {
+    const bool first = &camera == step.find(camera.modality);
+    const std::string name = !first ? camera.name : camera.modality == Modality::Events ? "events" : "frame";
+    const auto before = shots_.find(name);
+    const bool any = before != shots_.end();
+    if (camera.image.empty() || (any && now < before->second->taken + kShotPeriod)) continue;
+    auto taken = std::make_shared<const Shot>(
+        Shot{any ? before->second->number + 1 : 1, now, camera.image.clone(), camera.tracks});
     const std::lock_guard lock(mutex_);
-    shot = std::move(taken);
-  };
-  take(event_shot_, step.find(Modality::Events));
-  take(frame_shot_, step.find(Modality::Frames));
+    shots_[name] = std::move(taken);
+  }
 }
 
 void LiveFeed::finish(RunProgress progress) {
@@ -151,9 +154,9 @@ LiveFeed::Present LiveFeed::present(Place& place) const {
               place.changes,
               {rows_.all().begin() + known(place.rows), rows_.all().end()},
               {changes.begin() + known(place.changes), changes.begin() + known(shown)},
-              {},
-              event_shot_ ? event_shot_->number : 0,
-              frame_shot_ ? frame_shot_->number : 0};
+              {}};
+  for (const char* kind : {"events", "frame"}) now.shots[kind] = 0;
+  for (const auto& [name, shot] : shots_) now.shots[name] = shot->number;
   if (place.map != map_number_) now.new_map = map_;
   place.rows = rows_.all().size();
   place.thinned = thinned_;
@@ -187,7 +190,7 @@ std::string LiveFeed::news(Place& place) const {
                                  {"rows", columns(now.new_rows)},
                                  {"changes_from", now.changes},
                                  {"changes", nlohmann::ordered_json::array()},
-                                 {"pictures", {{"events", now.event_shot}, {"frame", now.frame_shot}}}};
+                                 {"pictures", now.shots}};
   for (const StatusChange& change : now.new_changes) {
     json["changes"].push_back({{"t", rounded(to_seconds(change.t - *origin_), 4)},
                                {"status", to_string(change.status)},
@@ -201,11 +204,11 @@ std::string LiveFeed::news(Place& place) const {
   return compact_json(json);
 }
 
-std::vector<unsigned char> LiveFeed::picture(Modality of) const {
+std::vector<unsigned char> LiveFeed::picture(const std::string& of) const {
   std::shared_ptr<const Shot> shot;
   {
     const std::lock_guard lock(mutex_);
-    shot = of == Modality::Events ? event_shot_ : frame_shot_;
+    if (const auto found = shots_.find(of); found != shots_.end()) shot = found->second;
   }
   return shot ? track_picture(shot->image, shot->tracks, kWidestShot_px) : std::vector<unsigned char>{};
 }

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -57,8 +58,9 @@ class LiveFeed {
 
   /// One line of json: the present numbers, and the rest that is new for this viewer (docs/report.md).
   std::string news(Place& place) const;
-  /// The newest image with its tracks as JPEG, made by the caller's thread; empty where there is none.
-  std::vector<unsigned char> picture(Modality of) const;
+  /// The newest image with its tracks as JPEG, made by the caller's thread; empty where there is none. of: "events" and
+  /// "frame" for the first camera of a kind, the name of another one.
+  std::vector<unsigned char> picture(const std::string& of) const;
 
  private:
   static constexpr std::size_t kColumns = 30;
@@ -82,7 +84,7 @@ class LiveFeed {
     std::vector<Row> new_rows;
     std::vector<StatusChange> new_changes;
     std::vector<float> new_map;
-    std::size_t event_shot = 0, frame_shot = 0;
+    std::map<std::string, std::size_t> shots = {};  ///< numbers of the newest images
   };
 
   Row row_of(const Step& step, const PacketPace& pace);
@@ -105,7 +107,7 @@ class LiveFeed {
   std::vector<float> map_;
   std::size_t map_number_ = 0;
   std::chrono::steady_clock::time_point map_taken_;
-  std::shared_ptr<const Shot> event_shot_, frame_shot_;
+  std::map<std::string, std::shared_ptr<const Shot>> shots_;  ///< as picture() calls them
 };
 
 }  // namespace edged

@@ -186,8 +186,8 @@ void LivePage::Server::answer() {
     page_sent_ = WallClock::now();
   });
   http_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { welcome(response); });
-  http_.Get(R"(/(events|frame)\.jpg)", [this](const httplib::Request& request, httplib::Response& response) {
-    const auto jpeg = feed.picture(request.matches[1] == "events" ? Modality::Events : Modality::Frames);
+  http_.Get(R"(/([^/]+)\.jpg)", [this](const httplib::Request& request, httplib::Response& response) {
+    const auto jpeg = feed.picture(request.matches[1]);
     if (jpeg.empty()) return refuse(response, 404, "There is no image yet.\n");
     reply(response, "image/jpeg", {jpeg.begin(), jpeg.end()});
   });

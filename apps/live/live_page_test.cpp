@@ -93,13 +93,13 @@ TEST_F(LiveRun, StaysSmallHoweverLongItIs) {
 TEST_F(LiveRun, CopiesNoImageUnlessThereIsAViewer) {
   LiveFeed::Place place;
   go_on(3);
-  EXPECT_TRUE(feed.picture(Modality::Events).empty());
+  EXPECT_TRUE(feed.picture("events").empty());
   EXPECT_FALSE(news(place).contains("map"));
   feed.viewer_came();
   go_on(3);
   EXPECT_EQ(news(place)["pictures"]["events"], 1);
-  EXPECT_FALSE(feed.picture(Modality::Events).empty());
-  EXPECT_TRUE(feed.picture(Modality::Frames).empty());
+  EXPECT_FALSE(feed.picture("events").empty());
+  EXPECT_TRUE(feed.picture("frame").empty());
   feed.viewer_left();
   EXPECT_EQ(feed.viewers(), 0u);
 }

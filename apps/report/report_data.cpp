@@ -243,6 +243,8 @@ Json pictures_json(const Json& album, Timestamp origin, std::size_t most) {
     const Timestamp t = timestamp_from_ns(pictures[i].at("t_ns").get<std::int64_t>());
     out.push_back(
         {{"t", to_seconds(t - origin)}, {"events", pictures[i].at("events")}, {"frame", pictures[i].at("frame")}});
+    if (const auto others = pictures[i].find("others"); others != pictures[i].end())
+      for (const auto& [camera, jpeg] : others->items()) out.back()["camera " + camera] = jpeg;
   }
   return out;
 }

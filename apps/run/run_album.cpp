@@ -72,6 +72,9 @@ void RunAlbum::take_picture(const Step& step) {
     return camera ? track_picture(camera->image, camera->tracks, kWidest_px) : std::vector<unsigned char>{};
   };
   pictures_.push_back({step.t, picture(events), picture(frame)});
+  for (const CameraStep& camera : step.cameras)
+    if (&camera != step.find(camera.modality) && !camera.image.empty())
+      pictures_.back().others[camera.name] = picture(&camera);
   if (pictures_.size() > kMostPictures) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pictures_.size(); i += 2) std::swap(pictures_[kept++], pictures_[i]);
@@ -113,6 +116,7 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame, std::op
   for (const Picture& picture : pictures_) {
     json["pictures"].push_back(
         {{"t_ns", to_ns(picture.t)}, {"events", base64(picture.events)}, {"frame", base64(picture.frame)}});
+    for (const auto& [camera, jpeg] : picture.others) json["pictures"].back()["others"][camera] = base64(jpeg);
   }
   return json;
 }

@@ -47,7 +47,8 @@ class RunAlbum {
   /// JPEG, empty if the step has none.
   struct Picture {
     Timestamp t;
-    std::vector<unsigned char> events, frame;
+    std::vector<unsigned char> events, frame;                       ///< of the first camera of each kind
+    std::map<std::string, std::vector<unsigned char>> others = {};  ///< by camera
   };
 
   void take_picture(const Step& step);

@@ -28,7 +28,7 @@ int run(RunOptions options) {
   options.source.cameras = camera_names(config.odometry.cameras);
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
-  match_cameras(source, mode);
+  match_cameras(source, mode, options.source.cameras);
   for (const Modality modality : {Modality::Events, Modality::Frames})
     if (!uses(mode, modality)) source.dataset->leave_out(modality);
   const RunSummary summary = Run(options, std::move(source), mode, config).go();

@@ -32,8 +32,12 @@ constexpr const char* kPosesInFrame = "foxglove.PosesInFrame";
 constexpr const char* kPointCloud = "foxglove.PointCloud";
 constexpr const char* kSceneUpdate = "foxglove.SceneUpdate";
 
-std::string topic_of(Modality modality, const char* what) {
-  return fmt::format("/{}/{}", modality == Modality::Events ? "events" : "frames", what);
+/// "/events/image" of the first camera of a kind, "/NAME/image" of the others.
+std::string topic_of(const Rig& rig, const std::string& name, const char* what) {
+  for (const Modality modality : {Modality::Events, Modality::Frames})
+    if (const RigCamera* first = rig.find(modality); first && first->name == name)
+      return fmt::format("/{}/{}", modality == Modality::Events ? "events" : "frames", what);
+  return fmt::format("/{}/{}", name, what);
 }
 
 double picture_scale(int width) { return std::min(1.0, static_cast<double>(kWidestOfFile_px) / width); }
@@ -137,12 +141,7 @@ bool RunMcap::Pace::due(Timestamp t) {
 }
 
 RunMcap::RunMcap(const std::filesystem::path& file, Rig rig, const RunFacts& facts)
-    : file_(file, ""),
-      rig_(std::move(rig)),
-      event_pace_(kPicturePeriod),
-      frame_pace_(kPicturePeriod),
-      path_pace_(kPathPeriod),
-      map_pace_(kMapPeriodOfFile) {
+    : file_(file, ""), rig_(std::move(rig)), path_pace_(kPathPeriod), map_pace_(kMapPeriodOfFile) {
   for (RigCamera& camera : rig_.cameras)
     if (camera.modality == Modality::Events) camera.model = ideal_pinhole(camera.model);
   file_.write_metadata("edged", facts);
@@ -163,8 +162,7 @@ void RunMcap::add(const Step& step, const RunAlbum& album) {
   put_status(step);
   put("/stats", "edged.Stats", step.t, foxglove::stats(step));
   if (is_tracking(step.status)) put_pose(step);
-  put_picture(step, Modality::Events, event_pace_);
-  put_picture(step, Modality::Frames, frame_pace_);
+  put_pictures(step);
   if (!album.points().empty() && map_pace_.due(step.t)) {
     put("/map", kPointCloud, step.t, foxglove::point_cloud(step.t, kWorld, album_points(album)));
     put_keyframes(step.t);
@@ -177,8 +175,7 @@ void RunMcap::describe_cameras(Timestamp t) {
   std::vector<foxglove::Transform> transforms;
   for (const RigCamera& camera : rig_.cameras) {
     transforms.push_back({kBody, camera.name, camera.T_B_C});
-    if (&camera != rig_.find(camera.modality)) continue;  // its pictures are not shown
-    put(topic_of(camera.modality, "calibration"), "foxglove.CameraCalibration", t,
+    put(topic_of(rig_, camera.name, "calibration"), "foxglove.CameraCalibration", t,
         foxglove::camera_calibration(t, camera, picture_scale(camera.model.width())));
   }
   put("/tf_static", kFrameTransforms, t, foxglove::frame_transforms(t, transforms));
@@ -200,12 +197,13 @@ void RunMcap::put_pose(const Step& step) {
   }
 }
 
-/// Of the first camera of that kind.
-void RunMcap::put_picture(const Step& step, Modality modality, Pace& pace) {
-  const CameraStep* camera = step.find(modality);
-  if (camera == nullptr || camera->image.empty() || !pace.due(step.t)) return;
-  put(topic_of(modality, "image"), "foxglove.CompressedImage", step.t,
-      foxglove::compressed_image(step.t, camera->name, track_picture(camera->image, camera->tracks, kWidestOfFile_px)));
+void RunMcap::put_pictures(const Step& step) {
+  for (const CameraStep& camera : step.cameras) {
+    if (camera.image.empty() || !picture_paces_.try_emplace(camera.name, kPicturePeriod).first->second.due(step.t))
+      continue;
+    put(topic_of(rig_, camera.name, "image"), "foxglove.CompressedImage", step.t,
+        foxglove::compressed_image(step.t, camera.name, track_picture(camera.image, camera.tracks, kWidestOfFile_px)));
+  }
 }
 
 void RunMcap::put_keyframes(Timestamp t) {

@@ -47,7 +47,7 @@ class RunMcap {
   void put(const std::string& topic, const char* type, Timestamp t, const foxglove::Json& message);
   void describe_cameras(Timestamp t);
   void put_pose(const Step& step);
-  void put_picture(const Step& step, Modality modality, Pace& pace);
+  void put_pictures(const Step& step);
   void put_keyframes(Timestamp t);
   void put_status(const Step& step);
 
@@ -58,7 +58,8 @@ class RunMcap {
   Timestamp last_{};
   std::optional<TrackingStatus> status_;
   Evenly<StampedPose> path_{300}, keyframes_{100};
-  Pace event_pace_, frame_pace_, path_pace_, map_pace_;
+  std::map<std::string, Pace> picture_paces_;  ///< by camera
+  Pace path_pace_, map_pace_;
 };
 
 }  // namespace edged

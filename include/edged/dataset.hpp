@@ -27,7 +27,17 @@ struct StreamInfo {
   std::string name;       ///< topic, or name in the file
   std::string type;       ///< of its messages
   std::size_t count = 0;  ///< of messages; 0 where it is not known
-  std::string role;       ///< "events", "frames", "imu", "truth", an external sensor; "" where it is not read
+  /// "events", "frames", "imu", "truth", an external sensor, of several cameras of a kind the name; "" where it is not
+  /// read.
+  std::string role;
+};
+
+/// A camera whose measurements a recording delivers.
+struct RecordedCamera {
+  std::string name;  ///< of its measurements
+  Modality modality = Modality::Frames;
+  std::string stream = {};  ///< its topic, stream or file; "" where there is only one
+  cv::Size sensor = {};     ///< of an event camera [px]; empty where it is not known
 };
 
 /// What is known of a recording before it is read through.
@@ -44,19 +54,26 @@ struct DatasetInfo {
   cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known
   std::string event_camera = "events";  ///< camera name of its event batches
   std::string frame_camera = "frames";  ///< camera name of its frames
+  /// Those beside the first of a kind, which the two names above are: event cameras, then frame cameras.
+  std::vector<RecordedCamera> more_cameras = {};
 };
 
+/// All cameras whose measurements the recording delivers: event cameras, then frame cameras, of each kind the first
+/// first.
+std::vector<RecordedCamera> recorded_cameras(const DatasetInfo& info);
+
 /// A time-ordered stream of measurements. Each sensor's stamps are on its own clock as recorded; the order is by stamp,
-/// ties broken external samples, IMU, events, frame. Streams: holds a bounded part of the recording in memory at any
-/// time; if the clocks of the sensors differ by more, only each sensor by itself is in order.
+/// ties broken external samples, IMU, events, frame, and of a kind the first camera. Streams: holds a bounded part of
+/// the recording in memory at any time; if the clocks of the sensors differ by more, only each sensor by itself is in
+/// order.
 class Dataset {
  public:
   virtual ~Dataset() = default;
 
   virtual const DatasetInfo& info() const = 0;
 
-  /// The next measurement, or nothing at the end. An EventBatch ends before the next other measurement and spans at
-  /// most a few milliseconds. Throws InputError for what cannot be repaired.
+  /// The next measurement, or nothing at the end. An EventBatch ends before the next measurement that is none and spans
+  /// at most a few milliseconds; those of two cameras overlap. Throws InputError for what cannot be repaired.
   virtual std::optional<Measurement> next() = 0;
 
   /// Declares measurements that are not needed: from now on next() may skip them without decoding. Nothing else

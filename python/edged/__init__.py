@@ -17,17 +17,17 @@ import warnings as _warnings
 import numpy as _numpy
 
 from ._edged import (EVENT, IMU, POSE, Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording,
-                     RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
+                     RecordedCamera, RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
                      simulator_presets)
 from ._edged import evaluate_to_json as _evaluate_to_json
 
 __all__ = [
     "EVENT", "IMU", "POSE", "Calibration", "Camera", "CameraStep", "FinalTrajectory", "InputError", "Measurement", "Odometry", "Recording",
-    "RecordingInfo", "State", "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
+    "RecordedCamera", "RecordingInfo", "State", "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
     "open_recording", "read_trajectory", "run", "simulate", "simulator_presets", "trajectory"
 ]
 
-for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording, RecordingInfo, State, Status, Step):
+for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, RecordedCamera, Recording, RecordingInfo, State, Status, Step):
     _class.__module__ = __name__
 
 

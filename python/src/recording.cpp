@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
@@ -14,6 +15,7 @@
 #include "edged/io/open_recording.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "edged/sim/simulated_pair.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged::python {
@@ -45,12 +47,19 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
                                   const std::map<std::string, std::string>& topics,
                                   const std::optional<std::array<int, 2>>& geometry,
                                   const std::optional<std::string>& time_unit, const std::optional<double>& begin_s,
-                                  const std::optional<double>& end_s) {
+                                  const std::optional<double>& end_s,
+                                  const std::variant<std::vector<std::string>, std::string>& cameras) {
   const std::string file = py::str(path);
   std::optional<Calibration> calibration;
   if (!rig.is_none()) calibration = calibration_of(rig);
   RecordingOptions options;
   options.topics = topics;
+  if (calibration) options.camera_topics = calibration->topics;
+  if (const auto* names = std::get_if<std::vector<std::string>>(&cameras)) {
+    options.cameras = *names;
+  } else if (options.all_cameras = std::get<std::string>(cameras) == "all"; !options.all_cameras) {
+    throw InputError::format("cameras '{}': give a list of names, or 'all'", std::get<std::string>(cameras));
+  }
   options.interrupted = interrupted;
   if (geometry) options.geometry = cv::Size((*geometry)[0], (*geometry)[1]);
   if (time_unit && !(options.time_unit = parse_time_unit(*time_unit)))
@@ -68,15 +77,18 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
 
 std::unique_ptr<PyRecording> simulate(const std::string& preset, int seed, const std::optional<double>& duration_s,
                                       const OptionValues& options, const std::optional<double>& begin_s,
-                                      const std::optional<double>& end_s) {
+                                      const std::optional<double>& end_s, const std::optional<double>& baseline_m) {
   SimulatorConfig config = simulator_preset(preset);
   config.seed = seed;
   if (duration_s) config.duration_s = *duration_s;
   set_options(config, options);
   const py::gil_scoped_release free;
-  auto simulator = std::make_unique<Simulator>(config);
-  Calibration calibration = simulator->calibration();
-  return piece_of({std::move(simulator), std::move(calibration)}, begin_s, end_s);
+  const auto opened = [&](auto simulator) {
+    Calibration calibration = simulator->calibration();
+    return piece_of({std::move(simulator), std::move(calibration)}, begin_s, end_s);
+  };
+  if (baseline_m) return opened(std::make_unique<SimulatedPair>(config, *baseline_m));
+  return opened(std::make_unique<Simulator>(config));
 }
 
 PyMeasurement next_measurement(PyRecording& self) {
@@ -144,6 +156,15 @@ py::array data(const py::object& self) {
 }
 
 void bind_info(py::module_& module) {
+  py::class_<RecordedCamera>(module, "RecordedCamera")
+      .def_readonly("name", &RecordedCamera::name)
+      .def_property_readonly(
+          "kind",
+          [](const RecordedCamera& camera) { return camera.modality == Modality::Events ? "events" : "frames"; })
+      .def_readonly("stream", &RecordedCamera::stream)
+      .def_property_readonly("sensor", [](const RecordedCamera& camera) {
+        return py::make_tuple(camera.sensor.width, camera.sensor.height);
+      });
   py::class_<DatasetInfo>(module, "RecordingInfo")
       .def_readonly("name", &DatasetInfo::name)
       .def_readonly("format", &DatasetInfo::format)
@@ -156,6 +177,7 @@ void bind_info(py::module_& module) {
       .def_readonly("external", &DatasetInfo::external)
       .def_readonly("event_camera", &DatasetInfo::event_camera)
       .def_readonly("frame_camera", &DatasetInfo::frame_camera)
+      .def_property_readonly("cameras", &recorded_cameras)
       .def_property_readonly("event_sensor", [](const DatasetInfo& info) {
         return py::make_tuple(info.event_sensor.width, info.event_sensor.height);
       });
@@ -181,9 +203,11 @@ void bind_recording(py::module_& module) {
       .def("__next__", &next_measurement);
   module.def("open_recording", &open, py::arg("path"), py::arg("rig") = py::none(),
              py::arg("topics") = std::map<std::string, std::string>{}, py::arg("geometry") = py::none(),
-             py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none());
+             py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
+             py::arg("cameras") = std::vector<std::string>{});
   module.def("simulate", &simulate, py::arg("preset") = "room", py::arg("seed") = 1, py::arg("duration_s") = py::none(),
-             py::arg("options") = OptionValues{}, py::arg("begin_s") = py::none(), py::arg("end_s") = py::none());
+             py::arg("options") = OptionValues{}, py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
+             py::arg("baseline_m") = py::none());
   module.def("simulator_presets", &simulator_presets);
 }
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings as iterables."""
 import logging
+import shutil
 
 import numpy as np
 import pytest
@@ -31,6 +32,23 @@ def test_a_recording_gives_its_measurements_in_order(flight):
     assert all(m.data.shape == (180, 240) for m in measurements if m.kind == "frame")
     assert np.concatenate([m.data for m in measurements if m.kind == "imu"])["accel"].shape[1] == 3
     assert not list(recording)  # once
+
+
+def test_several_cameras_of_a_kind_are_read_where_they_are_asked_for(flight, tmp_path):
+    for camera in ("events", "images"):
+        shutil.copy(flight / f"{camera}.txt", tmp_path / f"{camera}2.txt")
+        shutil.copy(flight / f"{camera}.txt", tmp_path / f"{camera}.txt")
+    shutil.copytree(flight / "images", tmp_path / "images")
+    names = lambda recording: [camera.name for camera in recording.info.cameras]
+    assert names(edged.open_recording(tmp_path)) == ["events", "frames"]
+    assert names(edged.open_recording(tmp_path, cameras=["events2", "frames2"])) == ["events2", "frames2"]
+    both = edged.open_recording(tmp_path, cameras="all")
+    assert [(c.name, c.kind, c.sensor) for c in both.info.cameras[:2]] == [("events", "events", (240, 180)),
+                                                                           ("events2", "events", (240, 180))]
+    assert {m.camera for m in both if m.kind == "frame"} == {"frames", "frames2"}
+    with pytest.raises(edged.InputError, match="'all'"):
+        edged.open_recording(tmp_path, cameras="both")
+    assert names(edged.simulate("room", 1, 0.1, baseline_m=0.1)) == ["events", "events2", "frames", "frames2"]
 
 
 def test_ground_truth_comes_as_poses(flight):

@@ -42,6 +42,7 @@ Node::Node(const NodeConfig& config, const Calibration& calibration)
     const bool events = camera.modality == Modality::Events, first = &camera == used.find(camera.modality);
     const std::string topic = events ? "events" : "image";
     subscribe(first ? topic : camera.name + "/" + topic, events ? Role::Events : Role::Frames, camera.name);
+    if (!first) outputs_.add_camera(private_, camera.name);
   }
   for (const Role role : {Role::Imu, Role::Height, Role::Velocity})
     subscribe(kRoleNames[static_cast<std::size_t>(role)], role, "");

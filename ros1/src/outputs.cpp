@@ -56,13 +56,18 @@ void Outputs::extend_path(Timestamp t, const nav_msgs::Odometry& odometry) {
 }
 
 void Outputs::publish_images(const Step& step) const {
-  const auto publish = [&step](Modality modality, const ros::Publisher& publisher) {
-    const CameraStep* camera = step.find(modality);
-    if (camera && !camera->image.empty() && publisher.getNumSubscribers() > 0)
-      publisher.publish(tracks_message(step.t, camera->name, camera->image, camera->tracks));
-  };
-  publish(Modality::Frames, frame_tracks_);
-  publish(Modality::Events, event_tracks_);
+  for (const CameraStep& camera : step.cameras) {
+    const auto other = other_tracks_.find(camera.name);
+    const ros::Publisher& publisher = other != other_tracks_.end()          ? other->second
+                                      : camera.modality == Modality::Events ? event_tracks_
+                                                                            : frame_tracks_;
+    if (!camera.image.empty() && publisher.getNumSubscribers() > 0)
+      publisher.publish(tracks_message(step.t, camera.name, camera.image, camera.tracks));
+  }
+}
+
+void Outputs::add_camera(ros::NodeHandle& node, const std::string& name) {
+  other_tracks_[name] = node.advertise<sensor_msgs::Image>("tracks/" + name, kImageQueue);
 }
 
 void Outputs::publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,

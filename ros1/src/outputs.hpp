@@ -6,6 +6,9 @@
 #include <nav_msgs/Path.h>
 #include <ros/node_handle.h>
 
+#include <map>
+#include <string>
+
 #include "diagnostics.hpp"
 #include "messages.hpp"
 
@@ -17,6 +20,9 @@ class Outputs {
   Outputs(ros::NodeHandle& node, const NodeConfig& config);
 
   /// Of one packet; rig: the cameras of the mode with online calibration.
+  /// Advertises tracks/NAME of a camera beside the first of its kind.
+  void add_camera(ros::NodeHandle& node, const std::string& name);
+
   void publish(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig);
   /// At an IMU sample; covariance: of the newest packet. From another thread than the rest.
   void publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,
@@ -33,6 +39,7 @@ class Outputs {
   const Duration path_step_;
   ros::Publisher odometry_, prediction_, pose_, path_topic_, transforms_, landmarks_, frame_tracks_, event_tracks_,
       diagnostics_;
+  std::map<std::string, ros::Publisher> other_tracks_;  ///< by camera
   nav_msgs::Path path_;
   std::optional<Timestamp> path_end_, path_sent_;
 };

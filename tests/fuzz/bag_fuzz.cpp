@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto length = static_cast<ssize_t>(bytes.size());
   if (ftruncate(file, 0) != 0 || pwrite(file, bytes.data(), bytes.size(), 0) != length) std::abort();
   try {
-    const Recording recording = open_recording("/proc/self/fd/" + std::to_string(file));
+    const Recording recording = open_recording("/proc/self/fd/" + std::to_string(file), nullptr, {.all_cameras = true});
     while (recording.dataset->next()) {
     }
     recording.dataset->ground_truth();

@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spdlog::set_level(spdlog::level::off);
   const std::string name = "/proc/self/fd/" + std::to_string(file_of(data, size));
   try {
-    const Recording recording = open_recording(name, nullptr, {.geometry = cv::Size(640, 480)});
+    const Recording recording = open_recording(name, nullptr, {.geometry = cv::Size(640, 480), .all_cameras = true});
     while (recording.dataset->next()) {
     }
   } catch (const InputError&) {

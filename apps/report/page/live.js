@@ -79,15 +79,15 @@ function livePictures() {
   const card = make('div', {class: 'card'}, make('h3', {}, 'What the cameras see, with tracks'), figures,
                     make('p', {class: 'hint'}, 'Orange: new corners, green: those followed for more than five images.'));
   return [card, update => {
-    for (const [key, name] of Object.entries(kPictures)) {
-      const number = update.pictures[key];
+    for (const [key, number] of Object.entries(update.pictures)) {
+      const name = kPictures[key] || 'camera ' + key;
       if (number === 0 || (shown[key] && (shown[key].number === number || !shown[key].image.complete))) continue;
       if (!shown[key]) {
         shown[key] = {image: make('img', {alt: name})};
         figures.append(make('figure', {class: 'shot'}, shown[key].image, make('figcaption', {}, name)));
       }
       shown[key].number = number;
-      shown[key].image.src = key + '.jpg?' + number;
+      shown[key].image.src = encodeURIComponent(key) + '.jpg?' + number;
     }
   }];
 }

@@ -229,7 +229,8 @@ function picturesCard() {
   const card = make('div', {class: 'card'}, make('h3', {}, 'What the cameras saw, with tracks'), slider);
   const shown = [];
   for (const run of withPictures) {
-    for (const [key, name] of [['frame', 'frame'], ['events', 'events, motion-compensated']]) {
+    const further = [...new Set(run.pictures.flatMap(Object.keys))].filter(key => key.startsWith('camera ')).sort();
+    for (const [key, name] of [['frame', 'frame'], ['events', 'events, motion-compensated'], ...further.map(key => [key, key])]) {
       if (!run.pictures.some(picture => picture[key])) continue;
       const image = make('img', {alt: name}), caption = make('figcaption', {});
       shown.push({list: run.pictures.filter(picture => picture[key]), times: run.pictures.filter(picture => picture[key]).map(picture => picture.t), key, image, caption,

@@ -3,7 +3,11 @@
 // Assigns the cameras of a recording to the cameras of a rig.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "edged/dataset.hpp"
 #include "edged/rig.hpp"
@@ -15,5 +19,31 @@ namespace edged {
 /// that Rig::find returns it. Returns the assumption in one line, empty if the names agree. Throws InputError, with the
 /// cameras of both, if no camera or several fit.
 std::string match_camera(Rig& rig, const DatasetInfo& info, Modality modality);
+
+/// The places of the cameras of one kind that are read: all, else those of the wanted names, else the first.
+std::vector<std::size_t> cameras_to_read(const std::vector<std::string>& names, const std::vector<std::string>& wanted,
+                                         bool all);
+
+/// "events", "events2", ..., "frames", "frames2", ...: the names of cameras in formats that do not name them.
+std::string usual_camera_name(Modality modality, std::size_t index);
+
+/// The camera that readers without names of their own would call so: "events2" is the second event camera of `all`,
+/// which are those of the recording, read or not, of each kind the first first.
+std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name);
+
+/// "events" or "frames".
+std::string kind_name(Modality modality);
+
+/// The camera names of the streams of one kind in a recording.
+struct NamedStreams {
+  std::vector<std::string> names;  ///< in the order of the streams
+  std::string said;                ///< an assumption in one line; empty without one
+};
+
+/// The usual names, but those of the rig where it has several cameras of the kind, or where one is wanted by its name:
+/// by the words of the names ("left" of "/left/events"), else in order if the rig has as many as there are streams.
+/// file: for the line.
+NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<std::string>& streams,
+                          const std::vector<std::string>& wanted, const std::string& file);
 
 }  // namespace edged

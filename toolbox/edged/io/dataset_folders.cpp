@@ -64,8 +64,12 @@ bool is_ecd_folder(const SourcePath& folder) {
   return (folder / "events.txt").is_file() || find_ecd_image_list(folder) || (folder / "imu.txt").is_file();
 }
 
-std::optional<SourcePath> find_ecd_image_list(const SourcePath& folder) {
-  for (const char* name : {"images.txt", "left_images.txt"})
+std::string ecd_number(std::size_t camera) { return camera == 0 ? "" : std::to_string(camera + 1); }
+
+std::optional<SourcePath> find_ecd_image_list(const SourcePath& folder, std::size_t camera) {
+  std::vector<std::string> names = {"images" + ecd_number(camera) + ".txt"};
+  if (camera < 2) names.emplace_back(camera == 0 ? "left_images.txt" : "right_images.txt");
+  for (const std::string& name : names)
     if (SourcePath list = folder / name; list.is_file()) return list;
   return std::nullopt;
 }
@@ -79,12 +83,12 @@ StampedLines<FrameEntry>::Spec image_lines(const SourcePath& list, const SourceP
   return {list, "frames", "t path", LastLine::MayLackEnd, parse};
 }
 
-StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder) {
-  return image_lines(find_ecd_image_list(folder).value(), folder, TimeUnit::Seconds);
+StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder, std::size_t camera) {
+  return image_lines(find_ecd_image_list(folder, camera).value(), folder, TimeUnit::Seconds);
 }
 
-std::optional<std::string> first_ecd_image(const SourcePath& folder) {
-  const auto list = find_ecd_image_list(folder);
+std::optional<std::string> first_ecd_image(const SourcePath& folder, std::size_t camera) {
+  const auto list = find_ecd_image_list(folder, camera);
   if (!list) return std::nullopt;
   const ImageColumns columns = image_columns(*list, TimeUnit::Seconds);
   LineReader lines(*list);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes folders of the Event-Camera Dataset.
+// Writes folders of the Event-Camera Dataset; of further cameras events2.txt, images2.txt and so on.
 #include "edged/io/ecd_writer.hpp"
 
 #include <spdlog/fmt/compile.h>
@@ -11,6 +11,7 @@
 #include <iterator>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
@@ -50,18 +51,8 @@ class LazyFile {
   fmt::memory_buffer text_;
 };
 
-/// The calibration with the camera names that the reader of the format uses.
-Calibration with_format_names(Calibration calibration) {
-  bool events = false, frames = false;
-  for (RigCamera& camera : calibration.rig.cameras) {
-    bool& named = camera.modality == Modality::Events ? events : frames;
-    if (!std::exchange(named, true)) camera.name = camera.modality == Modality::Events ? "events" : "frames";
-  }
-  return calibration;
-}
-
-void write_calibration(const Calibration& calibration, const fs::path& folder) {
-  const Calibration named = with_format_names(calibration);
+void write_calibration(const WriterSetup& setup, const fs::path& folder) {
+  const Calibration named = setup.calibration_when_read();
   const RigCamera* events = named.rig.find(Modality::Events);
   const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
   if (m.distortion() == DistortionModel::None || m.distortion() == DistortionModel::RadTan) {
@@ -77,12 +68,13 @@ void write_calibration(const Calibration& calibration, const fs::path& folder) {
 }
 
 /// Finds a camera by its name in the rig, or by the name that readers of formats without names use.
-const RigCamera& find_camera(const Rig& rig, const std::string& name) {
-  const RigCamera* by_kind = name == "events"   ? rig.find(Modality::Events)
-                             : name == "frames" ? rig.find(Modality::Frames)
-                                                : nullptr;
-  const auto named = std::ranges::find(rig.cameras, name, &RigCamera::name);
-  return named == rig.cameras.end() && by_kind ? *by_kind : rig.camera(name);
+const RigCamera& find_camera(const WriterSetup& setup, const std::string& name) {
+  const Rig& rig = setup.calibration->rig;
+  const std::vector<RigCamera> renamed = setup.calibration_when_read().rig.cameras;
+  const auto known = std::ranges::find(rig.cameras, name, &RigCamera::name);
+  const auto usual = std::ranges::find(renamed, name, &RigCamera::name);
+  if (known != rig.cameras.end() || usual == renamed.end()) return rig.camera(name);
+  return rig.cameras[static_cast<std::size_t>(usual - renamed.begin())];
 }
 
 /// T_W_C of the event camera (without one: of the first camera) on its clock.
@@ -101,7 +93,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
   const RigCamera& to = events ? *events : rig.cameras.front();
   if (truth.frame == to.name) return truth.trajectory;
   const RigCamera body;  // identity and no offset
-  const RigCamera& from = truth.frame == "body" ? body : find_camera(rig, truth.frame);
+  const RigCamera& from = truth.frame == "body" ? body : find_camera(setup, truth.frame);
   const SE3 T_X_C = from.T_B_C.inverse() * to.T_B_C;
   Trajectory out = truth.trajectory;
   for (StampedPose& pose : out) pose = {pose.t + from.time_offset - to.time_offset, pose.T * T_X_C};
@@ -110,40 +102,41 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
 
 class EcdWriter final : public RecordingWriter {
  public:
-  explicit EcdWriter(const WriterSetup& setup)
-      : setup_(setup),
-        folder_(setup.path),
-        events_(folder_ / "events.txt"),
-        images_(folder_ / "images.txt"),
-        imu_(folder_ / "imu.txt") {
+  explicit EcdWriter(const WriterSetup& setup) : setup_(setup), folder_(setup.path), imu_(folder_ / "imu.txt") {
+    for (std::size_t i = 0; i < setup.cameras(Modality::Events); ++i)
+      events_.emplace_back(folder_ / ("events" + ecd_number(i) + ".txt"));
+    for (std::size_t i = 0; i < setup.cameras(Modality::Frames); ++i)
+      images_.push_back({LazyFile(folder_ / ("images" + ecd_number(i) + ".txt"))});
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) throw InputError::format("{}: cannot be made: {}", folder_.string(), error.message());
     if (is_ecd_folder(folder_))
       throw InputError::format("{}: holds a recording already: give another folder", folder_.string());
-    if (setup_.calibration) write_calibration(*setup_.calibration, folder_);
+    if (setup_.calibration) write_calibration(setup_, folder_);
   }
 
   void write(const EventBatch& batch) override {
-    keep_to_one(event_camera_, batch.camera);
+    LazyFile& events = events_[setup_.place_of(batch.camera, Modality::Events)];
     for (const Event& e : batch.events) {
       const std::int64_t ns = to_ns(e.t);
       if (ns < 0) {
-        events_.add(FMT_COMPILE("{} {} {} {:d}\n"), format_seconds(e.t), e.x, e.y, e.positive);
+        events.add(FMT_COMPILE("{} {} {} {:d}\n"), format_seconds(e.t), e.x, e.y, e.positive);
       } else {
-        events_.add(FMT_COMPILE("{}.{:09} {} {} {:d}\n"), ns / 1'000'000'000, ns % 1'000'000'000, e.x, e.y, e.positive);
+        events.add(FMT_COMPILE("{}.{:09} {} {} {:d}\n"), ns / 1'000'000'000, ns % 1'000'000'000, e.x, e.y, e.positive);
       }
     }
   }
 
   void write(const Frame& frame) override {
-    keep_to_one(frame_camera_, frame.camera);
-    if (frames_ == 0) fs::create_directories(folder_ / "images");
-    const std::string name = fmt::format("images/frame_{:08}.png", frames_++);
+    const std::size_t camera = setup_.place_of(frame.camera, Modality::Frames);
+    auto& [list, count] = images_[camera];
+    const std::string images = "images" + ecd_number(camera);
+    if (count == 0) fs::create_directories(folder_ / images);
+    const std::string name = fmt::format("{}/frame_{:08}.png", images, count++);
     const fs::path file = folder_ / name;
     if (!cv::imwrite(file.string(), frame.image))
       throw InputError::format("{}: cannot be written: is the disk full?", file.string());
-    images_.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
+    list.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
   }
 
   void write(const ImuSample& s) override {
@@ -176,27 +169,24 @@ class EcdWriter final : public RecordingWriter {
   }
 
   void finish() override {
-    events_.flush();
-    images_.flush();
+    for (LazyFile& file : events_) file.flush();
+    for (auto& [list, count] : images_) list.flush();
     imu_.flush();
     for (auto& [name, file] : external_) file.flush();
   }
 
  private:
-  /// The format holds one event camera and one frame camera.
-  void keep_to_one(std::string& known, const std::string& camera) {
-    if (known.empty()) known = camera;
-    if (known != camera)
-      throw InputError::format("{}: the Event-Camera Dataset format holds one camera of a kind, not both {} and {}",
-                               folder_.string(), known, camera);
-  }
+  struct Images {
+    LazyFile list;
+    std::size_t count = 0;
+  };
 
   WriterSetup setup_;
   fs::path folder_;
-  LazyFile events_, images_, imu_;
+  std::vector<LazyFile> events_;
+  std::vector<Images> images_;
+  LazyFile imu_;
   std::map<std::string, LazyFile> external_;
-  std::string event_camera_, frame_camera_;
-  std::size_t frames_ = 0;
 };
 
 }  // namespace

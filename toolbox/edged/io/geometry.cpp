@@ -20,6 +20,12 @@ std::optional<int> pixels(std::string_view text) {
   return value;
 }
 
+const RigCamera* find_camera(const Rig& rig, Modality modality, std::string_view name) {
+  for (const RigCamera& camera : rig.cameras)
+    if (camera.name == name && camera.modality == modality) return &camera;
+  return rig.find(modality);
+}
+
 }  // namespace
 
 std::optional<cv::Size> parse_geometry(std::string_view text) {
@@ -29,16 +35,18 @@ std::optional<cv::Size> parse_geometry(std::string_view text) {
   return width && height ? std::optional(cv::Size(*width, *height)) : std::nullopt;
 }
 
-void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality) {
+void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality,
+                        std::string_view name) {
   constexpr double kTolerance = 0.02;
-  const RigCamera* camera = rig.find(modality);
+  const RigCamera* camera = find_camera(rig, modality, name);
   if (!camera || std::abs(focal_px / camera->model.mean_focal() - 1.0) <= kTolerance) return;
   spdlog::warn(fmt::format("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file,
                            focal_px, rig.name, camera->model.mean_focal()));
 }
 
-cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig) {
-  if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
+cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig,
+                           std::string_view name) {
+  if (const RigCamera* camera = rig ? find_camera(*rig, Modality::Events, name) : nullptr) {
     const cv::Size size(camera->model.width(), camera->model.height());
     if (said && *said != size)
       spdlog::warn(fmt::format(

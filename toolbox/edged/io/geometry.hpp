@@ -18,7 +18,9 @@ namespace edged {
 std::optional<cv::Size> parse_geometry(std::string_view text);
 
 /// Warns if the focal length [px] of a camera of the recording differs by more than 2 % from that of the rig.
-void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality);
+/// name: of the camera; if the rig has none of that name, its first of the modality.
+void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality,
+                        std::string_view name = {});
 
 /// The size of the event sensor is unknown.
 class UnknownSensorSize : public InputError {
@@ -28,6 +30,8 @@ class UnknownSensorSize : public InputError {
 
 /// The size of the event sensor of a file: of the rig, else `said` by the user or the file. Warns if the two differ.
 /// Throws UnknownSensorSize without either.
-cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig);
+/// name: of the camera, as above.
+cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig,
+                           std::string_view name = {});
 
 }  // namespace edged

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "edged/io/text_parsing.hpp"
 
@@ -99,41 +100,55 @@ void ArrivalQueue<T>::insert(T item) {
   sorted_.insert(place, std::move(item));
 }
 
-Merger::Merger(Repairs& repairs)
-    : events_("events", true, 4'000'000, repairs),
-      frames_("frames", false, 300, repairs),
-      imu_("imu", false, 100'000, repairs) {
+Merger::Merger(Repairs& repairs) : repairs_(repairs), imu_("imu", false, 100'000, repairs) {
   for (const ExternalSensor& sensor : external_sensors())
     external_.emplace_back(std::string(sensor.name), false, 100'000, repairs);
+  expect({});
 }
 
 void Merger::expect(const Streams& streams) {
-  event_camera_ = streams.event_camera;
-  event_pace_.expected = streams.events;
-  frame_pace_.expected = streams.frames;
+  const auto set = [this]<typename T>(std::vector<Camera<T>>& cameras, std::vector<std::string> names,
+                                      const std::string& kind, std::size_t max_held) {
+    const bool expected = !names.empty(), stamps_repeat = std::is_same_v<T, Event>;
+    if (!expected) names = {kind};
+    cameras.clear();
+    for (const std::string& name : names)
+      cameras.push_back({name, ArrivalQueue<T>(kind, stamps_repeat, max_held, repairs_), {expected, {}, {}}});
+  };
+  set(events_, streams.events, "events", 4'000'000);
+  set(frames_, streams.frames, "frames", 300);
   imu_pace_.expected = streams.imu;
 }
 
 void Merger::leave_out(Modality unwanted) {
+  const auto forget = [](auto& cameras) {
+    for (auto& camera : cameras) {
+      camera.queue.clear();
+      camera.pace = {};
+    }
+  };
   if (unwanted == Modality::Events) {
-    events_.clear();
-    event_pace_ = {};
+    forget(events_);
   } else {
-    frames_.clear();
-    frame_pace_ = {};
+    forget(frames_);
   }
   // Its clock may have been ahead of the other clocks.
-  begin_ = newest_ = std::max({event_pace_.last, frame_pace_.last, imu_pace_.last});
+  begin_ = newest_ = imu_pace_.last;
+  for (const auto& camera : events_) begin_ = newest_ = std::max(newest_, camera.pace.last);
+  for (const auto& camera : frames_) begin_ = newest_ = std::max(newest_, camera.pace.last);
 }
 
-void Merger::push(std::span<const Event> events) {
-  events_.push(events);
-  note(event_pace_, events_.last());
+void Merger::push(std::span<const Event> events, std::size_t camera) {
+  auto& [name, queue, pace] = events_.at(camera);
+  queue.push(events);
+  note(pace, queue.last());
 }
 
-void Merger::push(Frame frame) {
-  frames_.push(std::move(frame));
-  note(frame_pace_, frames_.last());
+void Merger::push(Frame frame, std::size_t camera) {
+  auto& [name, queue, pace] = frames_.at(camera);
+  frame.camera = name;
+  queue.push(std::move(frame));
+  note(pace, queue.last());
 }
 
 void Merger::push(const ImuSample& sample) {
@@ -151,8 +166,8 @@ void Merger::note(Pace& pace, std::optional<Timestamp> last) {
 }
 
 void Merger::finish() {
-  events_.finish();
-  frames_.finish();
+  for (auto& camera : events_) camera.queue.finish();
+  for (auto& camera : frames_) camera.queue.finish();
   imu_.finish();
   for (auto& queue : external_) queue.finish();
   finished_ = true;
@@ -162,15 +177,22 @@ void Merger::finish() {
 Timestamp Merger::horizon() const {
   if (finished_) return Timestamp::max();
   if (!newest_) return Timestamp::min();
-  Timestamp settled = Timestamp::max();
-  for (const Pace* pace : {&event_pace_, &frame_pace_, &imu_pace_}) {
-    if (!pace->expected && !pace->last) continue;
-    const bool silent = *newest_ - pace->heard.value_or(*begin_) > kPatience;
-    settled = std::min(settled, silent       ? *newest_ - kPatience
-                                : pace->last ? *pace->last - kDisorder
-                                             : Timestamp::min());
-  }
-  return std::max({settled, events_.overflow(), frames_.overflow(), imu_.overflow()});
+  Timestamp settled = Timestamp::max(), overflow = imu_.overflow();
+  const auto wait_for = [&](const Pace& pace) {
+    if (!pace.expected && !pace.last) return;
+    const bool silent = *newest_ - pace.heard.value_or(*begin_) > kPatience;
+    settled = std::min(settled, silent ? *newest_ - kPatience : pace.last ? *pace.last - kDisorder : Timestamp::min());
+  };
+  const auto wait_for_all = [&](const auto& cameras) {
+    for (const auto& camera : cameras) {
+      wait_for(camera.pace);
+      overflow = std::max(overflow, camera.queue.overflow());
+    }
+  };
+  wait_for_all(events_);
+  wait_for_all(frames_);
+  wait_for(imu_pace_);
+  return std::max(settled, overflow);
 }
 
 ArrivalQueue<ExternalSample>& Merger::next_external() {
@@ -178,9 +200,15 @@ ArrivalQueue<ExternalSample>& Merger::next_external() {
 }
 
 std::optional<Measurement> Merger::pop() {
+  const auto next_of = [](auto& cameras) -> auto& {  // of equal stamps the first camera
+    return *std::ranges::min_element(cameras, {}, [](const auto& camera) { return camera.queue.next_stamp(); });
+  };
   const Timestamp ready = horizon();
+  Camera<Event>& events = next_of(events_);
+  Camera<Frame>& frames = next_of(frames_);
   ArrivalQueue<ExternalSample>& external = next_external();
-  const std::array stamps{imu_.next_stamp(), events_.next_stamp(), frames_.next_stamp(), external.next_stamp()};
+  const std::array stamps{imu_.next_stamp(), events.queue.next_stamp(), frames.queue.next_stamp(),
+                          external.next_stamp()};
   const NextStream next = next_stream(stamps[0], stamps[1], stamps[2], stamps[3]);
   if (std::ranges::min(stamps) >= ready) return std::nullopt;
   switch (next.stream) {
@@ -189,15 +217,17 @@ std::optional<Measurement> Merger::pop() {
     case NextStream::Stream::Imu:
       return imu_.pop();
     case NextStream::Stream::Frame:
-      return frames_.pop();
+      return frames.queue.pop();
     case NextStream::Stream::Events:
-      return take_events(std::min({next.events_end, events_.next_stamp() + kLongestBatch, ready}));
+      return take_events(events, std::min({next.events_end, stamps[1] + kLongestBatch, ready}));
     case NextStream::Stream::None:
       break;
   }
   return std::nullopt;
 }
 
-EventBatch Merger::take_events(Timestamp end) { return {event_camera_, events_.pop_before(end, kMostInBatch)}; }
+EventBatch Merger::take_events(Camera<Event>& camera, Timestamp end) {
+  return {camera.name, camera.queue.pop_before(end, kMostInBatch)};
+}
 
 }  // namespace edged

@@ -74,8 +74,8 @@ class ArrivalQueue {
 class Merger {
  public:
   struct Streams {
-    bool events = false, frames = false, imu = false;
-    std::string event_camera = "events";
+    std::vector<std::string> events = {}, frames = {};  ///< names of the cameras
+    bool imu = false;
   };
 
   explicit Merger(Repairs& repairs);
@@ -83,11 +83,13 @@ class Merger {
   /// Sets the streams to wait for. Before any push().
   void expect(const Streams& streams);
 
-  /// Discards the held items of that stream and does not wait for it. It must not be pushed any more.
+  /// Discards the held items of those streams and does not wait for them. They must not be pushed any more.
   void leave_out(Modality unwanted);
 
-  void push(std::span<const Event> events);
-  void push(Frame frame);
+  /// camera: its place among those of its kind. A stream that is not expected may be pushed as the first.
+  void push(std::span<const Event> events, std::size_t camera = 0);
+  /// The name of the camera is that of Streams.
+  void push(Frame frame, std::size_t camera = 0);
   void push(const ImuSample& sample);
   /// Never waited for. It is in order unless later measurements precede it in the file.
   void push(const ExternalSample& sample);
@@ -103,16 +105,22 @@ class Merger {
     bool expected = false;
     std::optional<Timestamp> last, heard;
   };
+  template <typename T>
+  struct Camera {
+    std::string name;
+    ArrivalQueue<T> queue;
+    Pace pace = {};
+  };
   void note(Pace& pace, std::optional<Timestamp> last);
   Timestamp horizon() const;
   ArrivalQueue<ExternalSample>& next_external();
-  EventBatch take_events(Timestamp end);
+  EventBatch take_events(Camera<Event>& camera, Timestamp end);
 
-  std::string event_camera_;
-  Pace event_pace_, frame_pace_, imu_pace_;
+  Repairs& repairs_;
+  Pace imu_pace_;
   std::optional<Timestamp> begin_, newest_;  ///< first and newest stamp of all
-  ArrivalQueue<Event> events_;
-  ArrivalQueue<Frame> frames_;
+  std::vector<Camera<Event>> events_;        ///< at least one
+  std::vector<Camera<Frame>> frames_;        ///< at least one
   ArrivalQueue<ImuSample> imu_;
   std::vector<ArrivalQueue<ExternalSample>> external_;  ///< one a sensor
   bool finished_ = false;

@@ -81,8 +81,12 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   } catch (const InputError& e) {
     spdlog::warn(fmt::format("{}; opened without this calibration", e.what()));
   }
-  if (!rig && calibration) rig = &calibration->rig;
-  Recording recording = open_main_file(folder / file, rig, options);
+  RecordingOptions with_topics = options;
+  if (!rig && calibration) {
+    rig = &calibration->rig;
+    with_topics.camera_topics = calibration->topics;
+  }
+  Recording recording = open_main_file(folder / file, rig, with_topics);
   const auto imu = recording.dataset->info().has_imu || !options.own_imu ? std::nullopt : find_imu_beside(folder, read);
   if (imu) {
     try {
@@ -90,7 +94,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
       read.insert(imu->name());
     } catch (const InputError& e) {
       spdlog::warn(e.what());
-      recording = open_main_file(folder / file, rig, options);
+      recording = open_main_file(folder / file, rig, with_topics);
     }
   }
   if (calibration) recording.calibration = std::move(calibration);
@@ -100,9 +104,10 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   return recording;
 }
 
-/// The folder of the first image, or the names of the images if these are in the folder of the list.
-std::set<std::string> images_of(const SourcePath& folder) {
-  const std::filesystem::path path = std::filesystem::path(first_ecd_image(folder).value_or("")).lexically_normal();
+/// The folder of the first image of a camera, or the names of the images if these are in the folder of the list.
+std::set<std::string> images_of(const SourcePath& folder, std::size_t camera) {
+  const std::filesystem::path path =
+      std::filesystem::path(first_ecd_image(folder, camera).value_or("")).lexically_normal();
   if (path.has_parent_path()) return {path.begin()->string()};
   std::set<std::string> beside;
   for (const std::string& name : folder.names())
@@ -122,10 +127,16 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
   if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
     return open_loose_folder(folder, *file, rig, options);
   Recording recording = open_ecd(folder, rig, options);
-  std::set<std::string> read = images_of(folder);
-  if (const auto list = find_ecd_image_list(folder)) read.insert(list->name());
-  read.insert(
-      {"events.txt", "imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
+  // Those of further cameras are known, even if the run uses the first only.
+  std::set<std::string> read;
+  for (std::size_t i = 0; i == 0 || (folder / ("events" + ecd_number(i) + ".txt")).is_file(); ++i)
+    read.insert("events" + ecd_number(i) + ".txt");
+  for (std::size_t i = 0; const auto list = find_ecd_image_list(folder, i); ++i) {
+    if (list->name() == "right_images.txt" && recording.dataset->info().more_cameras.empty()) break;
+    read.merge(images_of(folder, i));
+    read.insert(list->name());
+  }
+  read.insert({"imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
   read.merge(external_file_names());
   tell_unread(folder, read);
   recording.dataset = with_external_files(std::move(recording.dataset), folder);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/dataset.hpp"
 #include "edged/io/sensor_head.hpp"
@@ -32,11 +33,23 @@ struct WriterSetup {
   DatasetInfo info;                        ///< of the recording
   std::optional<Calibration> calibration;  ///< from the recording or the user, if any
 
-  /// Size of the event sensor [px]. Throws InputError if it is unknown.
-  cv::Size event_sensor() const;
+  /// Size of an event sensor [px]. camera: its place. Throws InputError if it is unknown.
+  cv::Size event_sensor(std::size_t camera = 0) const;
 
-  /// The name of this frame for readers that name their cameras "events" and "frames"; else "body".
+  /// Number of cameras of a kind in the recording, at least 1.
+  std::size_t cameras(Modality modality) const;
+  /// The place of that camera of the recording among those of its kind: 0 of a single one, whatever its name. Throws
+  /// InputError for an unknown one.
+  std::size_t place_of(const std::string& camera, Modality modality) const;
+
+  /// The calibration with the usual names (usual_camera_name) of the cameras, as readers of formats without names give
+  /// them. There must be a calibration.
+  Calibration calibration_when_read() const;
+  /// The usual name of this frame; "body" as it is.
   std::string name_when_read(const std::string& frame) const;
+
+ private:
+  std::vector<RecordedCamera> of_kind(Modality modality) const;
 };
 
 }  // namespace edged

@@ -20,8 +20,8 @@ std::string names_of(const Merger::Streams& streams) {
   const auto add = [&names](bool there, const char* name) {
     if (there) names += (names.empty() ? "" : " or ") + std::string(name);
   };
-  add(streams.events, "events");
-  add(streams.frames, "frames");
+  add(!streams.events.empty(), "events");
+  add(!streams.frames.empty(), "frames");
   add(streams.imu, "IMU samples");
   return names;
 }
@@ -34,10 +34,29 @@ StreamedDataset::StreamedDataset(const std::filesystem::path& path, std::string 
   info_.format = std::move(format);
 }
 
-void StreamedDataset::begin(const Merger::Streams& expected) {
-  info_.has_events = expected.events;
-  info_.has_frames = expected.frames;
-  info_.has_imu = expected.imu;
+void StreamedDataset::begin(const OneOfEach& there) {
+  std::vector<RecordedCamera> cameras;
+  if (there.events) cameras.push_back({"events", Modality::Events});
+  if (there.frames) cameras.push_back({"frames", Modality::Frames});
+  begin(cameras, there.imu);
+}
+
+void StreamedDataset::begin(const std::vector<RecordedCamera>& cameras, bool imu) {
+  Merger::Streams expected{.imu = imu};
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    const bool events = modality == Modality::Events;
+    std::vector<std::string>& names = events ? expected.events : expected.frames;
+    for (const RecordedCamera& camera : cameras) {
+      if (camera.modality != modality) continue;
+      if (!names.empty()) info_.more_cameras.push_back(camera);
+      names.push_back(camera.name);
+    }
+    if (!names.empty()) (events ? info_.event_camera : info_.frame_camera) = names.front();
+  }
+  info_.has_events = !expected.events.empty();
+  info_.has_frames = !expected.frames.empty();
+  info_.has_imu = imu;
+  image_sizes_.resize(std::max<std::size_t>(expected.frames.size(), 1));
   merger_.expect(expected);
   first_ = merged();
   if (!first_) throw InputError::format("{}: nothing to read: holds no {}", name_, names_of(expected));
@@ -63,30 +82,31 @@ std::optional<Measurement> StreamedDataset::merged() {
   }
 }
 
-void StreamedDataset::push_events(std::span<const Event> events) {
+void StreamedDataset::push_events(std::span<const Event> events, std::size_t camera) {
   if (!wants(Modality::Events)) return;
-  const cv::Size size = info_.event_sensor;
+  const cv::Size size = sensor_of(camera);
   const auto outside = [size](const Event& e) { return e.x >= size.width || e.y >= size.height; };
   if (size.empty() || std::ranges::none_of(events, outside)) {
     inside_ += events.size();
-    merger_.push(events);
+    merger_.push(events, camera);
     return;
   }
   std::vector<Event> inside(events.begin(), events.end());
-  count_outside(std::erase_if(inside, outside));
+  count_outside(std::erase_if(inside, outside), camera);
   inside_ += inside.size();
-  merger_.push(inside);
+  merger_.push(inside, camera);
 }
 
-void StreamedDataset::push_frame(Timestamp t, cv::Mat image) {
+void StreamedDataset::push_frame(Timestamp t, cv::Mat image, std::size_t camera) {
   if (!wants(Modality::Frames)) return;
-  if (image_size_.empty()) image_size_ = image.size();
-  if (image.size() != image_size_) throw Damage("an image of another size");
-  merger_.push(Frame{t, "frames", std::move(image)});
+  cv::Size& size = image_sizes_.at(camera);
+  if (size.empty()) size = image.size();
+  if (image.size() != size) throw Damage("an image of another size");
+  merger_.push(Frame{t, "", std::move(image)}, camera);
 }
 
-void StreamedDataset::count_outside(std::size_t count) {
-  const cv::Size size = info_.event_sensor;
+void StreamedDataset::count_outside(std::size_t count, std::size_t camera) {
+  const cv::Size size = sensor_of(camera);
   for (; count > 0; --count, ++outside_)
     repairs_.add("events: pixel outside the sensor",
                  fmt::format("{}: events outside the {} x {} sensor", name_, size.width, size.height));

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "edged/core/external_sensor.hpp"
+#include "edged/dataset.hpp"
+#include "edged/io/recording.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
@@ -40,18 +42,48 @@ constexpr std::optional<Modality> modality_of(Role role) {
   return role == Role::Frames ? std::optional(Modality::Frames) : std::nullopt;
 }
 
-/// Names of roles, each with the topic that the user wants, or "none".
+/// Names of roles or cameras, each with the topic that the user wants, or "none".
 using WantedTopics = std::map<std::string, std::string>;
+
+/// What is known of the topics beside their types.
+struct TopicWishes {
+  WantedTopics wanted = {};
+  std::map<std::string, std::string> calibrated = {};  ///< names of cameras, each with its topic by the calibration
+  const Rig* rig = nullptr;                            ///< of the user, if any
+  std::vector<std::string> cameras = {};               ///< names of the cameras to read; empty: the first of each kind
+  bool all_cameras = false;                            ///< reads all instead
+};
+TopicWishes wishes_of(const Rig* rig, const RecordingOptions& options);
+
+/// The topic of a camera.
+struct CameraTopic {
+  std::string name;
+  Modality modality = Modality::Frames;
+  std::size_t topic = 0;
+};
 
 /// The index of the topic of each role.
 struct TopicChoice {
-  std::array<std::optional<std::size_t>, kRoleNames.size()> topics;
+  std::array<std::optional<std::size_t>, kRoleNames.size()> topics;  ///< of events and frames the first camera's
+  std::vector<CameraTopic> cameras;  ///< that are read: event cameras, then frame cameras, of each kind the first first
+  std::vector<RecordedCamera> known;  ///< the same with those that are not read
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
+  /// As StreamedDataset needs them.
+  std::vector<RecordedCamera> recorded(const std::vector<Topic>& of) const;
+  /// The camera of that topic, and its place among those of its kind.
+  struct Place {
+    Modality modality = Modality::Frames;
+    std::size_t camera = 0;
+  };
+  std::optional<Place> camera_of(std::size_t topic) const;
 };
 
 /// The only topic of a fitting type gets the role. The topic of the velocity must be named, because a twist may be a
-/// command, and its axes are those of an unknown sensor (an Odometry, too). Throws InputError, with the topics, if
-/// several fit, if the bag lacks a wanted one, if no sensor is left, and for the event messages of 2015.
-TopicChoice choose_topics(const std::vector<Topic>& topics, const WantedTopics& wanted, const std::string& file);
+/// command, and its axes are those of an unknown sensor (an Odometry, too). Several topics of events or images are
+/// those of several cameras: by the user, else by the topics that the calibration names, else as name_streams() names
+/// them in the order of their names. Throws InputError, with the topics, if several fit a role that is no camera, or
+/// more than the cameras of the rig, if a topic is wanted twice, if the bag lacks a wanted one, if no sensor is left,
+/// and for the event messages of 2015.
+TopicChoice choose_topics(const std::vector<Topic>& topics, const TopicWishes& wishes, const std::string& file);
 
 }  // namespace edged

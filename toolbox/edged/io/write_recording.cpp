@@ -13,6 +13,7 @@
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/ecd_writer.hpp"
 #include "edged/io/hdf5/hdf5_writer.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
@@ -32,6 +33,7 @@ constexpr std::array kWritable = {
                    .imu = true,
                    .ground_truth = true,
                    .external = true,
+                   .several_cameras = true,
                    .open = write_ecd},
     WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
     WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
@@ -39,18 +41,30 @@ constexpr std::array kWritable = {
                    .extension = ".aedat4",
                    .frames = true,
                    .imu = true,
+                   .several_cameras = true,
                    .tick = kMicrosecond,
                    .open = write_aedat4},
     WritableFormat{.name = "csv", .extension = ".csv", .open = write_csv},
-    WritableFormat{
-        .name = "bag", .extension = ".bag", .frames = true, .imu = true, .ground_truth = true, .open = write_ros1_bag},
-    WritableFormat{
-        .name = "mcap", .extension = ".mcap", .frames = true, .imu = true, .ground_truth = true, .open = write_mcap},
+    WritableFormat{.name = "bag",
+                   .extension = ".bag",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .several_cameras = true,
+                   .open = write_ros1_bag},
+    WritableFormat{.name = "mcap",
+                   .extension = ".mcap",
+                   .frames = true,
+                   .imu = true,
+                   .ground_truth = true,
+                   .several_cameras = true,
+                   .open = write_mcap},
     WritableFormat{.name = "hdf5",
                    .extension = ".h5",
                    .frames = true,
                    .imu = true,
                    .ground_truth = true,
+                   .several_cameras = true,
                    .tick = kMicrosecond,
                    .open = write_hdf5},
 };
@@ -58,16 +72,18 @@ constexpr std::array kWritable = {
 /// Passes the measurements that the format can hold to the writer, and counts all.
 class Sieve {
  public:
-  Sieve(RecordingWriter& writer, const WritableFormat& format, bool round)
-      : writer_(writer), format_(format), round_(round) {}
+  Sieve(RecordingWriter& writer, const WritableFormat& format, const DatasetInfo& info, bool round)
+      : writer_(writer), format_(format), info_(info), round_(round) {}
 
   void operator()(EventBatch& batch) {
+    keep_to_one(event_camera_, batch.camera, Modality::Events);
     if (format_.tick > Duration(1)) fit_to_tick(batch.events);
     writer_.write(batch);
     counts.events += batch.events.size();
   }
 
   void operator()(const Frame& frame) {
+    keep_to_one(frame_camera_, frame.camera, Modality::Frames);
     if (format_.frames) writer_.write(frame);
     ++(format_.frames ? counts.frames : counts.frames_left_out);
   }
@@ -101,10 +117,28 @@ class Sieve {
     }
   }
 
+  /// A camera that the recording does not name would be taken for another one.
+  void keep_to_one(std::string& known, const std::string& camera, Modality modality) const {
+    if (std::ranges::count(info_.more_cameras, modality, &RecordedCamera::modality) > 0) return;
+    if (known.empty()) known = camera;
+    if (known != camera)
+      throw InputError::format("{}: names one camera of {}, not both {} and {}", info_.name, kind_name(modality), known,
+                               camera);
+  }
+
   RecordingWriter& writer_;
   const WritableFormat& format_;
+  const DatasetInfo& info_;
+  std::string event_camera_, frame_camera_;
   bool round_;
 };
+
+void refuse_several_event_cameras(const DatasetInfo& info, const WritableFormat& format) {
+  for (const RecordedCamera& camera : info.more_cameras)
+    if (camera.modality == Modality::Events)
+      throw InputError::format("{}: format {} holds one event camera, not both {} and {}: choose one with --cameras",
+                               info.name, format.name, info.event_camera, camera.name);
+}
 
 }  // namespace
 
@@ -135,9 +169,10 @@ WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, cons
   if (is_file && existed) throw InputError::format("{}: is there already: give another name", path.string());
   if (!dataset.info().has_events && !format.frames && !format.imu)
     throw InputError::format("{}: holds no events, and format {} holds nothing else", dataset.info().name, format.name);
+  if (!format.several_cameras) refuse_several_event_cameras(dataset.info(), format);
   try {
     const std::unique_ptr<RecordingWriter> writer = format.open({path, dataset.info(), calibration});
-    Sieve sieve(*writer, format, options.round);
+    Sieve sieve(*writer, format, dataset.info(), options.round);
     if (const auto truth = dataset.ground_truth()) sieve(*truth);
     for (std::size_t i = 1; auto measurement = dataset.next(); ++i) {
       const auto t = last_stamp(*measurement);

@@ -20,6 +20,7 @@ struct WritableFormat {
   std::string_view name;       ///< "ecd"
   std::string_view extension;  ///< of files, with its dot; "" for a folder
   bool frames = false, imu = false, ground_truth = false, external = false;  ///< what it holds besides events
+  bool several_cameras = false;                                              ///< of a kind
   Duration tick = Duration(1);                                               ///< unit of the stamps of events
   std::unique_ptr<RecordingWriter> (*open)(const WriterSetup& setup) = nullptr;
 };

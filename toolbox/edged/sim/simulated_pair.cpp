@@ -35,7 +35,9 @@ Measurement take_events(std::optional<Measurement>& measurement, Timestamp end) 
 }  // namespace
 
 SimulatedPair::SimulatedPair(const SimulatorConfig& config, double baseline_m)
-    : left_(config), right_(of_right(config, baseline_m)) {}
+    : left_(config), right_(of_right(config, baseline_m)), info_(left_.info()) {
+  info_.more_cameras = recorded_cameras(right_.info());
+}
 
 /// IMU and external sensors are those of the left simulator.
 std::optional<Measurement> SimulatedPair::take_right() {

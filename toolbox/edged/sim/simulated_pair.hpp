@@ -18,7 +18,7 @@ class SimulatedPair final : public Dataset {
 
   explicit SimulatedPair(const SimulatorConfig& config, double baseline_m = kUsualBaseline_m);
 
-  const DatasetInfo& info() const override { return left_.info(); }
+  const DatasetInfo& info() const override { return info_; }
   std::optional<Measurement> next() override;
   void leave_out(Modality unwanted) override;
   std::optional<GroundTruth> ground_truth() const override { return left_.ground_truth(); }
@@ -29,6 +29,7 @@ class SimulatedPair final : public Dataset {
   std::optional<Measurement> take_right();
 
   Simulator left_, right_;
+  DatasetInfo info_;
   std::optional<Measurement> of_left_, of_right_;  // the next ones
 };
 

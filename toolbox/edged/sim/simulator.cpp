@@ -219,6 +219,8 @@ Simulator::Impl::Impl(const SimulatorConfig& config)
   info_.begin = Timestamp() + std::min(Duration(0), time_offset_);
   info_.end = end_ + std::max(Duration(0), time_offset_);
   info_.has_events = info_.has_frames = info_.has_imu = true;
+  info_.event_camera += config.mount.suffix;
+  info_.frame_camera += config.mount.suffix;
   info_.event_sensor = cv::Size(config.camera.width, config.camera.height);
   for (std::size_t i = 0; i < kExternalSensors; ++i) {
     ExternalModel model(config.external, i, static_cast<std::uint64_t>(config.seed), time_offset_);

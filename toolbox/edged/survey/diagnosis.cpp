@@ -98,6 +98,21 @@ void judge_frames(const Survey& s, Findings& out) {
     out.good(fmt::format("frames at {:.1f} Hz, mean brightness {:.0f} of 255", s.frames.rate_hz(), s.mean_brightness));
 }
 
+/// The findings of each further camera, with its name.
+void judge_further_cameras(const Survey& s, Findings& out) {
+  for (const Survey& camera : s.more) {
+    Findings own;
+    if (camera.events.count + camera.frames.count == 0)
+      own.error("no measurements", "leave it out with --cameras, or record it");
+    judge_events(camera, own);
+    judge_frames(camera, own);
+    for (Finding& finding : own.list) {
+      finding.text = fmt::format("camera {}: {}", camera.camera(), finding.text);
+      out.list.push_back(std::move(finding));
+    }
+  }
+}
+
 void judge_shift(const CameraCheck& check, Findings& out) {
   // In low light, events are delayed by milliseconds, which is no error of the clock.
   constexpr double kDetermined_ms = 2.5;
@@ -265,7 +280,9 @@ void judge_accel(const std::vector<CameraCheck>& cameras, Findings& out) {
 bool judge_size(const CameraCheck& check, const Survey& s, Findings& out) {
   const cv::Size calibrated(check.camera.model.width(), check.camera.model.height());
   const bool events = check.camera.modality == Modality::Events;
-  const cv::Size seen = events ? s.event_details.extent : s.image_size;
+  const auto further = std::ranges::find(s.more, check.camera.name, &Survey::camera);
+  const Survey& of_camera = further == s.more.end() ? s : *further;
+  const cv::Size seen = events ? of_camera.event_details.extent : of_camera.image_size;
   const bool fits = events ? seen.width <= calibrated.width && seen.height <= calibrated.height : seen == calibrated;
   if (!fits && !seen.empty())
     out.error(fmt::format("camera {}: calibrated for {} x {} px, recorded {} x {}", check.camera.name, calibrated.width,
@@ -316,6 +333,7 @@ std::vector<Finding> diagnose(const Survey& survey, bool calibrated, const std::
   judge_imu(survey, cameras, out);
   judge_events(survey, out);
   judge_frames(survey, out);
+  judge_further_cameras(survey, out);
   judge_external(survey.external, survey.imu, out.list);
   const bool comparable = !imu_unusable(out.list);
   for (const CameraCheck& check : cameras)

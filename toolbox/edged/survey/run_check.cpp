@@ -100,10 +100,16 @@ void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
        "translations are in metres: divide that of T_B_C by 1000"});
 }
 
+/// A run is checked by the first camera of each kind.
+DatasetInfo without_further_cameras(DatasetInfo info) {
+  info.more_cameras.clear();
+  return info;
+}
+
 }  // namespace
 
 RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics)
-    : has_extrinsics_(has_extrinsics), surveyor_(info) {
+    : has_extrinsics_(has_extrinsics), surveyor_(without_further_cameras(info)) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
     if (used.find(modality) == nullptr) continue;
     const RigCamera& camera = *used.find(modality);

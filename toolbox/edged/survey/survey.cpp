@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
+#include "edged/core/measurement_stamps.hpp"
 #include "edged/core/path_length.hpp"
 
 namespace edged {
@@ -23,6 +24,18 @@ TruthSurvey survey_truth(const GroundTruth& truth) {
   return survey;
 }
 
+/// A recording of that camera alone.
+DatasetInfo info_of(const RecordedCamera& camera, const DatasetInfo& of) {
+  DatasetInfo info;
+  info.name = of.name;
+  info.format = of.format;
+  info.has_events = camera.modality == Modality::Events;
+  info.has_frames = !info.has_events;
+  info.event_camera = info.frame_camera = camera.name;
+  info.event_sensor = camera.sensor;
+  return info;
+}
+
 }  // namespace
 
 Duration Survey::overlap() const {
@@ -31,6 +44,12 @@ Duration Survey::overlap() const {
     if (stream->count == 0) continue;
     begin = std::max(begin, *stream->begin);
     end = std::min(end, *stream->end);
+  }
+  for (const Survey& camera : more) {
+    const StreamSurvey& stream = camera.info.has_events ? camera.events : camera.frames;
+    if (stream.count == 0) continue;
+    begin = std::max(begin, *stream.begin);
+    end = std::min(end, *stream.end);
   }
   return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
@@ -50,9 +69,14 @@ double Survey::imu_span_ratio() const {
   return span && span->second > span->first ? to_seconds(imu.length()) / to_seconds(span->second - span->first) : 0.0;
 }
 
-Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {}
+Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {
+  for (const RecordedCamera& camera : info.more_cameras) more_.emplace_back(info_of(camera, info));
+}
 
 void Surveyor::add(const Measurement& measurement, Detail detail) {
+  if (const std::string* camera = camera_of(measurement); camera && !more_.empty())
+    for (std::size_t i = 0; i < more_.size(); ++i)
+      if (info_.more_cameras[i].name == *camera) return more_[i].add(measurement, detail);
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
     if (batch->events.empty()) return;
     events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
@@ -111,6 +135,7 @@ Survey Surveyor::so_far() const {
   survey.event_details = event_details_.result();
   survey.imu_details = imu_details_.result();
   survey.image_size = image_size_;
+  for (const Surveyor& camera : more_) survey.more.push_back(camera.so_far());
   for (const auto& [name, surveyor] : external_) survey.external[name] = surveyor.result();
   if (measured_frames_ > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
   return survey;
@@ -119,6 +144,8 @@ Survey Surveyor::so_far() const {
 Survey Surveyor::result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const {
   Survey survey = so_far();
   survey.info = dataset.info();
+  for (std::size_t i = 0; i < survey.more.size() && i < survey.info.more_cameras.size(); ++i)
+    survey.more[i].info.event_sensor = survey.info.more_cameras[i].sensor;
   if (truth) survey.truth = survey_truth(*truth);
   survey.repairs = dataset.repairs();
   return survey;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "edged/dataset.hpp"
 #include "edged/survey/event_survey.hpp"
@@ -34,6 +35,11 @@ struct Survey {
   ExternalSurveys external;
   std::optional<TruthSurvey> truth;
   std::map<std::string, std::size_t> repairs;
+  /// Of the cameras beside the first of a kind, in the order of DatasetInfo::more_cameras: their events or frames
+  /// alone.
+  std::vector<Survey> more;
+  /// The name of such a camera.
+  const std::string& camera() const { return info.has_events ? info.event_camera : info.frame_camera; }
 
   /// Time that all present sensors cover; negative: minus the gap between them.
   Duration overlap() const;
@@ -66,6 +72,7 @@ class Surveyor {
   StreamSurveyor events_, frames_, imu_;
   EventSurveyor event_details_;
   ImuSurveyor imu_details_;
+  std::vector<Surveyor> more_;  ///< of further cameras
   std::map<std::string, ExternalSurveyor> external_;
   cv::Size image_size_;
   double brightness_sum_ = 0.0;

@@ -112,9 +112,9 @@ class Aedat2File final : public StreamedDataset {
 
  private:
   /// Determined from the first records.
-  Merger::Streams streams_there() {
+  OneOfEach streams_there() {
     constexpr std::size_t kTried = std::size_t{1} << 18U;
-    Merger::Streams streams;
+    OneOfEach streams;
     for (const Record& record : records_in(file_.read(header_.bytes, kTried * kRecordBytes))) {
       streams.events = streams.events || record.of_dvs();
       streams.frames = streams.frames || (!record.of_dvs() && record.kind() < 2);

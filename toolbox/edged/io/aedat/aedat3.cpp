@@ -55,9 +55,9 @@ class Aedat3File final : public StreamedDataset {
 
  private:
   /// Determined from the first packet headers. The first source with events is read.
-  Merger::Streams streams_there(std::uint64_t at) try {
+  OneOfEach streams_there(std::uint64_t at) try {
     constexpr int kTried = 1000;
-    Merger::Streams streams;
+    OneOfEach streams;
     for (int i = 0; i < kTried && at < file_.size(); ++i) {
       const Aedat3Packet head = packet_head(file_.read(at, kPacketHead));
       at += kPacketHead + head.body_bytes();
@@ -68,7 +68,7 @@ class Aedat3File final : public StreamedDataset {
     }
     return streams;
   } catch (const Damage&) {
-    return {true, true, true, "events"};  // read_on() counts the damage
+    return {true, true, true};  // read_on() counts the damage
   }
 
   bool read_on() override {

@@ -31,18 +31,17 @@ Bytes read_header_buffer(BinaryFile& file) {
 class Aedat4File final : public Aedat4Dataset {
  public:
   Aedat4File(const std::filesystem::path& file, BinaryFile bytes, const Aedat4Header& header, std::uint64_t packets_at,
-             const TopicChoice& choice, cv::Size geometry)
+             const Rig* rig, const RecordingOptions& options)
       : Aedat4Dataset(file, "aedat4"),
         file_(std::move(bytes)),
         header_(header),
-        choice_(choice),
         at_(packets_at),
         last_at_(packets_at),
         end_(file_.size()) {
-    set_sensor(geometry);
-    info_.pose_frame = header_.pose_frame;
+    choose(header_.streams, rig, options);
+    set_pose_frame(header_.pose_frame);
     read_table();
-    begin({choice.of(Role::Events).has_value(), choice.of(Role::Frames).has_value(), choice.of(Role::Imu).has_value()});
+    begin_chosen();
   }
 
  private:
@@ -73,7 +72,7 @@ class Aedat4File final : public Aedat4Dataset {
   }
 
   struct PacketHead {
-    std::int32_t stream = 0;
+    std::size_t stream = 0;  ///< its place in the header
     std::size_t bytes = 0;
   };
 
@@ -81,9 +80,11 @@ class Aedat4File final : public Aedat4Dataset {
   std::optional<PacketHead> packet_head(ByteSpan head, std::uint64_t at) const {
     if (head.size() < kPacketHeadBytes) return std::nullopt;
     const auto stream = number_at<std::int32_t>(head, 0), bytes = number_at<std::int32_t>(head, 4);
-    const bool known = std::ranges::any_of(header_.streams, [&](const Aedat4Stream& s) { return s.number == stream; });
-    if (!known || bytes <= 0 || static_cast<std::uint64_t>(bytes) > end_ - at - kPacketHeadBytes) return std::nullopt;
-    return PacketHead{stream, static_cast<std::size_t>(bytes)};
+    const auto known = std::ranges::find(header_.streams, stream, &Aedat4Stream::number);
+    if (known == header_.streams.end() || bytes <= 0 ||
+        static_cast<std::uint64_t>(bytes) > end_ - at - kPacketHeadBytes)
+      return std::nullopt;
+    return PacketHead{static_cast<std::size_t>(known - header_.streams.begin()), static_cast<std::size_t>(bytes)};
   }
 
   /// False at the end of the file, or where no further packet is found.
@@ -94,10 +95,9 @@ class Aedat4File final : public Aedat4Dataset {
     const std::uint64_t body_at = at_ + kPacketHeadBytes;
     last_at_ = at_;
     at_ = body_at + head->bytes;
-    for (const Role role : {Role::Events, Role::Frames, Role::Imu})
-      if (const auto chosen = choice_.of(role);
-          chosen && header_.streams[*chosen].number == head->stream && wants(modality_of(role)))
-        take_packet(role, header_.compression, file_.read(body_at, head->bytes), fmt::format("at byte {}", body_at));
+    if (reads(head->stream))
+      take_packet(head->stream, header_.compression, file_.read(body_at, head->bytes),
+                  fmt::format("at byte {}", body_at));
     return true;
   }
 
@@ -143,7 +143,6 @@ class Aedat4File final : public Aedat4Dataset {
 
   BinaryFile file_;
   Aedat4Header header_;
-  TopicChoice choice_;
   std::uint64_t at_, last_at_, end_;       ///< of the next and the previous packet; end of the packets
   std::uint64_t searched_to_ = 0;          ///< the search for a packet begins here
   std::vector<std::uint64_t> packets_at_;  ///< from the table, sorted
@@ -157,14 +156,8 @@ Recording open_aedat4(const std::filesystem::path& file, const Rig* rig, const R
   BinaryFile bytes(file);
   const Bytes buffer = read_header_buffer(bytes);
   const Aedat4Header header = parse_aedat4_header(buffer);
-  const TopicChoice choice = choose_streams(header.streams, options.topics, file.string());
-  cv::Size size;
-  if (const auto events = choice.of(Role::Events)) {
-    const auto said = options.geometry ? options.geometry : header.streams[*events].geometry;
-    size = event_sensor_size(file, said, rig);
-  }
   const std::uint64_t packets_at = kAedat4Magic.size() + 4 + buffer.size();
-  return {std::make_unique<Aedat4File>(file, std::move(bytes), header, packets_at, choice, size), std::nullopt};
+  return {std::make_unique<Aedat4File>(file, std::move(bytes), header, packets_at, rig, options), std::nullopt};
 } catch (const Damage& damage) {
   throw InputError::format("{}: the header is damaged: {}", file.string(), damage.what());
 }

@@ -5,11 +5,14 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "edged/core/angles.hpp"
 #include "edged/io/aedat/flat_table.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/compression.hpp"
+#include "edged/io/geometry.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -52,19 +55,48 @@ ByteSpan flat_buffer(const Bytes& bytes, std::string_view type) {
   return buffer;
 }
 
-void Aedat4Dataset::take_packet(Role role, std::string_view compression, ByteSpan packed, const std::string& place) {
+void Aedat4Dataset::choose(const std::vector<Aedat4Stream>& streams, const Rig* rig, const RecordingOptions& options) {
+  const std::vector<Topic> topics = topics_of(streams);
+  choice_ = choose_topics(topics, wishes_of(rig, options), name_);
+  cameras_ = choice_.recorded(topics);
+  for (std::size_t i = 0; i < topics.size(); ++i) info_.streams.push_back({topics[i].name, topics[i].type, 0, ""});
+  if (const auto imu = choice_.of(Role::Imu)) info_.streams[*imu].role = "imu";
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    RecordedCamera& camera = cameras_[i];
+    const std::size_t stream = choice_.cameras[i].topic;
+    const bool several = std::ranges::count(cameras_, camera.modality, &RecordedCamera::modality) > 1;
+    info_.streams[stream].role = several ? camera.name : kind_name(camera.modality);
+    if (camera.modality != Modality::Events) continue;
+    const auto said = options.geometry ? options.geometry : streams[stream].geometry;
+    camera.sensor = event_sensor_size(name_, said, rig, camera.name);
+    if (choice_.camera_of(stream)->camera == 0) set_sensor(camera.sensor);
+  }
+}
+
+void Aedat4Dataset::set_pose_frame(const std::string& name) {
+  info_.pose_frame = camera_by_usual_name(choice_.known, name).value_or(name);
+}
+
+bool Aedat4Dataset::reads(std::size_t stream) const {
+  if (const auto camera = choice_.camera_of(stream)) return wants(camera->modality);
+  return choice_.of(Role::Imu) == stream;
+}
+
+void Aedat4Dataset::take_packet(std::size_t stream, std::string_view compression, ByteSpan packed,
+                                const std::string& place) {
   try {
     const Decompressed body = decompress(compression, packed, kMostPacketBytes);
     if (!body.whole) throw Damage("cannot be unpacked");
-    if (role == Role::Events) take_events(flat_buffer(body.bytes, "EVTS"));
-    if (role == Role::Frames) take_frame(flat_buffer(body.bytes, "FRME"));
-    if (role == Role::Imu) take_imu(flat_buffer(body.bytes, "IMUS"));
+    const auto camera = choice_.camera_of(stream);
+    if (!camera) return take_imu(flat_buffer(body.bytes, "IMUS"));
+    if (camera->modality == Modality::Events) return take_events(camera->camera, flat_buffer(body.bytes, "EVTS"));
+    take_frame(camera->camera, flat_buffer(body.bytes, "FRME"));
   } catch (const Damage& damage) {
     repairs_.add("file: packet unreadable", fmt::format("{}: packet {}: {}", name_, place, damage.what()));
   }
 }
 
-void Aedat4Dataset::take_events(ByteSpan buffer) {
+void Aedat4Dataset::take_events(std::size_t camera, ByteSpan buffer) {
   constexpr std::size_t kEventBytes = 16;
   const FlatVector list = FlatTable(buffer).vector(0, kEventBytes);
   std::vector<Event> events;
@@ -77,12 +109,12 @@ void Aedat4Dataset::take_events(ByteSpan buffer) {
     // Negative coordinates become large, which lies outside any sensor.
     events.push_back({t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), on});
   }
-  push_events(events);
+  push_events(events, camera);
 }
 
-void Aedat4Dataset::take_frame(ByteSpan buffer) {
+void Aedat4Dataset::take_frame(std::size_t camera, ByteSpan buffer) {
   const FlatTable frame(buffer);
-  push_frame(frame_stamp(frame), grey_image(frame));
+  push_frame(frame_stamp(frame), grey_image(frame), camera);
 }
 
 void Aedat4Dataset::take_imu(ByteSpan buffer) {

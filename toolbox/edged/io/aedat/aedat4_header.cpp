@@ -68,8 +68,7 @@ Aedat4Header parse_aedat4_header(ByteSpan buffer) {
   return header;
 }
 
-TopicChoice choose_streams(const std::vector<Aedat4Stream>& streams, const WantedTopics& wanted,
-                           const std::string& file) {
+std::vector<Topic> topics_of(const std::vector<Aedat4Stream>& streams) {
   std::vector<Topic> topics;
   for (const Aedat4Stream& s : streams) {
     Topic& topic = topics.emplace_back();
@@ -85,7 +84,7 @@ TopicChoice choose_streams(const std::vector<Aedat4Stream>& streams, const Wante
   };
   tell_apart([](const Aedat4Stream& s) { return "@" + s.source; });
   tell_apart([](const Aedat4Stream& s) { return fmt::format("#{}", s.number); });
-  return choose_topics(topics, wanted, file);
+  return topics;
 }
 
 }  // namespace edged

@@ -35,10 +35,7 @@ struct Aedat4Header {
 /// buffer: without its length. Throws Damage.
 Aedat4Header parse_aedat4_header(ByteSpan buffer);
 
-/// The streams of events, frames and IMU, as indices of `streams`: the only one of its type or the one that the user
-/// names. Streams of the same name are distinguished by their source, then by their number. Throws InputError that
-/// lists them.
-TopicChoice choose_streams(const std::vector<Aedat4Stream>& streams, const WantedTopics& wanted,
-                           const std::string& file);
+/// The streams as topics. Those of the same name are distinguished by their source, then by their number.
+std::vector<Topic> topics_of(const std::vector<Aedat4Stream>& streams);
 
 }  // namespace edged

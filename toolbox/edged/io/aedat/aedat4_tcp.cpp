@@ -71,18 +71,21 @@ Aedat4Header wait_for_header(TcpConnection& connection) {
 struct LiveStream {
   TcpConnection connection;
   Aedat4Header header;
-  std::vector<std::pair<std::int32_t, Role>> roles = {};  ///< of streams by number
-  std::uint64_t taken = 0;                                ///< bytes of packets so far
+  std::size_t first = 0;    ///< place of its first stream among those of all servers
+  std::uint64_t taken = 0;  ///< bytes of packets so far
 };
 
 class Aedat4Live final : public Aedat4Dataset {
  public:
-  Aedat4Live(const std::string& address, std::vector<LiveStream> streams, const TopicChoice& choice, cv::Size geometry,
-             std::function<bool()> interrupted)
-      : Aedat4Dataset(address, "aedat4-tcp"), streams_(std::move(streams)), interrupted_(std::move(interrupted)) {
+  Aedat4Live(const std::string& address, std::vector<LiveStream> streams, const Rig* rig,
+             const RecordingOptions& options)
+      : Aedat4Dataset(address, "aedat4-tcp"), streams_(std::move(streams)), interrupted_(options.interrupted) {
     info_.name = "live";
-    set_sensor(geometry);
-    begin({choice.of(Role::Events).has_value(), choice.of(Role::Frames).has_value(), choice.of(Role::Imu).has_value()});
+    std::vector<Aedat4Stream> all;
+    for (const LiveStream& stream : streams_)
+      all.insert(all.end(), stream.header.streams.begin(), stream.header.streams.end());
+    choose(all, rig, options);
+    begin_chosen();
   }
 
  private:
@@ -113,18 +116,18 @@ class Aedat4Live final : public Aedat4Dataset {
     std::size_t at = 0;
     while (received.size() - at >= kLiveHeadBytes) {
       const auto number = number_at<std::int32_t>(received, at), bytes = number_at<std::int32_t>(received, at + 4);
-      const bool known =
-          std::ranges::any_of(stream.header.streams, [&](const Aedat4Stream& s) { return s.number == number; });
-      if (!known || bytes <= 0 || static_cast<std::size_t>(bytes) > kMostLiveBytes)
+      const std::vector<Aedat4Stream>& known = stream.header.streams;
+      const auto found = std::ranges::find(known, number, &Aedat4Stream::number);
+      if (found == known.end() || bytes <= 0 || static_cast<std::size_t>(bytes) > kMostLiveBytes)
         throw InputError::format(
             "tcp://{}: a packet of stream {} with {} bytes is invalid: the stream is damaged; start again",
             stream.connection.name(), number, bytes);
       const std::size_t body = at + kLiveHeadBytes, size = static_cast<std::size_t>(bytes);
       if (received.size() - body < size) break;
-      for (const auto& [wanted, role] : stream.roles)
-        if (wanted == number && wants(modality_of(role)))
-          take_packet(role, stream.header.compression, received.subspan(body, size),
-                      fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection.name()));
+      const std::size_t place = stream.first + static_cast<std::size_t>(found - known.begin());
+      if (reads(place))
+        take_packet(place, stream.header.compression, received.subspan(body, size),
+                    fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection.name()));
       at = body + size;
     }
     stream.taken += at;
@@ -161,25 +164,15 @@ std::pair<std::string, std::vector<std::string>> parse_address(const std::string
 Recording open_aedat4_tcp(const std::string& address, const Rig* rig, const RecordingOptions& options) {
   const auto [host, ports] = parse_address(address);
   std::vector<LiveStream> streams;
-  std::vector<Aedat4Stream> all;
-  std::vector<LiveStream*> owners;  // of the streams in `all`
-  streams.reserve(ports.size());
+  std::size_t first = 0;
   for (const std::string& port : ports) {
     TcpConnection connection(host, port);
     Aedat4Header header = wait_for_header(connection);
-    streams.push_back({std::move(connection), std::move(header)});
-    for (const Aedat4Stream& s : streams.back().header.streams) {
-      all.push_back(s);
-      owners.push_back(&streams.back());
-    }
+    const std::size_t count = header.streams.size();
+    streams.push_back({std::move(connection), std::move(header), first});
+    first += count;
   }
-  const TopicChoice choice = choose_streams(all, options.topics, address);
-  for (const Role role : {Role::Events, Role::Frames, Role::Imu})
-    if (const auto chosen = choice.of(role)) owners[*chosen]->roles.emplace_back(all[*chosen].number, role);
-  cv::Size size;
-  if (const auto events = choice.of(Role::Events))
-    size = event_sensor_size(address, options.geometry ? options.geometry : all[*events].geometry, rig);
-  return {std::make_unique<Aedat4Live>(address, std::move(streams), choice, size, options.interrupted), std::nullopt};
+  return {std::make_unique<Aedat4Live>(address, std::move(streams), rig, options), std::nullopt};
 }
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "edged/io/aedat/aedat4_writer.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/evt_test_support.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
@@ -158,19 +159,20 @@ TEST(Aedat4File, ColourFramesBecomeGreyAndOthersAreCounted) {
   EXPECT_EQ(recording.dataset->repairs().at("file: packet unreadable"), 2u);
 }
 
-TEST(Aedat4File, SeveralStreamsOfATypeAreAskedFor) {
+TEST(Aedat4File, SeveralStreamsOfATypeAreAskedForWhereTheRigHasOneCamera) {
   TempFolder folder;
+  const Rig rig = load_rig("davis240c_ecd").rig;
   const SmallAedat4 small(1);
   std::string text = small.interrupted();
   text.replace(text.find("FRME"), 4, "EVTS");  // stream 1 of the header becomes a second event camera
   const auto file = folder.write("a.aedat4", text);
-  EXPECT_THAT(input_error([&] { open_recording(file); }),
-              HasSubstr("--topic ROLE=NAME (or ROLE=none); events: events, frames"));
+  EXPECT_THAT(input_error([&] { open_recording(file, &rig); }),
+              HasSubstr("--topic ROLE=NAME (or ROLE=none, CAMERA=NAME); events: events, frames"));
   const Recording chosen = open_recording(file, nullptr, {.topics = {{"events", "events"}}});
   EXPECT_EQ(read_all(*chosen.dataset).events.size(), 10'000u);
   text.replace(text.find("string\">frames") + 8, 6, "events");
   folder.write("a.aedat4", text);
-  EXPECT_THAT(input_error([&] { open_recording(file); }), HasSubstr("events: events@edged#0, events@edged#1"));
+  EXPECT_THAT(input_error([&] { open_recording(file, &rig); }), HasSubstr("events: events@edged#0, events@edged#1"));
   EXPECT_NO_THROW(open_recording(file, nullptr, {.topics = {{"events", "events@edged#0"}}}));
 }
 

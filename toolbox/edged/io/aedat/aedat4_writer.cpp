@@ -8,11 +8,14 @@
 #include <spdlog/fmt/fmt.h>
 #include <zstd.h>
 
+#include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_header.hpp"
+#include "edged/io/camera_names.hpp"
 
 namespace edged {
 namespace {
@@ -29,7 +32,7 @@ std::string finished(FlatBufferBuilder& b, flatbuffers::uoffset_t start, const c
   return {reinterpret_cast<const char*>(b.GetBufferPointer()), b.GetSize()};
 }
 
-std::string stream_xml(int number, const char* compression, const char* output, const char* type,
+std::string stream_xml(int number, const char* compression, const std::string& output, const char* type,
                        const std::string& info) {
   const std::string path = fmt::format("/mainloop/Recorder/outInfo/{}/", number);
   return fmt::format(
@@ -42,24 +45,47 @@ std::string stream_xml(int number, const char* compression, const char* output, 
       number, path, compression, output, type, info);
 }
 
-std::string header_xml(Aedat4Encoder::Compression compression, cv::Size sensor, const std::string& pose_frame) {
-  constexpr const char* kNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
-  const char* const name = kNames[static_cast<std::size_t>(compression)];
-  const std::string size = fmt::format(
-      R"(<attr key="sizeX" type="int">{}</attr><attr key="sizeY" type="int">{}</attr>)", sensor.width, sensor.height);
-  const std::string note = pose_frame != "events" && pose_frame != "frames"
-                               ? ""
-                               : fmt::format(R"(<attr key="{}" type="string">{}</attr>)", kAedat4PoseFrame, pose_frame);
-  return R"(<dv version="2.0">)" + note + R"(<node name="outInfo" path="/mainloop/Recorder/outInfo/">)" +
-         stream_xml(0, name, "events", "EVTS", size) + stream_xml(1, name, "frames", "FRME", size) +
-         stream_xml(2, name, "imu", "IMUS", "") + "</node></dv>";
+std::string size_xml(cv::Size size) {
+  return fmt::format(R"(<attr key="sizeX" type="int">{}</attr><attr key="sizeY" type="int">{}</attr>)", size.width,
+                     size.height);
 }
 
 }  // namespace
 
+void Aedat4Encoder::set_cameras(std::vector<cv::Size> sensors, std::size_t frame_cameras) {
+  sensors_ = std::move(sensors);
+  frame_cameras_ = frame_cameras;
+}
+
+int Aedat4Encoder::stream_of(Modality modality, std::size_t camera) const {
+  constexpr std::size_t kFurther = 3;
+  const bool events = modality == Modality::Events;
+  if (camera == 0) return events ? 0 : 1;
+  return static_cast<int>(kFurther + camera - 1 + (events ? 0 : sensors_.size() - 1));
+}
+
+std::string Aedat4Encoder::header_xml() const {
+  constexpr const char* kNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
+  const char* const name = kNames[static_cast<std::size_t>(compression_)];
+  std::map<int, std::string> streams = {{2, stream_xml(2, name, "imu", "IMUS", "")}};
+  const auto add = [&](Modality modality, const char* type, std::size_t camera, cv::Size size) {
+    const int number = stream_of(modality, camera);
+    streams[number] = stream_xml(number, name, usual_camera_name(modality, camera), type, size_xml(size));
+  };
+  for (std::size_t i = 0; i < sensors_.size(); ++i) add(Modality::Events, "EVTS", i, sensors_[i]);
+  for (std::size_t i = 0; i < frame_cameras_; ++i)
+    add(Modality::Frames, "FRME", i, sensors_[std::min(i, sensors_.size() - 1)]);
+  std::string xml = R"(<dv version="2.0">)";
+  if (pose_frame_ != "body")
+    xml += fmt::format(R"(<attr key="{}" type="string">{}</attr>)", kAedat4PoseFrame, pose_frame_);
+  xml += R"(<node name="outInfo" path="/mainloop/Recorder/outInfo/">)";
+  for (const auto& [number, stream] : streams) xml += stream;
+  return xml + "</node></dv>";
+}
+
 std::string Aedat4Encoder::header(std::int64_t table_at) const {
   FlatBufferBuilder b;
-  const auto xml = b.CreateString(header_xml(compression_, sensor_, pose_frame_));
+  const auto xml = b.CreateString(header_xml());
   const auto start = b.StartTable();
   b.AddElement<std::int32_t>(slot(0), static_cast<std::int32_t>(compression_), 0);
   b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default value, so that the length of the header is constant
@@ -69,7 +95,7 @@ std::string Aedat4Encoder::header(std::int64_t table_at) const {
 
 std::string Aedat4Encoder::network_header() const { return header().substr(kAedat4Magic.size()); }
 
-std::string Aedat4Encoder::events(std::span<const Event> events) {
+std::string Aedat4Encoder::events(std::span<const Event> events, std::size_t camera) {
   struct alignas(8) WireEvent {
     std::int64_t t;
     std::int16_t x, y;
@@ -83,11 +109,13 @@ std::string Aedat4Encoder::events(std::span<const Event> events) {
   const auto list = b.CreateVectorOfStructs(wire);
   const auto start = b.StartTable();
   b.AddOffset(slot(0), list);
-  return packet({0, 0, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
-                finished(b, start, "EVTS"));
+  const int stream = stream_of(Modality::Events, camera);
+  return packet(
+      {0, stream, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
+      finished(b, start, "EVTS"));
 }
 
-std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure) {
+std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure, std::size_t camera) {
   const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
   FlatBufferBuilder b;
   const auto pixels = b.CreateVector(image.data, image.total() * image.elemSize());
@@ -100,7 +128,7 @@ std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure) {
   b.AddElement<std::int16_t>(slot(6), static_cast<std::int16_t>(image.cols), 0);
   b.AddElement<std::int16_t>(slot(7), static_cast<std::int16_t>(image.rows), 0);
   b.AddOffset(slot(10), pixels);
-  return packet({0, 1, 0, 1, begin_us, end_us}, finished(b, start, "FRME"));
+  return packet({0, stream_of(Modality::Frames, camera), 0, 1, begin_us, end_us}, finished(b, start, "FRME"));
 }
 
 std::string Aedat4Encoder::imu(std::span<const ImuSample> samples) {
@@ -181,23 +209,32 @@ namespace {
 class Aedat4Writer final : public RecordingWriter {
  public:
   explicit Aedat4Writer(const WriterSetup& setup)
-      : name_(setup.path.string()),
-        encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor(), setup.name_when_read(setup.info.pose_frame)),
-        file_(setup.path) {
+      : setup_(setup),
+        name_(setup.path.string()),
+        encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor(), pose_frame(setup)),
+        file_(setup.path),
+        events_(setup.cameras(Modality::Events)) {
+    std::vector<cv::Size> sensors;
+    for (std::size_t i = 0; i < events_.size(); ++i) sensors.push_back(setup.event_sensor(i));
+    encoder_.set_cameras(sensors, setup.cameras(Modality::Frames));
     file_.write(encoder_.header());
   }
 
   void write(const EventBatch& batch) override {
+    const std::size_t camera = setup_.place_of(batch.camera, Modality::Events);
+    std::vector<Event>& held = events_[camera];
     for (const Event& event : batch.events) {
       if (event.t < Timestamp())
         throw InputError::format("{}: the format holds no stamps before 0, the recording has them", name_);
-      if (events_.size() >= kMostEvents || (!events_.empty() && event.t - events_.front().t > kLongestPacket))
-        flush_events();
-      events_.push_back(event);
+      if (held.size() >= kMostEvents || (!held.empty() && event.t - held.front().t > kLongestPacket))
+        flush_events(camera);
+      held.push_back(event);
     }
   }
 
-  void write(const Frame& frame) override { file_.write(encoder_.frame(frame)); }
+  void write(const Frame& frame) override {
+    file_.write(encoder_.frame(frame, Duration(0), setup_.place_of(frame.camera, Modality::Frames)));
+  }
 
   void write(const ImuSample& sample) override {
     if (!imu_.empty() && sample.t - imu_.front().t > kLongestPacket) flush_imu();
@@ -205,7 +242,7 @@ class Aedat4Writer final : public RecordingWriter {
   }
 
   void finish() override {
-    flush_events();
+    for (std::size_t i = 0; i < events_.size(); ++i) flush_events(i);
     flush_imu();
     const auto table_at = static_cast<std::int64_t>(file_.size());
     file_.write(encoder_.table());
@@ -217,9 +254,15 @@ class Aedat4Writer final : public RecordingWriter {
   static constexpr std::size_t kMostEvents = 10'000;
   static constexpr Duration kLongestPacket = std::chrono::milliseconds(10);
 
-  void flush_events() {
-    if (!events_.empty()) file_.write(encoder_.events(events_));
-    events_.clear();
+  /// The frame of poses is kept only if it is a camera.
+  static std::string pose_frame(const WriterSetup& setup) {
+    const std::string frame = setup.name_when_read(setup.info.pose_frame);
+    return frame.starts_with("events") || frame.starts_with("frames") ? frame : "body";
+  }
+
+  void flush_events(std::size_t camera) {
+    if (!events_[camera].empty()) file_.write(encoder_.events(events_[camera], camera));
+    events_[camera].clear();
   }
 
   void flush_imu() {
@@ -227,10 +270,11 @@ class Aedat4Writer final : public RecordingWriter {
     imu_.clear();
   }
 
+  WriterSetup setup_;
   std::string name_;
   Aedat4Encoder encoder_;
   OutputFile file_;
-  std::vector<Event> events_;
+  std::vector<std::vector<Event>> events_;  ///< of each camera, not yet written
   std::vector<ImuSample> imu_;
 };
 

@@ -13,8 +13,8 @@
 
 namespace edged {
 
-/// Encodes the parts of a file in the order of the calls. Stream 0 holds the events, 1 the frames, 2 the IMU. Stamps
-/// are rounded down to whole microseconds.
+/// Encodes the parts of a file in the order of the calls. Stream 0 holds the events, 1 the frames, 2 the IMU; events
+/// and frames of further cameras follow. Stamps are rounded down to whole microseconds.
 class Aedat4Encoder {
  public:
   /// The numbers in the header: none, LZ4, LZ4 high, zstd, zstd high.
@@ -22,15 +22,18 @@ class Aedat4Encoder {
 
   /// pose_frame: of the DatasetInfo, kept in the header.
   Aedat4Encoder(Compression compression, cv::Size sensor, std::string pose_frame = "body")
-      : compression_(compression), sensor_(sensor), pose_frame_(std::move(pose_frame)) {}
+      : compression_(compression), sensors_{sensor}, pose_frame_(std::move(pose_frame)) {}
+
+  /// For several cameras, before the header: the size of each event sensor, and the number of frame cameras.
+  void set_cameras(std::vector<cv::Size> sensors, std::size_t frame_cameras);
 
   /// Version line and header. Their length does not depend on the offset of the table (-1: no table).
   std::string header(std::int64_t table_at = -1) const;
   /// The header without the version line, as servers send it.
   std::string network_header() const;
-  std::string events(std::span<const Event> events);
+  std::string events(std::span<const Event> events, std::size_t camera = 0);
   /// The stamp is the middle of the exposure. The image may have any type.
-  std::string frame(const Frame& frame, Duration exposure = Duration(0));
+  std::string frame(const Frame& frame, Duration exposure = Duration(0), std::size_t camera = 0);
   /// Written as single-precision numbers in g and deg/s.
   std::string imu(std::span<const ImuSample> samples);
   /// The table of all packets so far.
@@ -43,11 +46,14 @@ class Aedat4Encoder {
     std::int64_t count, first_us, last_us;
   };
 
+  std::string header_xml() const;
+  int stream_of(Modality modality, std::size_t camera) const;
   std::string packed(const std::string& body) const;
   std::string packet(PacketEntry entry, const std::string& body);
 
   Compression compression_;
-  cv::Size sensor_;
+  std::vector<cv::Size> sensors_;  ///< of the event cameras
+  std::size_t frame_cameras_ = 1;
   std::string pose_frame_;
   std::vector<PacketEntry> packets_;
   std::int64_t packets_bytes_ = 0;

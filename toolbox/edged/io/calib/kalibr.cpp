@@ -33,7 +33,8 @@ Lens read_kalibr_camera(const YamlReader& node, const std::string& name) {
   lens.model = read_model(node, "distortion_model", "distortion_coeffs");
   // t_imu = t_cam + timeshift_cam_imu: the sign of time_offset.
   if (const auto shift = node.find("timeshift_cam_imu")) lens.time_offset = shift->time_offset();
-  lens.words = lens.name + " " + node.text_or("rostopic", "");
+  lens.topic = node.text_or("rostopic", "");
+  lens.words = lens.name + " " + lens.topic;
   if (const auto modality = node.find("modality")) {  // an extension of this program, not a key of Kalibr
     lens.sees = parse_sees(modality->text());
     if (!lens.sees) modality->fail("must be events, frames or both");

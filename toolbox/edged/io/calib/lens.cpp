@@ -38,21 +38,26 @@ Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePat
 }
 
 /// Names of cameras: `events` and `frames` for the first lens of both, cam1_events and cam1_frames for the next.
-void add_cameras(Rig& rig, const Lens& lens, Sees sees) {
+void add_cameras(Calibration& out, const Lens& lens, Sees sees) {
+  Rig& rig = out.rig;
   RigCamera camera{lens.name, Modality::Events, lens.model, lens.T_B_C, lens.time_offset};
+  const auto add = [&] {
+    rig.cameras.push_back(camera);
+    if (!lens.topic.empty()) out.topics[camera.name] = lens.topic;
+  };
   if (sees != Sees::Both) {
     camera.modality = sees == Sees::Events ? Modality::Events : Modality::Frames;
-    rig.cameras.push_back(camera);
+    add();
     return;
   }
   const bool taken = std::any_of(rig.cameras.begin(), rig.cameras.end(),
                                  [](const RigCamera& c) { return c.name == "events" || c.name == "frames"; });
   const std::string begin = taken ? lens.name + "_" : "";
   camera.name = begin + "events";
-  rig.cameras.push_back(camera);
+  add();
   camera.name = begin + "frames";
   camera.modality = Modality::Frames;
-  rig.cameras.push_back(camera);
+  add();
 }
 
 /// "omni, ds, ...": the camera models of Kalibr beside pinhole.
@@ -158,7 +163,7 @@ Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions
   out.has_imu_noise = file.imu.has_value();
   out.imu = file.imu.value_or(ImuNoise{});
   out.warnings = file.warnings;
-  for (const Lens& lens : file.lenses) add_cameras(out.rig, lens, decide(lens, options, path));
+  for (const Lens& lens : file.lenses) add_cameras(out, lens, decide(lens, options, path));
   if (out.rig.cameras.empty()) throw InputError::format("{}: holds no camera", path.string());
   for (auto camera = out.rig.cameras.begin(); camera != out.rig.cameras.end(); ++camera)
     if (std::any_of(out.rig.cameras.begin(), camera, [&](const RigCamera& c) { return c.name == camera->name; }))

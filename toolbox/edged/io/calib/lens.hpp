@@ -22,6 +22,7 @@ struct Lens {
   Duration time_offset = Duration(0);
   std::optional<Sees> sees;  ///< if the format states it
   std::string words = {};    ///< its names and topics, for guess_sees
+  std::string topic = {};    ///< ROS topic of its images or events; "" if the file names none
 };
 
 /// The content of a calibration file and of the files that it names.

@@ -79,12 +79,14 @@ CameraModel masked(const CameraModel& model, const std::vector<std::uint8_t>& us
 
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   node.allow_only({"name", "modality", "same_as", "camera_model", "resolution", "intrinsics", "distortion",
-                   "coefficients", "max_angle", "mask", "mask_runs", "T_B_C", "T_C_B", "q_B_C", "time_offset"});
+                   "coefficients", "max_angle", "mask", "mask_runs", "T_B_C", "T_C_B", "q_B_C", "time_offset",
+                   "topic"});
   Lens lens;
   const auto same_as = node.find("same_as");
   if (same_as) lens = read_base(node, *same_as, above);
   lens.name = node.at("name").text();
   lens.sees = read_modality(node.at("modality"));
+  lens.topic = node.text_or("topic", "");
   if (same_as) return lens;
 
   lens.model = read_model(node, "distortion", "coefficients");
@@ -143,12 +145,13 @@ constexpr const char* kPoseToFillIn =
 /// Degrees rounded to nine decimals. An angle that a user wrote with up to nine decimals reads back to the last bit.
 double plain_degrees(double angle_rad) { return std::round(1e9 * kDegreesPerRadian * angle_rad) / 1e9; }
 
-std::string camera_yaml(const RigCamera& camera, bool has_extrinsics) {
+std::string camera_yaml(const RigCamera& camera, const std::string& topic, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   std::string out =
       fmt::format("  - name: {}\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
                   quoted(camera.name), camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
                   m.fx(), m.fy(), m.cx(), m.cy());
+  if (!topic.empty()) out += "    topic: " + quoted(topic) + "\n";
   const auto& k = m.coefficients();
   if (const LensModel& lens = lens_model(m.distortion()); lens.most > 0)
     out += fmt::format("    distortion: {}\n    coefficients: [{}]\n", lens.name,
@@ -191,7 +194,10 @@ std::string to_yaml(const Calibration& calibration) {
         n.gyro_noise, n.accel_noise, n.gyro_walk, n.accel_walk, n.gyro_saturation, n.accel_saturation,
         n.saturation_inflation);
   out += "cameras:\n";
-  for (const RigCamera& camera : calibration.rig.cameras) out += camera_yaml(camera, calibration.has_extrinsics);
+  for (const RigCamera& camera : calibration.rig.cameras) {
+    const auto topic = calibration.topics.find(camera.name);
+    out += camera_yaml(camera, topic == calibration.topics.end() ? "" : topic->second, calibration.has_extrinsics);
+  }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -111,6 +112,10 @@ class H5File {
 
   /// Nothing if there is no such data set or it is not readable.
   std::optional<H5Array> find(const std::string& path) const;
+  /// The same; nothing for the path "".
+  std::optional<H5Array> find_named(std::string_view path) const {
+    return path.empty() ? std::nullopt : find(std::string(path));
+  }
   bool has(const std::string& path) const;
 
   /// An attribute of an object: a text or an integer.

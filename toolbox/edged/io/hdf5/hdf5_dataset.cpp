@@ -10,7 +10,8 @@
 #include <span>
 
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/camera_names.hpp"
+#include "edged/io/hdf5/h5_cameras.hpp"
 #include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"
@@ -23,12 +24,6 @@ namespace {
 constexpr std::uint64_t kEventsAtOnce = 65536, kSamplesAtOnce = 1024;
 constexpr Duration kStep = std::chrono::milliseconds(50);  // of one stream at a time
 
-/// Images of a file with their stamps.
-struct H5Images {
-  H5Array pixels;
-  H5Stamps stamps;
-};
-
 /// IMU samples of a file: angular velocity and specific force. Without the second array, both are in the first.
 struct H5Imu {
   H5Array first;
@@ -36,18 +31,9 @@ struct H5Imu {
   H5Stamps stamps;
 };
 
-std::optional<H5Array> find(const H5File& file, std::string_view path) {
-  return path.empty() ? std::nullopt : file.find(std::string(path));
-}
-
-std::optional<H5Images> find_images(const H5File& file, const Hdf5Layout& layout) {
-  auto pixels = find(file, layout.images), stamps = find(file, layout.image_stamps);
-  if (!pixels || !stamps || pixels->shape().size() < 3 || pixels->shape().size() > 4) return std::nullopt;
-  return H5Images{std::move(*pixels), H5Stamps(std::move(*stamps))};
-}
-
 std::optional<H5Imu> find_imu(const H5File& file, const Hdf5Layout& layout) {
-  auto gyro = find(file, layout.gyro), accel = find(file, layout.accel), stamps = find(file, layout.imu_stamps);
+  auto gyro = file.find_named(layout.gyro), accel = file.find_named(layout.accel),
+       stamps = file.find_named(layout.imu_stamps);
   if (!gyro || !stamps || gyro->columns() != (accel ? 3U : 6U) || (accel && accel->columns() != 3)) return std::nullopt;
   return H5Imu{std::move(*gyro), std::move(accel), H5Stamps(std::move(*stamps))};
 }
@@ -67,62 +53,44 @@ cv::Mat h5_image(const H5Array& pixels, std::uint64_t row, bool cut) {
   return grey;
 }
 
-/// Width and height from the file.
-std::optional<cv::Size> stated_sensor(const H5File& file, const Hdf5Layout& layout) {
-  const auto pair = [](double width, double height) -> std::optional<cv::Size> {
-    if (!(width >= 1 && width <= 16384 && height >= 1 && height <= 16384)) return std::nullopt;
-    return cv::Size(static_cast<int>(width), static_cast<int>(height));
-  };
-  for (const std::string& object : {std::string(layout.events), std::string("/")}) {
-    if (object.empty()) continue;
-    const auto width = file.number_attribute(object, "width"), height = file.number_attribute(object, "height");
-    if (width && height) return pair(static_cast<double>(*width), static_cast<double>(*height));
-    if (const auto text = file.text_attribute(object, "geometry")) return parse_geometry(*text);
-  }
-  const auto sensor = find(file, layout.sensor);
-  if (!sensor || sensor->rows() != 2 || sensor->columns() != 1) return std::nullopt;
-  try {
-    const auto size = sensor->read<double>(0, 2);
-    return pair(size[0], size[1]);
-  } catch (const Damage&) {
-    return std::nullopt;
-  }
-}
-
 class Hdf5Dataset final : public StreamedDataset {
  public:
-  Hdf5Dataset(const H5File& file, const Hdf5Layout& layout, H5Events events, SideFiles side, cv::Size sensor)
+  Hdf5Dataset(const H5File& file, const Hdf5Layout& layout, H5Cameras cameras, SideFiles side)
       : StreamedDataset(file.path(), side.set.empty() ? std::string(layout.name) : side.set), side_(std::move(side)) {
-    info_.end = events.last();
     if (!side_.truth.read) side_.truth = find_h5_truth(file, layout);
-    info_.pose_frame = side_.truth.frame;
-    set_sensor(sensor);
-    if (events.ragged())
-      repairs_.add("events: arrays of different lengths",
-                   name_ + ": x, y, t and p differ in length; the shortest counts");
-    if (file.cut()) repairs_.add("file: cut", name_ + ": the file ends too early; what it has is read");
-    Merger::Streams streams{.events = true};
-    add_events(std::move(events));
-    if (auto images = find_images(file, layout)) {
-      streams.frames = true;
-      add_images(std::move(*images), file.cut());
-    } else if (side_.frames) {
-      streams.frames = true;
-      add_image_files(*side_.frames);
+    info_.pose_frame = camera_by_usual_name(cameras.known, side_.truth.frame).value_or(side_.truth.frame);
+    for (const fs::path& cut : cameras.cut)
+      repairs_.add("file: cut", cut.string() + ": the file ends too early; what it has is read");
+    for (std::size_t i = 0; i < cameras.events.size(); ++i) {
+      if (i == 0) set_sensor(cameras.recorded[i].sensor);
+      info_.end = std::max(info_.end, cameras.events[i].last());
+      if (cameras.events[i].ragged())
+        repairs_.add("events: arrays of different lengths",
+                     name_ + ": x, y, t and p differ in length; the shortest counts");
+      add_events(std::move(cameras.events[i]), i);
     }
-    if (auto imu = find_imu(file, layout)) {
-      streams.imu = true;
+    for (std::size_t i = 0; i < cameras.frames.size(); ++i) {
+      if (auto* images = std::get_if<H5Images>(&cameras.frames[i])) {
+        add_images(std::move(*images), i, file.cut());
+      } else {
+        add_image_files(std::get<StampedLines<FrameEntry>::Spec>(cameras.frames[i]), i);
+      }
+    }
+    auto imu = find_imu(file, layout);
+    const bool has_imu = imu || side_.imu;
+    if (imu) {
       add_imu(std::move(*imu));
     } else if (side_.imu) {
-      streams.imu = true;
       add_imu_lines(*side_.imu);
     }
-    begin(streams);
+    begin(cameras.recorded, has_imu);
   }
 
   std::optional<GroundTruth> ground_truth() const override {
     Repairs logged;
-    return side_.truth.read ? side_.truth.read(logged) : std::nullopt;
+    auto truth = side_.truth.read ? side_.truth.read(logged) : std::nullopt;
+    if (truth) truth->frame = info_.pose_frame;
+    return truth;
   }
 
  private:
@@ -184,7 +152,7 @@ class Hdf5Dataset final : public StreamedDataset {
     return false;
   }
 
-  void add_events(H5Events events) {
+  void add_events(H5Events events, std::size_t camera) {
     constexpr std::uint64_t kSmallestPart = 1024;
     const auto refill = [this, shared = std::make_shared<H5Events>(std::move(events)),
                          at = std::uint64_t{0}](std::vector<Event>& items) mutable {
@@ -198,27 +166,27 @@ class Hdf5Dataset final : public StreamedDataset {
       at += count;
       return true;
     };
-    add_source<Event>(refill, [this](std::span<const Event> part) { push_events(part); });
+    add_source<Event>(refill, [this, camera](std::span<const Event> part) { push_events(part, camera); });
   }
 
-  void add_images(H5Images images, bool cut) {
+  void add_images(H5Images images, std::size_t camera, bool cut) {
     const auto shared = std::make_shared<H5Images>(std::move(images));
     const std::uint64_t rows = std::min(shared->pixels.rows(), shared->stamps.rows());
-    sources_.push_back({[this, shared, rows, cut, at = std::uint64_t{0}](Timestamp& reached) mutable {
+    sources_.push_back({[this, shared, rows, camera, cut, at = std::uint64_t{0}](Timestamp& reached) mutable {
       if (at == rows || !wants(Modality::Frames)) return false;
       read_parts(at++, 1, 1, "frames", [&](std::uint64_t row, std::uint64_t) {
         const Timestamp t = shared->stamps.read(row, 1).front();
         if (!is_stamp(t, "frames")) return;
         reached = t;
-        push_frame(t, h5_image(shared->pixels, row, cut));
+        push_frame(t, h5_image(shared->pixels, row, cut), camera);
       });
       return true;
     }});
   }
 
-  void add_image_files(const StampedLines<FrameEntry>::Spec& spec) {
+  void add_image_files(const StampedLines<FrameEntry>::Spec& spec, std::size_t camera) {
     const auto lines = std::make_shared<StampedLines<FrameEntry>>(spec, repairs_);
-    sources_.push_back({[this, lines](Timestamp& reached) {
+    sources_.push_back({[this, lines, camera](Timestamp& reached) {
       if (!lines->peek() || !wants(Modality::Frames)) return false;
       const FrameEntry entry = lines->pop();
       reached = entry.t;
@@ -226,7 +194,7 @@ class Hdf5Dataset final : public StreamedDataset {
         if (!entry.image.is_file()) throw Damage("image missing");
         cv::Mat image = read_gray_image(entry.image);
         if (image.empty()) throw Damage("image unreadable");
-        push_frame(entry.t, std::move(image));
+        push_frame(entry.t, std::move(image), camera);
       } catch (const Damage& damage) {
         repairs_.add(fmt::format("frames: {}", damage.what()), entry.image.string() + ": " + damage.what());
       }
@@ -359,14 +327,10 @@ std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
 Recording open_hdf5(const fs::path& path, const Rig* rig, const RecordingOptions& options) {
   const H5File file(path);
   for (const Hdf5Layout& layout : hdf5_layouts()) {
-    auto events = H5Events::find(file, layout);
-    if (!events) continue;
+    if (!H5Events::find(file, layout)) continue;
     SideFiles side = find_side_files(path, layout.name, options.own_imu);
-    std::optional<cv::Size> said = options.geometry ? options.geometry : stated_sensor(file, layout);
-    if (!said) said = side.sensor;
-    if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);
-    const cv::Size sensor = event_sensor_size(path, said, rig);
-    return {std::make_unique<Hdf5Dataset>(file, layout, std::move(*events), std::move(side), sensor), std::nullopt};
+    H5Cameras cameras = find_h5_cameras(file, layout, side, rig, options);
+    return {std::make_unique<Hdf5Dataset>(file, layout, std::move(cameras), std::move(side)), std::nullopt};
   }
   refuse_layout(file);
 }

@@ -3,11 +3,14 @@
 // Writes data sets that grow by whole chunks.
 #include "edged/io/hdf5/hdf5_writer.hpp"
 
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/h5_filters.hpp"
+#include "edged/io/hdf5/layouts.hpp"
 
 namespace edged {
 namespace {
@@ -108,17 +111,20 @@ H5Handle create_file(const std::filesystem::path& path) {
 constexpr hsize_t kEventRows = 65536, kSampleRows = 1024;
 
 struct EventArrays {
-  EventArrays(hid_t file, const std::string& name)
-      : x(file, name, "/events/x", {}, kEventRows),
-        y(file, name, "/events/y", {}, kEventRows),
-        p(file, name, "/events/p", {}, kEventRows),
-        t(file, name, "/events/t", {}, kEventRows),
-        ms_to_idx(file, name, "/ms_to_idx", {}, kEventRows) {}
+  /// index: the place of the table by milliseconds.
+  EventArrays(hid_t file, const std::string& name, const std::string& group, const std::string& index)
+      : x(file, name, group + "/x", {}, kEventRows),
+        y(file, name, group + "/y", {}, kEventRows),
+        p(file, name, group + "/p", {}, kEventRows),
+        t(file, name, group + "/t", {}, kEventRows),
+        ms_to_idx(file, name, index, {}, kEventRows) {}
   void flush() { x.flush(), y.flush(), p.flush(), t.flush(), ms_to_idx.flush(); }
   GrowingArray<std::uint16_t> x, y;
   GrowingArray<std::uint8_t> p;
   GrowingArray<std::int64_t> t;
   GrowingArray<std::uint64_t> ms_to_idx;
+  std::uint64_t count = 0;
+  std::int64_t next_ms = 0;  ///< first millisecond without an index
 };
 
 struct ImuArrays {
@@ -132,11 +138,11 @@ struct ImuArrays {
 };
 
 struct FrameArrays {
-  FrameArrays(hid_t file, const std::string& name, cv::Size frame_size)
+  FrameArrays(hid_t file, const std::string& name, const std::string& group, cv::Size frame_size)
       : size(frame_size),
-        images(file, name, "/frames/images",
+        images(file, name, group + "/images",
                {static_cast<hsize_t>(frame_size.height), static_cast<hsize_t>(frame_size.width)}, 1),
-        stamps(file, name, "/frames/t_ns", {}, kSampleRows) {}
+        stamps(file, name, group + "/t_ns", {}, kSampleRows) {}
   void flush() { images.flush(), stamps.flush(); }
   cv::Size size;
   GrowingArray<std::uint8_t> images;
@@ -149,32 +155,41 @@ class Hdf5Writer final : public RecordingWriter {
       : setup_(setup),
         name_(setup.path.string()),
         file_(create_file(setup.path)),
-        events_(std::make_unique<EventArrays>(file_.get(), name_)) {
-    const cv::Size sensor = setup.event_sensor();
-    const H5Handle events(H5Gopen2(file_.get(), "/events", H5P_DEFAULT), H5Gclose);
-    put_attribute(events.get(), "width", sensor.width);
-    put_attribute(events.get(), "height", sensor.height);
+        frames_(setup.cameras(Modality::Frames)) {
+    for (std::size_t i = 0; i < setup.cameras(Modality::Events); ++i) {
+      const std::string group = path_of_camera("/events", i);
+      events_.push_back(
+          std::make_unique<EventArrays>(file_.get(), name_, group, i == 0 ? "/ms_to_idx" : group + "/ms_to_idx"));
+      const cv::Size sensor = setup.event_sensor(i);
+      const H5Handle events(H5Gopen2(file_.get(), group.c_str(), H5P_DEFAULT), H5Gclose);
+      put_attribute(events.get(), "width", sensor.width);
+      put_attribute(events.get(), "height", sensor.height);
+    }
   }
 
   void write(const EventBatch& batch) override {
+    EventArrays& events = *events_[setup_.place_of(batch.camera, Modality::Events)];
     for (const Event& event : batch.events) {
       const std::int64_t us = to_ns(event.t) / 1000;
       if (!offset_us_) offset_us_ = us;
-      index(us - *offset_us_);
-      events_->x.add(event.x);
-      events_->y.add(event.y);
-      events_->p.add(event.positive ? 1 : 0);
-      events_->t.add(us - *offset_us_);
-      ++event_count_;
+      index(events, us - *offset_us_);
+      events.x.add(event.x);
+      events.y.add(event.y);
+      events.p.add(event.positive ? 1 : 0);
+      events.t.add(us - *offset_us_);
+      ++events.count;
     }
   }
 
   void write(const Frame& frame) override {
-    if (!frames_) frames_ = std::make_unique<FrameArrays>(file_.get(), name_, frame.image.size());
-    EDGED_CHECK(frame.image.size() == frames_->size && frame.image.type() == CV_8UC1, "frames of one size and type");
+    const std::size_t camera = setup_.place_of(frame.camera, Modality::Frames);
+    auto& frames = frames_[camera];
+    if (!frames)
+      frames = std::make_unique<FrameArrays>(file_.get(), name_, path_of_camera("/frames", camera), frame.image.size());
+    EDGED_CHECK(frame.image.size() == frames->size && frame.image.type() == CV_8UC1, "frames of one size and type");
     for (int row = 0; row < frame.image.rows; ++row)
-      frames_->images.add_all(std::span(frame.image.ptr(row), static_cast<std::size_t>(frame.image.cols)));
-    frames_->stamps.add(to_ns(frame.t));
+      frames->images.add_all(std::span(frame.image.ptr(row), static_cast<std::size_t>(frame.image.cols)));
+    frames->stamps.add(to_ns(frame.t));
   }
 
   void write(const ImuSample& sample) override {
@@ -198,13 +213,14 @@ class Hdf5Writer final : public RecordingWriter {
   }
 
   void finish() override {
-    events_->flush();
-    if (frames_) frames_->flush();
+    for (auto& events : events_) events->flush();
+    for (auto& frames : frames_)
+      if (frames) frames->flush();
     if (imu_) imu_->flush();
     write_offset();
     check_written(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, name_);
     // The file is closed, so that other programs can open it, only after its last data set.
-    events_.reset(), frames_.reset(), imu_.reset();
+    events_.clear(), frames_.clear(), imu_.reset();
     file_ = H5Handle();
   }
 
@@ -219,20 +235,19 @@ class Hdf5Writer final : public RecordingWriter {
   }
 
   /// The next event is the first at or after each millisecond up to its own stamp.
-  void index(std::int64_t us) {
+  static void index(EventArrays& events, std::int64_t us) {
     constexpr std::int64_t kMostIndexed = 24LL * 3600 * 1000;  // [ms]; a wrong stamp must not fill the disk
-    for (; next_ms_ * 1000 <= us && next_ms_ < kMostIndexed; ++next_ms_) events_->ms_to_idx.add(event_count_);
+    for (; events.next_ms * 1000 <= us && events.next_ms < kMostIndexed; ++events.next_ms)
+      events.ms_to_idx.add(events.count);
   }
 
   WriterSetup setup_;
   std::string name_;
   H5Handle file_;
-  std::unique_ptr<EventArrays> events_;
-  std::unique_ptr<FrameArrays> frames_;
+  std::vector<std::unique_ptr<EventArrays>> events_;  ///< of each camera
+  std::vector<std::unique_ptr<FrameArrays>> frames_;  ///< of each camera; null before its first frame
   std::unique_ptr<ImuArrays> imu_;
   std::optional<std::int64_t> offset_us_;  ///< stamp of the first event
-  std::uint64_t event_count_ = 0;
-  std::int64_t next_ms_ = 0;  ///< first millisecond without an index
 };
 
 }  // namespace

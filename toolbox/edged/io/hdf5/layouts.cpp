@@ -118,6 +118,18 @@ Duration offset_of(const H5File& file, std::string_view path) try {
 
 std::span<const Hdf5Layout> hdf5_layouts() { return kLayouts; }
 
+std::string path_of_camera(std::string_view path, std::size_t index) {
+  constexpr std::array<std::string_view, 3> kSides = {"/left", "/right", "/rgb"};
+  std::string out(path);
+  if (index == 0) return out;
+  if (const std::size_t left = path.find(kSides[0]); left != std::string_view::npos)
+    return index < kSides.size() ? out.replace(left, kSides[0].size(), kSides[index]) : "";
+  for (const std::string_view group : {"/events", "/frames"})
+    if (path == group || path.starts_with(std::string(group) + "/"))
+      return out.insert(group.size(), std::to_string(index + 1));
+  return out;
+}
+
 H5Stamps::H5Stamps(H5Array array) : array_(std::move(array)), unit_ns_(unit_of(array_)) {}
 
 std::vector<Timestamp> H5Stamps::read(std::uint64_t first, std::uint64_t count) const {
@@ -150,8 +162,9 @@ H5Events::H5Events(Kind kind, std::vector<H5Array> arrays, Duration offset, bool
   arrays_.pop_back();
 }
 
-std::optional<H5Events> H5Events::find(const H5File& file, const Hdf5Layout& layout) {
-  const std::string root(layout.events);
+std::optional<H5Events> H5Events::find(const H5File& file, const Hdf5Layout& layout, std::size_t camera) {
+  const std::string root = path_of_camera(layout.events, camera);
+  if (camera > 0 && (root.empty() || root == layout.events)) return std::nullopt;
   const Duration offset = offset_of(file, layout.offset);
   std::vector<H5Array> arrays;
   if (auto one = root.empty() ? std::nullopt : file.find(root)) {

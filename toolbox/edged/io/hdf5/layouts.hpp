@@ -31,6 +31,10 @@ struct Hdf5Layout {
 
 std::span<const Hdf5Layout> hdf5_layouts();
 
+/// The path of the same data of a further camera of the file, from 1: "/davis/right/events" of "/davis/left/events",
+/// "/ovc/rgb/data" as the third of "/ovc/left/data", "/events2" of "/events"; other paths as they are.
+std::string path_of_camera(std::string_view path, std::size_t index);
+
 /// The stamps of a file in nanoseconds, exact for integers.
 class H5Stamps {
  public:
@@ -49,8 +53,8 @@ class H5Stamps {
 /// The events of a file in one of the layouts.
 class H5Events {
  public:
-  /// Nothing if the file has no events in this layout.
-  static std::optional<H5Events> find(const H5File& file, const Hdf5Layout& layout);
+  /// Nothing if the file has no events in this layout. camera: 0 for the first of the file.
+  static std::optional<H5Events> find(const H5File& file, const Hdf5Layout& layout, std::size_t camera = 0);
 
   std::uint64_t rows() const { return rows_; }
   /// True if the arrays of x, y, t and p differ in length.

@@ -5,6 +5,7 @@
 #include "edged/io/hdf5/side_files.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -97,7 +98,7 @@ TruthSource truth_lines(const fs::path& file, ReadTrajectory read, const std::st
   return {frame, read_lines};
 }
 
-/// SEQUENCE/events/left/events.h5, SEQUENCE/images/timestamps.txt: the middle of the exposure of each left image.
+/// SEQUENCE/events/left/events.h5, SEQUENCE/images/timestamps.txt: the middle of the exposure of each image.
 SideFiles dsec_files(const fs::path& events) {
   SideFiles files;
   const fs::path folder = fs::absolute(events).parent_path();
@@ -105,12 +106,14 @@ SideFiles dsec_files(const fs::path& events) {
     const auto stamps =
         first_file({root / "images/timestamps.txt", root / "image_timestamps.txt", root / "images_timestamps.txt"});
     if (!stamps) continue;
-    auto images = images_in({root / "images/left/distorted", root / "images/left/rectified",
-                             root / "images_left/distorted", root / "images_left/rectified"});
-    if (images.empty()) continue;
-    files.set = "dsec";
-    files.frames = images_by_line(*stamps, "t [us]", std::move(images), microseconds_in(*stamps));
-    break;
+    for (const std::string side : {"left", "right"}) {  // of both sides the stamps are the same
+      auto images = images_in({root / "images" / side / "distorted", root / "images" / side / "rectified",
+                               root / ("images_" + side) / "distorted", root / ("images_" + side) / "rectified"});
+      if (images.empty()) break;
+      files.set = "dsec";
+      files.frames.push_back(images_by_line(*stamps, "t [us]", std::move(images), microseconds_in(*stamps)));
+    }
+    if (!files.frames.empty()) break;
   }
   if (is_file(folder / "rectify_map.h5")) files.set = "dsec";
   if (!files.set.empty()) files.sensor = cv::Size(640, 480);
@@ -121,9 +124,11 @@ SideFiles dsec_files(const fs::path& events) {
 SideFiles vector_files(const fs::path& events, const std::string& prefix, bool own_imu) {
   SideFiles files{.set = "vector", .sensor = cv::Size(640, 480)};
   const fs::path folder = fs::absolute(events).parent_path();
-  const fs::path camera = folder / (prefix + "left_camera");
-  if (is_file(camera / "timestamp.txt"))
-    files.frames = images_by_line(camera / "timestamp.txt", "start end [s]", images_in({camera}), middle_of_exposure);
+  for (const char* side : {"left_camera", "right_camera"}) {
+    const fs::path camera = folder / (prefix + side), stamps = camera / "timestamp.txt";
+    if (!is_file(stamps)) break;
+    files.frames.push_back(images_by_line(stamps, "start end [s]", images_in({camera}), middle_of_exposure));
+  }
   if (const auto imu = first_file({folder / (prefix + "imu.txt"), folder / (prefix + "imu.csv")}); own_imu && imu)
     files.imu = imu_of(*imu, TimeUnit::Seconds);
   if (const fs::path truth = folder / (prefix + "gt.txt"); is_file(truth))
@@ -131,8 +136,27 @@ SideFiles vector_files(const fs::path& events, const std::string& prefix, bool o
   return files;
 }
 
-/// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these. Stamps of images
-/// are those of the start of the exposure, whose length [us] is in another list.
+/// The images of a side in root/left_images. Stamps are those of the start of the exposure, whose length [us] is in
+/// another list.
+std::optional<StampedLines<FrameEntry>::Spec> tum_vie_images(const fs::path& root, const std::string& side) {
+  for (const fs::path& list : {root / (side + "_images"), root}) {
+    const fs::path stamps = list / ("image_timestamps_" + side + ".txt"),
+                   lengths = list / ("image_exposures_" + side + ".txt");
+    if (!is_file(stamps)) continue;
+    const auto exposures = is_file(lengths) ? std::make_shared<LineReader>(lengths) : nullptr;
+    const auto middle = [exposures, parse = microseconds_in(stamps)](std::string_view line) {
+      const auto exposure = exposures ? exposures->next() : std::nullopt;
+      const auto length = exposure ? parse_microseconds(FieldReader(exposure->text).next()) : std::nullopt;
+      auto t = parse(line);
+      if (t && length) *t += length->time_since_epoch() / 2;
+      return t;
+    };
+    return images_by_line(stamps, "t [us]", images_in({root / (side + "_images")}), middle);
+  }
+  return std::nullopt;
+}
+
+/// NAME-events_left.h5 beside imu_data.txt, mocap_data.txt and left_images, or a folder with these.
 SideFiles tum_vie_files(const fs::path& events, const std::string& prefix, bool own_imu) {
   SideFiles files{.set = "tum-vie", .sensor = cv::Size(1280, 720)};
   const fs::path folder = fs::absolute(events).parent_path();
@@ -140,18 +164,11 @@ SideFiles tum_vie_files(const fs::path& events, const std::string& prefix, bool 
     const fs::path imu = root / "imu_data.txt", truth = root / "mocap_data.txt";
     if (own_imu && !files.imu && is_file(imu)) files.imu = imu_of(imu, TimeUnit::Microseconds);
     if (!files.truth.read && is_file(truth)) files.truth = truth_lines(truth, read_tum_microseconds, "body");
-    for (const fs::path& list : {root / "left_images", root}) {
-      const fs::path stamps = list / "image_timestamps_left.txt", lengths = list / "image_exposures_left.txt";
-      if (files.frames || !is_file(stamps)) continue;
-      const auto exposures = is_file(lengths) ? std::make_shared<LineReader>(lengths) : nullptr;
-      const auto middle = [exposures, parse = microseconds_in(stamps)](std::string_view line) {
-        const auto exposure = exposures ? exposures->next() : std::nullopt;
-        const auto length = exposure ? parse_microseconds(FieldReader(exposure->text).next()) : std::nullopt;
-        auto t = parse(line);
-        if (t && length) *t += length->time_since_epoch() / 2;
-        return t;
-      };
-      files.frames = images_by_line(stamps, "t [us]", images_in({root / "left_images"}), middle);
+    constexpr std::array kSides = {"left", "right"};
+    while (files.frames.size() < kSides.size()) {
+      auto images = tum_vie_images(root, kSides.at(files.frames.size()));
+      if (!images) break;
+      files.frames.push_back(std::move(*images));
     }
   }
   return files;
@@ -162,11 +179,11 @@ SideFiles eds_files(const fs::path& events, bool own_imu) {
   SideFiles files;
   const fs::path folder = fs::absolute(events).parent_path();
   if (const fs::path stamps = folder / "images_timestamps.txt"; is_file(stamps))
-    files.frames = images_by_line(stamps, "t [us]", images_in({folder / "images"}), microseconds_in(stamps));
+    files.frames.push_back(images_by_line(stamps, "t [us]", images_in({folder / "images"}), microseconds_in(stamps)));
   if (const fs::path imu = folder / "imu.csv"; own_imu && is_file(imu)) files.imu = imu_of(imu, TimeUnit::Microseconds);
   if (const fs::path truth = folder / "stamped_groundtruth.txt"; is_file(truth))
     files.truth = truth_lines(truth, read_tum, "events");
-  if (files.frames || files.imu || files.truth.read) {
+  if (!files.frames.empty() || files.imu || files.truth.read) {
     files.set = "eds";
     files.sensor = cv::Size(640, 480);
   }
@@ -182,6 +199,22 @@ std::optional<std::string> name_before(const fs::path& file, std::initializer_li
 }
 
 }  // namespace
+
+std::optional<fs::path> find_right_events(const fs::path& left_file) {
+  const fs::path file = fs::absolute(left_file), folder = file.parent_path();
+  const auto right_of = [](std::string name) -> std::optional<std::string> {
+    constexpr std::string_view kLeft = "left";
+    const std::size_t at = name.rfind(kLeft);
+    return at == std::string::npos ? std::nullopt : std::optional(name.replace(at, kLeft.size(), "right"));
+  };
+  std::vector<fs::path> candidates;
+  if (const auto name = right_of(file.filename().string())) {
+    candidates.push_back(folder / *name);
+  } else if (const auto beside = right_of(folder.filename().string())) {
+    candidates.push_back(folder.parent_path() / *beside / file.filename());
+  }
+  return first_file(candidates);
+}
 
 SideFiles find_side_files(const fs::path& events_file, std::string_view layout, bool own_imu) {
   if (layout == "eds") return eds_files(events_file, own_imu);

@@ -7,6 +7,7 @@
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/image_file.hpp"
@@ -17,7 +18,7 @@ namespace edged {
 struct SideFiles {
   std::string set = {};                 ///< "dsec", "vector", "tum-vie", "eds"; "" if no data set is recognised
   std::optional<cv::Size> sensor = {};  ///< of the event camera [px] in all recordings of the data set
-  std::optional<StampedLines<FrameEntry>::Spec> frames = {};
+  std::vector<StampedLines<FrameEntry>::Spec> frames = {};  ///< of each frame camera, left first
   std::optional<StampedLines<ImuSample>::Spec> imu = {};
   TruthSource truth = {};
 };
@@ -25,5 +26,8 @@ struct SideFiles {
 /// The files around an event file in the layout of DSEC ("dsec") or EDS ("eds"), found by their names. own_imu: false
 /// to leave the IMU file unopened.
 SideFiles find_side_files(const std::filesystem::path& events_file, std::string_view layout, bool own_imu = true);
+
+/// The events file of the right camera beside or around that of the left one, if it is there.
+std::optional<std::filesystem::path> find_right_events(const std::filesystem::path& left_file);
 
 }  // namespace edged

@@ -110,7 +110,7 @@ class PropheseeDataset final : public StreamedDataset {
         decoder_(header.format, geometry.width, geometry.height) {
     set_sensor(geometry);
     info_.end = last_stamp_of(header, geometry);
-    begin({.events = true});
+    begin(OneOfEach{.events = true});
   }
 
  private:

@@ -7,20 +7,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 #include "edged/io/ros/messages.hpp"
 
 namespace edged {
 namespace {
-
-struct DescribedCamera {
-  const char* name;
-  Modality modality;
-  Role role;
-};
-constexpr std::array kDescribedCameras = {DescribedCamera{"events", Modality::Events, Role::Events},
-                                          DescribedCamera{"frames", Modality::Frames, Role::Frames}};
 
 /// "/dvs/camera_info" for "/dvs/image_raw" and for "/dvs/image_raw/compressed".
 std::string info_topic_of(std::string name) {
@@ -32,12 +24,10 @@ std::string info_topic_of(std::string name) {
 
 std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const TopicChoice& choice) {
   std::map<std::size_t, std::optional<CameraModel>> models;  // by topic
-  std::array<std::optional<std::size_t>, kDescribedCameras.size()> topic_of_camera;
+  std::vector<std::optional<std::size_t>> topic_of_camera(choice.cameras.size());
   const std::vector<Topic>& topics = source.topics();
-  for (std::size_t c = 0; c < kDescribedCameras.size(); ++c) {
-    const auto sensor = choice.of(kDescribedCameras[c].role);
-    if (!sensor) continue;
-    const std::string wanted = info_topic_of(topics[*sensor].name);
+  for (std::size_t c = 0; c < choice.cameras.size(); ++c) {
+    const std::string wanted = info_topic_of(topics[choice.cameras[c].topic].name);
     for (std::size_t i = 0; i < topics.size(); ++i)
       if (topics[i].name == wanted && topics[i].type == "sensor_msgs/CameraInfo" && topics[i].count > 0)
         models[i].reset(), topic_of_camera[c] = i;
@@ -58,11 +48,11 @@ std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const Topi
 
   Calibration calibration;
   calibration.has_extrinsics = calibration.has_imu_noise = false;
-  for (std::size_t c = 0; c < kDescribedCameras.size(); ++c) {
+  for (std::size_t c = 0; c < choice.cameras.size(); ++c) {
     const auto model = topic_of_camera[c] ? models.find(*topic_of_camera[c]) : models.end();
     if (model != models.end() && model->second)
       calibration.rig.cameras.push_back(
-          {kDescribedCameras[c].name, kDescribedCameras[c].modality, *model->second, SE3(), Duration(0)});
+          {choice.cameras[c].name, choice.cameras[c].modality, *model->second, SE3(), Duration(0)});
   }
   return calibration.rig.cameras.empty() ? std::nullopt : std::optional(std::move(calibration));
 }

@@ -11,7 +11,7 @@
 
 namespace edged {
 
-/// Intrinsics of "events" and "frames" from the CameraInfo in the namespace of their topics (/dvs/camera_info of
+/// Intrinsics of its cameras from the CameraInfo in the namespace of their topics (/dvs/camera_info of
 /// /dvs/events). Nothing without usable ones. Reads up to the first message of each, so source must be at its
 /// beginning.
 std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const TopicChoice& choice);

@@ -7,6 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "edged/io/calibration.hpp"
 #include "edged/io/evt_encoder.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
@@ -29,8 +30,9 @@ class Messages : public ::testing::TestWithParam<Wire> {
  protected:
   Wire wire() const { return GetParam(); }
   const BagContainer& container() const { return wire() == Wire::Ros1 ? kPlainBag : kPlainMcap; }
-  Recording open(const std::vector<TestTopic>& topics, const RecordingOptions& options = {}) const {
-    return open_recording(write_bag(folder_, container(), topics), nullptr, options);
+  Recording open(const std::vector<TestTopic>& topics, const RecordingOptions& options = {},
+                 const Rig* rig = nullptr) const {
+    return open_recording(write_bag(folder_, container(), topics), rig, options);
   }
   /// The events of packets in an encoding. `encode` encodes 300 events per packet.
   template <typename Encode>
@@ -204,14 +206,15 @@ TEST_P(Messages, ThreeKindsOfPosesAreGroundTruth) {
   }
 }
 
-TEST_P(Messages, SeveralTopicsForOneRoleAreAskedForWithTheList) {
+TEST_P(Messages, SeveralTopicsForTheOnlyCameraOfTheRigAreAskedForWithTheList) {
+  const Rig rig = load_rig("davis240c_ecd").rig;
   const EventBatch left = bag_events(kStart, 10, 1), right = bag_events(kStart, 20, 2);
   const std::vector<TestTopic> topics = {
       {"/left/events", "dvs_msgs/EventArray", {{kStart, event_array_message(wire(), left, kBagSensor)}}},
       {"/right/events", "dvs_msgs/EventArray", {{kStart, event_array_message(wire(), right, kBagSensor)}}},
       {"/imu", "sensor_msgs/Imu", {{kStart, imu_message(wire(), still(kStart))}}},
       {"/chatter", "std_msgs/String", {{kStart, "hello"}}}};
-  EXPECT_THAT(input_error([&] { open(topics); }),
+  EXPECT_THAT(input_error([&] { open(topics, {}, &rig); }),
               AllOf(HasSubstr("--topic ROLE=NAME"), HasSubstr("events: /left/events, /right/events")));
   EXPECT_EQ(read_all(*open(topics, {.topics = {{"events", "/right/events"}}}).dataset).events.size(), 20u);
   EXPECT_FALSE(open(topics, {.topics = {{"events", "none"}}}).dataset->info().has_events);

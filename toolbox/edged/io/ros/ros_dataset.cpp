@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/ros/bag_intrinsics.hpp"
 #include "edged/io/ros/open_messages.hpp"
@@ -17,26 +18,35 @@ constexpr std::string_view kPlainPoses = "geometry_msgs/PoseStamped";  // which 
 
 }  // namespace
 
-RosDataset::RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
-                       std::optional<cv::Size> geometry)
-    : StreamedDataset(path, "ros"),
-      source_(open_messages(path, &repairs_)),
-      imu_topics_(choose_imu_topics(path, source_->topics(), wanted)),
-      choice_(choose_topics(source_->topics(), with_imu_topic(wanted, source_->topics(), imu_topics_), name_)),
-      geometry_(geometry) {
-  if (rig) rig_ = *rig;
+RosDataset::RosDataset(const std::filesystem::path& path, TopicWishes wishes, std::optional<cv::Size> geometry)
+    : StreamedDataset(path, "ros"), source_(open_messages(path, &repairs_)), geometry_(geometry) {
+  const std::vector<Topic>& topics = source_->topics();
+  imu_topics_ = choose_imu_topics(path, topics, wishes.wanted);
+  wishes.wanted = with_imu_topic(wishes.wanted, topics, imu_topics_);
+  choice_ = choose_topics(topics, wishes, name_);
+  if (wishes.rig) rig_ = *wishes.rig;
   info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
-  for (const Topic& topic : source_->topics()) info_.streams.push_back({topic.name, topic.type, topic.count, ""});
-  for (std::size_t role = 0; role < kRoleNames.size(); ++role)
-    if (const auto topic = choice_.topics[role]) info_.streams[*topic].role = kRoleNames[role];
-  if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
-  begin(
-      {choice_.of(Role::Events).has_value(), choice_.of(Role::Frames).has_value(), choice_.of(Role::Imu).has_value()});
+  name_roles();
+  good_.resize(topics.size());
+  bad_.resize(topics.size());
+  const std::vector<RecordedCamera> cameras = choice_.recorded(topics);
+  events_.resize(static_cast<std::size_t>(std::ranges::count(cameras, Modality::Events, &RecordedCamera::modality)));
+  begin(cameras, choice_.of(Role::Imu).has_value());
   info_.end = *info_.begin + source_->length();
   for (std::size_t role = 0; role < kRoleNames.size(); ++role)
     if (choice_.topics[role] && external_sensor_of(static_cast<Role>(role)))
       info_.external.emplace_back(kRoleNames[role]);
   info_.pose_frame = truth_frame();
+}
+
+void RosDataset::name_roles() {
+  for (const Topic& topic : source_->topics()) info_.streams.push_back({topic.name, topic.type, topic.count, ""});
+  for (std::size_t role = 0; role < kRoleNames.size(); ++role)
+    if (const auto topic = choice_.topics[role]) info_.streams[*topic].role = kRoleNames[role];
+  for (const CameraTopic& camera : choice_.cameras)
+    if (std::ranges::count(choice_.cameras, camera.modality, &CameraTopic::modality) > 1)
+      info_.streams[camera.topic].role = camera.name;
+  if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
 }
 
 /// The frame of the poses in the first message.
@@ -47,7 +57,7 @@ std::string RosDataset::truth_frame() const {
   while (const auto message = source->next_of(*topic)) {
     try {
       const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
-      return std::string(named.frame == "events" || named.frame == "frames" ? named.frame : "body");
+      return camera_by_usual_name(choice_.known, named.frame).value_or("body");
     } catch (const Damage&) {
       // Skips a damaged message: the next one is as good.
     }
@@ -63,19 +73,20 @@ bool RosDataset::read_on() {
 
 void RosDataset::feed(const Message& message) {
   const bool accel = message.topic == imu_topics_.accel;
-  const auto role = std::ranges::find(choice_.topics, accel ? choice_.of(Role::Imu) : std::optional(message.topic));
-  if (role == choice_.topics.end()) return;
-  const auto index = static_cast<std::size_t>(role - choice_.topics.begin());
-  if (!wants(modality_of(static_cast<Role>(index)))) return;
+  const std::size_t topic = accel ? *choice_.of(Role::Imu) : message.topic;
+  const auto camera = choice_.camera_of(topic);
+  auto role = static_cast<Role>(std::ranges::find(choice_.topics, std::optional(topic)) - choice_.topics.begin());
+  if (camera) role = camera->modality == Modality::Events ? Role::Events : Role::Frames;
+  if (static_cast<std::size_t>(role) == choice_.topics.size() || !wants(modality_of(role))) return;
   const std::string& type = source_->topics()[message.topic].type;
   try {
     const WireReader reader(source_->wire(), message.data);
-    switch (static_cast<Role>(index)) {
+    switch (role) {
       case Role::Events:
-        feed_events(type, reader);
+        feed_events(camera->camera, type, reader);
         break;
       case Role::Frames:
-        feed_frame(type, reader);
+        feed_frame(camera->camera, type, reader);
         break;
       case Role::Imu:
         feed_imu(message.topic, reader);
@@ -87,35 +98,37 @@ void RosDataset::feed(const Message& message) {
         push_external(read_external(type, reader));
         break;
     }
-    ++good_[index];
+    ++good_[topic];
   } catch (const Damage& damage) {
-    judge(index, damage.what());
+    judge(topic, role, damage.what());
   }
 }
 
 /// Counts a damaged message as a repair. Throws InputError if all messages of a topic so far are damaged, except for
 /// external sensors.
-void RosDataset::judge(std::size_t role, const std::string& reason) {
+void RosDataset::judge(std::size_t index, Role role, const std::string& reason) {
   constexpr std::size_t kTries = 10;
-  const Topic& topic = source_->topics()[*choice_.topics[role]];
+  const Topic& topic = source_->topics()[index];
+  const std::string& name = info_.streams[index].role;
   const std::string detail = fmt::format("{}: {} ({}): {}", name_, topic.name, topic.type, reason);
-  repairs_.add(fmt::format("{}: message unreadable", kRoleNames[role]), detail);
-  ++bad_[role];
-  if (external_sensor_of(static_cast<Role>(role)))
-    return;  // the topic may have another meaning: a pressure in water is no air pressure
-  if (good_[role] == 0 && bad_[role] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
+  repairs_.add(fmt::format("{}: message unreadable", kRoleNames[static_cast<std::size_t>(role)]), detail);
+  ++bad_[index];
+  if (external_sensor_of(role)) return;  // the topic may have another meaning: a pressure in water is no air pressure
+  if (good_[index] == 0 && bad_[index] >= std::min(kTries, std::max<std::size_t>(topic.count, 1)))
     throw InputError::format("{}; none of its first {} messages can be read: give --topic {}=NAME or none", detail,
-                             bad_[role], kRoleNames[role]);
+                             bad_[index], name);
 }
 
-void RosDataset::feed_events(const std::string& type, WireReader message) {
-  EventArray array = events_.decode(type, message);
+void RosDataset::feed_events(std::size_t camera, const std::string& type, WireReader message) {
+  EventArray array = events_[camera].decode(type, message);
   const cv::Size size(static_cast<int>(array.width), static_cast<int>(array.height));
-  if (info_.event_sensor.empty()) {
+  if (sensor(camera).empty()) {
     const std::optional<cv::Size> said = size.empty() ? std::nullopt : std::optional(size);
-    set_sensor(event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr));
+    set_sensor(
+        event_sensor_size(name_, geometry_ ? geometry_ : said, rig_ ? &*rig_ : nullptr, choice_.cameras[camera].name),
+        camera);
   }
-  push_events(array.events);
+  push_events(array.events, camera);
 }
 
 void RosDataset::feed_imu(std::size_t topic, WireReader message) {
@@ -127,9 +140,9 @@ void RosDataset::feed_imu(std::size_t topic, WireReader message) {
   for (const ImuSample& sample : samples) push_imu(sample);
 }
 
-void RosDataset::feed_frame(const std::string& type, WireReader message) {
+void RosDataset::feed_frame(std::size_t camera, const std::string& type, WireReader message) {
   GrayImage gray = read_frame(type, message);
-  push_frame(gray.t, std::move(gray.image));
+  push_frame(gray.t, std::move(gray.image), camera);
 }
 
 std::optional<Calibration> RosDataset::intrinsics() const {
@@ -166,11 +179,11 @@ std::optional<GroundTruth> RosDataset::ground_truth() const {
 }
 
 Recording open_bag(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options) {
-  auto dataset = std::make_unique<RosDataset>(path, options.topics, rig, options.geometry);
+  auto dataset = std::make_unique<RosDataset>(path, wishes_of(rig, options), options.geometry);
   std::optional<Calibration> calibration = dataset->intrinsics();
   if (calibration && rig)
     for (const RigCamera& camera : calibration->rig.cameras)
-      warn_of_other_lens(path.string(), camera.model.mean_focal(), *rig, camera.modality);
+      warn_of_other_lens(path.string(), camera.model.mean_focal(), *rig, camera.modality, camera.name);
   return {std::move(dataset), std::move(calibration)};
 }
 

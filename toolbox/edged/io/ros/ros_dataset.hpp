@@ -15,13 +15,12 @@
 
 namespace edged {
 
-/// The cameras are "events" and "frames". The poses are those of "body", or of the camera that the messages name.
+/// The cameras are those of choose_topics(). The poses are those of "body", or of the camera that the messages name.
 class RosDataset final : public StreamedDataset {
  public:
-  /// The size of the event camera is that of the rig, else `geometry`, else that of its messages. Throws InputError if
+  /// The size of an event camera is that of the rig, else `geometry`, else that of its messages. Throws InputError if
   /// the user has to choose topics or nothing is readable.
-  RosDataset(const std::filesystem::path& path, const WantedTopics& wanted, const Rig* rig,
-             std::optional<cv::Size> geometry);
+  RosDataset(const std::filesystem::path& path, TopicWishes wishes, std::optional<cv::Size> geometry);
 
   std::optional<GroundTruth> ground_truth() const override;
 
@@ -31,11 +30,12 @@ class RosDataset final : public StreamedDataset {
  private:
   bool read_on() override;
   void feed(const Message& message);
-  void feed_events(const std::string& type, WireReader message);
+  void feed_events(std::size_t camera, const std::string& type, WireReader message);
   void feed_imu(std::size_t topic, WireReader message);
-  void feed_frame(const std::string& type, WireReader message);
+  void feed_frame(std::size_t camera, const std::string& type, WireReader message);
+  void name_roles();
   std::string truth_frame() const;
-  void judge(std::size_t role, const std::string& reason);
+  void judge(std::size_t topic, Role role, const std::string& reason);
 
   std::unique_ptr<MessageSource> source_;
   ImuTopics imu_topics_;
@@ -43,8 +43,8 @@ class RosDataset final : public StreamedDataset {
   TopicChoice choice_;
   std::optional<Rig> rig_;
   std::optional<cv::Size> geometry_;
-  EventMessageDecoder events_;
-  std::array<std::size_t, kRoleNames.size()> good_{}, bad_{};  ///< messages, by role
+  std::vector<EventMessageDecoder> events_;  ///< of each event camera
+  std::vector<std::size_t> good_, bad_;      ///< messages, by topic; those of the accelerometer with the gyro's
 };
 
 Recording open_bag(const std::filesystem::path& path, const Rig* rig, const RecordingOptions& options);

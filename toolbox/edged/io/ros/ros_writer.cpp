@@ -3,7 +3,9 @@
 // Converts measurements to messages.
 #include "edged/io/ros/ros_writer.hpp"
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag_writer.hpp"
@@ -18,24 +20,28 @@ namespace {
 class RosWriter final : public RecordingWriter {
  public:
   RosWriter(const WriterSetup& setup, std::unique_ptr<MessageSink> sink)
-      : setup_(setup),
-        name_(setup.path.string()),
-        sensor_(setup.info.has_events ? setup.event_sensor() : cv::Size()),
-        sink_(std::move(sink)) {}
+      : setup_(setup), name_(setup.path.string()), sink_(std::move(sink)) {
+    for (std::size_t i = 0; setup.info.has_events && i < setup.cameras(Modality::Events); ++i)
+      sensors_.push_back(setup.event_sensor(i));
+  }
 
   void write(const EventBatch& batch) override {
     if (batch.events.empty()) return;
     const Timestamp end = batch.events.back().t;
     check(batch.events.front().t);
-    describe_camera(Modality::Events, "/dvs/camera_info", batch.camera, end);
+    const std::size_t camera = setup_.place_of(batch.camera, Modality::Events);
+    const std::string name_space = "/dvs" + number(camera);
+    describe_camera(Modality::Events, name_space, batch.camera, end);
     // A driver sends events after the last one has occurred.
-    send("/dvs/events", "dvs_msgs/EventArray", end, event_array_message(sink_->wire(), batch, sensor_));
+    send(name_space + "/events", "dvs_msgs/EventArray", end,
+         event_array_message(sink_->wire(), batch, sensors_[camera]));
   }
 
   void write(const Frame& frame) override {
     check(frame.t);
-    describe_camera(Modality::Frames, "/camera/camera_info", frame.camera, frame.t);
-    send("/camera/image_raw", "sensor_msgs/Image", frame.t, image_message(sink_->wire(), frame));
+    const std::string name_space = "/camera" + number(setup_.place_of(frame.camera, Modality::Frames));
+    describe_camera(Modality::Frames, name_space, frame.camera, frame.t);
+    send(name_space + "/image_raw", "sensor_msgs/Image", frame.t, image_message(sink_->wire(), frame));
   }
 
   void write(const ImuSample& sample) override {
@@ -83,16 +89,23 @@ class RosWriter final : public RecordingWriter {
     }
   }
 
+  /// "/dvs/events", "/dvs2/events".
+  static std::string number(std::size_t camera) { return camera == 0 ? "" : std::to_string(camera + 1); }
+
   /// Written once for each camera, before its first measurement.
-  void describe_camera(Modality modality, std::string_view topic, const std::string& name, Timestamp t) {
+  void describe_camera(Modality modality, const std::string& name_space, const std::string& name, Timestamp t) {
+    const std::string topic = name_space + "/camera_info";
     if (!setup_.calibration || topics_.contains(topic)) return;
-    if (const RigCamera* camera = setup_.calibration->rig.find(modality))
+    const std::vector<RigCamera>& cameras = setup_.calibration->rig.cameras;
+    const auto named = std::ranges::find(cameras, name, &RigCamera::name);
+    const RigCamera* camera = named != cameras.end() ? &*named : setup_.calibration->rig.find(modality);
+    if (camera && camera->modality == modality)
       send(topic, "sensor_msgs/CameraInfo", t, camera_info_message(sink_->wire(), t, name, camera->model));
   }
 
   WriterSetup setup_;
   std::string name_;
-  cv::Size sensor_;
+  std::vector<cv::Size> sensors_;
   std::unique_ptr<MessageSink> sink_;
   std::map<std::string, std::size_t, std::less<>> topics_;
   GroundTruth truth_;

@@ -3,8 +3,14 @@
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
 #include "edged/io/text/ecd.hpp"
 
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
 #include "edged/core/check.hpp"
 #include "edged/io/calibration_source.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/dataset_folders.hpp"
 #include "edged/io/geometry.hpp"
 #include "edged/io/imu_lines.hpp"
@@ -34,11 +40,46 @@ std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const std::
   return truth;
 }
 
-cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::optional<Calibration>& own) {
-  for (const Rig* r : {rig, own ? &own->rig : nullptr})
-    if (r)
-      if (const RigCamera* camera = r->find(Modality::Events)) return {camera->model.width(), camera->model.height()};
+cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::string& name) {
+  if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
+    const auto named = std::ranges::find(rig->cameras, name, &RigCamera::name);
+    if (named != rig->cameras.end() && named->modality == Modality::Events) camera = &*named;
+    return {camera->model.width(), camera->model.height()};
+  }
   return ecd_image_size(folder).value_or(cv::Size(kEcdWidth, kEcdHeight));
+}
+
+/// Names of the first camera of each kind, read or not.
+struct FirstCameras {
+  std::string events = "events", frames = "frames";
+};
+
+/// Adds the cameras of the folder that are read, with their names: events.txt, events2.txt and so on, and lists of
+/// images.
+FirstCameras add_cameras(TextLayout& layout, const SourcePath& folder, const Rig* rig,
+                         const RecordingOptions& options) {
+  const auto chosen = [&](Modality modality, const auto& find_file) {
+    std::vector<std::string> files;
+    for (auto file = find_file(0); file; file = find_file(files.size())) files.push_back(file->name());
+    const NamedStreams named = name_streams(rig, modality, files, options.cameras, folder.string());
+    if (!named.said.empty()) spdlog::warn(named.said);
+    return std::pair(named.names, cameras_to_read(named.names, options.cameras, options.all_cameras));
+  };
+  const auto find_events = [&](std::size_t camera) -> std::optional<SourcePath> {
+    const SourcePath file = folder / ("events" + ecd_number(camera) + ".txt");
+    return file.is_file() ? std::optional(file) : std::nullopt;
+  };
+  const auto [events, read_events] = chosen(Modality::Events, find_events);
+  for (const std::size_t i : read_events) {
+    const SourcePath file = *find_events(i);
+    const cv::Size size = sensor_size(folder, rig, events[i]);
+    if (layout.events.empty()) layout.info.event_sensor = size;
+    layout.events.push_back({file, events[i], size.width, size.height, named_event_columns(file)});
+  }
+  const auto [frames, read_frames] =
+      chosen(Modality::Frames, [&](std::size_t camera) { return find_ecd_image_list(folder, camera); });
+  for (const std::size_t i : read_frames) layout.frames.push_back({frames[i], ecd_images(folder, i)});
+  return {events.empty() ? "events" : events.front(), frames.empty() ? "frames" : frames.front()};
 }
 
 }  // namespace
@@ -54,17 +95,13 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOpti
   TextLayout layout;
   layout.info.name = folder.name();
   layout.info.format = "ecd";
-  if (const SourcePath events = folder / "events.txt"; events.is_file()) {
-    const cv::Size size = sensor_size(folder, rig, recording.calibration);
-    layout.info.event_sensor = size;
-    layout.events = EventFile{events, "events", size.width, size.height, named_event_columns(events)};
-  }
-  if (find_ecd_image_list(folder)) layout.frames = {{"frames", ecd_images(folder)}};
+  const FirstCameras first =
+      add_cameras(layout, folder, rig || !recording.calibration ? rig : &recording.calibration->rig, options);
   if (const SourcePath imu = folder / "imu.txt"; options.own_imu && imu.is_file())
     layout.imu = documented_imu_lines(imu, accel_first(TimeUnit::Seconds), true);
   if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file()) {
     const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
-    layout.info.pose_frame = is_uzh_fpv(folder) ? "body" : no_event_camera ? "frames" : "events";
+    layout.info.pose_frame = is_uzh_fpv(folder) ? "body" : no_event_camera ? first.frames : first.events;
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
       return read_ground_truth(truth, camera, repairs);
     };

@@ -34,13 +34,13 @@ std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& re
   return truth;
 }
 
-/// The wanted cameras that exist, in the order of their names; else the first camera.
-std::set<std::string> cameras_to_read(const SourcePath& mav0, const std::vector<std::string>& wanted) {
+/// The wanted cameras that exist, or all, in the order of their names; else the first camera.
+std::set<std::string> find_cameras(const SourcePath& mav0, const RecordingOptions& options) {
   const auto is_there = [&](const std::string& camera) {
     return camera.starts_with("cam") && (mav0 / camera / "data.csv").is_file();
   };
   std::set<std::string> cameras;
-  for (const std::string& camera : wanted)
+  for (const std::string& camera : options.all_cameras ? mav0.names() : options.cameras)
     if (is_there(camera)) cameras.insert(camera);
   if (cameras.empty() && is_there("cam0")) cameras.insert("cam0");
   return cameras;
@@ -86,7 +86,7 @@ Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options) {
   layout.info.name = (mav0.name() == "mav0" ? mav0.parent_path() : mav0).name();
   layout.info.format = "euroc";
   layout.info.pose_frame = "body";
-  const std::set<std::string> read = cameras_to_read(mav0, options.cameras);
+  const std::set<std::string> read = find_cameras(mav0, options);
   for (const std::string& camera : read)
     layout.frames.push_back(
         {camera, image_lines(mav0 / camera / "data.csv", mav0 / camera / "data", TimeUnit::Nanoseconds)});

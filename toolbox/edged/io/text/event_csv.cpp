@@ -59,8 +59,9 @@ Recording open_event_csv(const SourcePath& file, const EventTextForm& form, cons
   layout.info.name = std::filesystem::path(file.name()).stem().string();
   layout.info.format = "csv";
   layout.info.event_sensor = size;
-  layout.events = EventFile{file, "events", size.width, size.height, form.columns};
-  layout.events->columns.unit = stamp_unit(file, form, options.time_unit);
+  EventFile events{file, "events", size.width, size.height, form.columns};
+  events.columns.unit = stamp_unit(file, form, options.time_unit);
+  layout.events = {std::move(events)};
   return {std::make_unique<TextDataset>(std::move(layout)), std::nullopt};
 }
 

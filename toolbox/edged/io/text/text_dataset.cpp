@@ -32,35 +32,45 @@ void TextDataset::open_streams() {
   std::string files;
   const auto opened = [&](auto& stream, const std::string& subject, const SourcePath& file) {
     files += (files.empty() ? "" : ", ") + file.name();
-    if (stream->peek()) return true;
+    if (stream.peek()) return true;
     note_empty(subject, file);
-    stream.reset();
     return false;
   };
   DatasetInfo& info = layout_.info;
-  if (const auto& e = layout_.events) {
-    events_.emplace(e->file, e->columns, e->width, e->height, repairs_);
-    info.has_events = opened(events_, "events", e->file);
-    info.event_camera = e->camera;
+  for (const EventFile& e : layout_.events) {
+    EventTextStream events(e.file, e.columns, e.width, e.height, repairs_);
+    if (opened(events, "events", e.file)) events_.push_back({e.camera, std::move(events)});
   }
   for (const FrameFile& f : layout_.frames) {
-    std::optional<StampedLines<FrameEntry>> lines(std::in_place, f.lines, repairs_);
-    if (!opened(lines, "frames", f.lines.file)) continue;
-    info.has_frames = true;
-    frames_.push_back({f.camera, std::move(*lines)});
+    StampedLines<FrameEntry> lines(f.lines, repairs_);
+    if (opened(lines, "frames", f.lines.file)) frames_.push_back({f.camera, std::move(lines)});
   }
-  if (!layout_.frames.empty()) info.frame_camera = layout_.frames.front().camera;
   if (const auto& i = layout_.imu) {
     imu_.emplace(*i, repairs_);
-    info.has_imu = opened(imu_, "imu", i->file);
+    info.has_imu = opened(*imu_, "imu", i->file);
+    if (!info.has_imu) imu_.reset();
   }
+  name_cameras();
   if (!info.has_events && !info.has_frames && !info.has_imu)
     throw InputError::format("{}: nothing to read: {} hold no readable line", info.name, files);
 }
 
+void TextDataset::name_cameras() {
+  DatasetInfo& info = layout_.info;
+  info.has_events = !events_.empty();
+  info.has_frames = !frames_.empty();
+  if (!layout_.events.empty()) info.event_camera = layout_.events.front().camera;
+  if (!layout_.frames.empty()) info.frame_camera = layout_.frames.front().camera;
+  for (const EventFile& e : layout_.events)
+    if (e.camera != info.event_camera)
+      info.more_cameras.push_back({e.camera, Modality::Events, e.file.name(), {e.width, e.height}});
+  for (const FrameFile& f : layout_.frames)
+    if (f.camera != info.frame_camera) info.more_cameras.push_back({f.camera, Modality::Frames, f.lines.file.name()});
+}
+
 void TextDataset::find_ends() {
   DatasetInfo& info = layout_.info;
-  info.begin = std::min({next_stamp(events_), next_frame_stamp(), next_stamp(imu_)});
+  info.begin = std::min({next_event_stamp(), next_frame_stamp(), next_stamp(imu_)});
   const auto extend = [&info](std::optional<Timestamp> t) {
     if (t) info.end = std::max(info.end.value_or(*t), *t);
   };
@@ -70,30 +80,42 @@ void TextDataset::find_ends() {
       return item ? std::optional(item->t) : std::nullopt;
     };
   };
-  const auto event_stamp = [this](std::string_view line) { return parse_event_stamp(line, layout_.events->columns); };
-  if (events_) extend(last_stamp(layout_.events->file, event_stamp));
+  for (const EventFile& e : layout_.events)
+    extend(last_stamp(e.file, [&e](std::string_view line) { return parse_event_stamp(line, e.columns); }));
   for (const FrameFile& f : layout_.frames) extend(last_stamp(f.lines.file, stamp_of(f.lines)));
   if (imu_) extend(last_stamp(layout_.imu->file, stamp_of(*layout_.imu)));
 }
 
 std::optional<Measurement> TextDataset::next() {
   while (true) {
-    const NextStream turn = next_stream(next_stamp(imu_), next_stamp(events_), next_frame_stamp());
+    const NextStream turn = next_stream(next_stamp(imu_), next_event_stamp(), next_frame_stamp());
     if (turn.stream == NextStream::Stream::None) return std::nullopt;
     if (turn.stream == NextStream::Stream::Imu) return imu_->pop();
-    if (turn.stream == NextStream::Stream::Events)
-      return EventBatch{layout_.events->camera,
-                        events_->take_before(std::min(turn.events_end, next_stamp(events_) + kLongestBatch))};
+    if (turn.stream == NextStream::Stream::Events) return take_events(turn.events_end);
     if (auto frame = load_next_frame()) return std::move(*frame);
   }
 }
 
 void TextDataset::leave_out(Modality unwanted) {
   if (unwanted == Modality::Events) {
-    events_.reset();
+    events_.clear();
   } else {
     frames_.clear();
   }
+}
+
+Timestamp TextDataset::next_event_stamp() {
+  Timestamp next = Timestamp::max();
+  for (EventStream& stream : events_) next = std::min(next, stream.events.peek() ? stream.events.peek()->t : next);
+  return next;
+}
+
+/// The next events of all cameras. Of equal stamps, the first camera is first.
+EventBatch TextDataset::take_events(Timestamp end) {
+  const Timestamp t = next_event_stamp();
+  EventStream& stream = *std::ranges::find_if(
+      events_, [t](EventStream& candidate) { return candidate.events.peek() && candidate.events.peek()->t == t; });
+  return {stream.camera, stream.events.take_before(std::min(end, t + kLongestBatch))};
 }
 
 Timestamp TextDataset::next_frame_stamp() const {

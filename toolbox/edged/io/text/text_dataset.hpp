@@ -30,9 +30,9 @@ struct FrameFile {
 
 /// The files of a recording, and the format of their lines.
 struct TextLayout {
-  DatasetInfo info;  ///< name, format and pose_frame
-  std::optional<EventFile> events;
-  std::vector<FrameFile> frames;  ///< one per camera, with different names
+  DatasetInfo info;               ///< name, format and pose_frame
+  std::vector<EventFile> events;  ///< one per camera, with different names, as are the frames
+  std::vector<FrameFile> frames;
   std::optional<StampedLines<ImuSample>::Spec> imu;
   std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;  ///< may be empty
 };
@@ -50,19 +50,26 @@ class TextDataset final : public Dataset {
 
  private:
   void open_streams();
+  void name_cameras();
   void find_ends();
+  struct EventStream {
+    std::string camera;
+    EventTextStream events;
+  };
   struct FrameStream {
     std::string camera;
     StampedLines<FrameEntry> lines;
     cv::Size size = {};  ///< of the first image
   };
+  Timestamp next_event_stamp();
   Timestamp next_frame_stamp() const;
+  EventBatch take_events(Timestamp end);
   std::optional<Frame> load_next_frame();
 
   TextLayout layout_;
   Repairs repairs_;
   mutable Repairs ground_truth_repairs_;  ///< of the last reading, so that repeated readings are not counted twice
-  std::optional<EventTextStream> events_;
+  std::vector<EventStream> events_;
   std::vector<FrameStream> frames_;
   std::optional<StampedLines<ImuSample>> imu_;
 };

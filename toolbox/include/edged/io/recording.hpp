@@ -29,10 +29,15 @@ struct RecordingOptions {
   std::optional<TimeUnit> time_unit = std::nullopt;  ///< of the stamps in plain event files, where it is not certain
   /// Of live sources: whether the user has had enough; asked several times a second.
   std::function<bool()> interrupted = {};
-  /// Of bags and AEDAT4: role ("events", "frames", "imu", "truth") to topic or "none".
+  /// Of bags and AEDAT4: role ("events", "frames", "imu", "truth") or name of a camera to topic or "none".
   std::map<std::string, std::string> topics = {};
-  /// Of EuRoC folders: names of the cameras to read ("cam0", "cam1"); where none is there, "cam0".
+  /// Of bags: name of a camera to its topic, as the calibration states it (Calibration::topics).
+  std::map<std::string, std::string> camera_topics = {};
+  /// Names of the cameras to read, where a recording has several of a kind: those of the rig, else "events", "events2",
+  /// "frames", "frames2", of EuRoC "cam0", "cam1". None of a kind: its first.
   std::vector<std::string> cameras = {};
+  /// True: all cameras are read.
+  bool all_cameras = false;
   /// False: the IMU file of the recording is not opened, as the user gives another one.
   bool own_imu = true;
 };

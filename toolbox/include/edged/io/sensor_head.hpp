@@ -22,6 +22,8 @@ struct Calibration {
   bool has_extrinsics = true;         ///< false: the file has intrinsics only, T_B_C and time_offset are placeholders
   bool has_imu_noise = true;          ///< false: `imu` holds the defaults
   std::vector<std::string> warnings;  ///< what seems wrong, each one line
+  /// Names of cameras, each with the ROS topic that the file names (Kalibr's rostopic); not all need have one.
+  std::map<std::string, std::string> topics = {};
 };
 
 /// What the pixels behind a lens give: those of a DAVIS give both.
