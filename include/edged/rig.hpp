@@ -20,13 +20,14 @@ namespace edged {
 
 enum class DistortionModel {
   None,
-  RadTan,          ///< Brown: k1, k2, p1, p2 [, k3]
-  Equidistant,     ///< Kannala-Brandt: k1..k4
-  Rational,        ///< OpenCV: k1, k2, p1, p2, k3..k6
-  FieldOfView,     ///< Devernay: w
-  Omni,            ///< Mei, with Brown's distortion: xi [, k1, k2, p1, p2]
-  DoubleSphere,    ///< Usenko: xi, alpha
-  ExtendedUnified  ///< Khomutenko: alpha, beta
+  RadTan,           ///< Brown: k1, k2, p1, p2 [, k3]
+  Equidistant,      ///< Kannala-Brandt: k1..k4
+  Rational,         ///< OpenCV: k1, k2, p1, p2, k3..k6
+  FieldOfView,      ///< Devernay: w
+  Omni,             ///< Mei, with Brown's distortion: xi [, k1, k2, p1, p2]
+  DoubleSphere,     ///< Usenko: xi, alpha
+  ExtendedUnified,  ///< Khomutenko: alpha, beta
+  OmniEquidistant   ///< Mei's sphere, then Kannala-Brandt on its plane: xi, k1..k4
 };
 
 inline constexpr std::size_t kMostLensCoefficients = 8;
