@@ -20,8 +20,9 @@ struct CalibrationConfig {
   double lever_arm_sigma_mm = 4.0;
   double focal_sigma = 4e-3;              ///< of ln fx and ln fy
   double principal_point_sigma_px = 1.0;  ///< of each coordinate
-  double distortion_sigma = 0.01;         ///< of the first coefficient
-  double imu_sigma = 5e-3;                ///< of each entry of the IMU's intrinsics
+  double distortion_sigma =
+      0.01;                 ///< of the first coefficient; the second's has the same effect at the rim of the image
+  double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
   /// All as given.
   static CalibrationConfig fixed() { return {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}; }
   void visit(ConfigFields& fields);
