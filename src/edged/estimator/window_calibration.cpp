@@ -97,8 +97,10 @@ void Window::free_calibration(const CalibrationConfig& config) {
     CalibrationVector sigmas = calibration_sigmas(config, of.given.model);
     if (of.given.modality == Modality::Events && std::ranges::none_of(cameras_, [&](const WindowCamera& other) {
           return other.given.modality == Modality::Frames && is_same_lens(of.given, other.given);
-        }))
+        })) {
       sigmas.segment<2>(kCentreAt).setZero();  // events alone do not tell its shift from a rotation of the camera
+      sigmas[calibration_at::kDistortion + 1] = 0.0;  // nor the second coefficient from the first
+    }
     const auto twin =
         std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
                              [&](const WindowCamera& other) { return is_same_lens(of.given, other.given); });
