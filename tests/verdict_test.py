@@ -169,7 +169,18 @@ class Verdict(WithFlight):
         self.assertLess(found["rotation_sigma_deg"], 2.5)  # the prior's, inflated
         self.assertLess(found["rotation_off_deg"], 3 * found["rotation_sigma_deg"])
         self.assertLess(abs(found["time_offset_ms"] - found["given_time_offset_ms"]), 3 * found["time_offset_sigma_ms"])
+        self.assertFalse([f for f in metrics["findings"] if "differs from the calibration" in f["text"]])
 
+    def test_a_focal_length_3_percent_off_is_told_with_what_to_do(self):
+        def longer(match):
+            fx, fy, rest = match.group(1, 2, 3)
+            return f"intrinsics: [{1.03 * float(fx)}, {1.03 * float(fy)},{rest}]"
+        recording = self.changed("calibration.yaml", lambda text: re.sub(r"intrinsics: \[([\d.]+), ([\d.]+),(.*)\]", longer, text))
+        _, metrics = self.run_it(recording, "frames")
+        said = [f for f in metrics["findings"] if "differs from the calibration by" in f["text"]]
+        self.assertTrue(said, metrics["findings"])
+        self.assertRegex(said[0]["text"], r"camera frames: .*\bfx -\d\.\d+ \+- 0\.\d+ %")
+        self.assertIn("calibration_found.yaml", said[0]["remedy"])
 
     def test_cameras_of_other_names_are_taken_where_there_is_one_of_a_kind(self):
         def renamed(text):

@@ -58,6 +58,7 @@ class CheckRun {
   }
   /// The estimated calibration, from all measurements up to the last good estimate.
   const Rig& rig() const { return rig_; }
+  const std::map<std::string, CalibrationCovariance>& covariances() const { return covariances_; }
 
  private:
   std::optional<Measurement> next(Dataset& recording) {
@@ -80,6 +81,8 @@ class CheckRun {
   }
 
   std::vector<CalibrationFound> compare() {
+    for (const RigCamera& camera : rig_.cameras)
+      if (const auto P = odometry_.calibration_covariance(camera.name)) covariances_[camera.name] = *P;
     return compare_calibrations(source_.calibration.rig, odometry_, config_.estimator.calibration);
   }
 
@@ -91,19 +94,9 @@ class CheckRun {
   RunStatistics statistics_;
   std::optional<Timestamp> compared_;
   Rig rig_;
+  std::map<std::string, CalibrationCovariance> covariances_;
   std::vector<CalibrationFound> found_;
 };
-
-struct Checked {
-  CalibrationFit fit;
-  Rig found;
-};
-
-Checked check_from(const Rig& begin, Source& source, Mode mode, bool quiet) {
-  CheckRun run(source, begin, mode, quiet);
-  run.go();
-  return {run.fit(), run.rig()};
-}
 
 bool estimated(const CalibrationFit& fit) {
   return std::ranges::all_of(fit.cameras, [](const CameraFit& camera) { return camera.found.estimated(); });
@@ -111,12 +104,12 @@ bool estimated(const CalibrationFit& fit) {
 
 /// If the run estimates a wrong calibration, it is repeated from that estimate: measurements processed with the wrong
 /// one bias it by up to 1.6 ms.
-Checked check(const CalibCheckOptions& options, Source& source, Mode mode) {
-  Checked first = check_from(source.calibration.rig, source, mode, options.quiet);
+CalibrationRun check(const CalibCheckOptions& options, Source& source, Mode mode) {
+  CalibrationRun first = calibrate_by_run(source.calibration.rig, source, mode, options.quiet);
   const bool off = std::ranges::any_of(first.fit.cameras, [](const CameraFit& camera) { return is_off(camera.found); });
   if (!off || interrupt_signal() != 0 || is_live(options.source)) return first;
   source.dataset = open_uncalibrated(options.source).dataset;
-  Checked second = check_from(first.found, source, mode, options.quiet);
+  CalibrationRun second = calibrate_by_run(first.found, source, mode, options.quiet);
   return estimated(second.fit) ? second : first;
 }
 
@@ -134,6 +127,12 @@ std::string next_line(const CalibCheckOptions& options, Fit fit) {
 
 }  // namespace
 
+CalibrationRun calibrate_by_run(const Rig& begin, Source& source, Mode mode, bool quiet) {
+  CheckRun run(source, begin, mode, quiet);
+  run.go();
+  return {run.fit(), run.rig(), run.covariances()};
+}
+
 int check_calibration(CalibCheckOptions options) {
   catch_interrupts();
   if (!options.out.empty()) check_writable(options.out, "--out");
@@ -141,7 +140,7 @@ int check_calibration(CalibCheckOptions options) {
   Source source = open_source(options.source);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);
-  const auto [fit, found] = check(options, source, mode);
+  const auto [fit, found, covariances] = check(options, source, mode);
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
   fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit) + next_line(options, fit.fit));
   if (!options.out.empty()) write_file(options.out, to_yaml(with_found(source.calibration, found)));

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "common/source.hpp"
+#include "edged/survey/calibration_fit.hpp"
 
 namespace edged {
 
@@ -18,6 +20,17 @@ struct CalibCheckOptions {
 };
 
 inline constexpr double kCheckedSeconds = 20.0;  ///< default length of the used part of a recording
+
+/// What a run over a recording found.
+struct CalibrationRun {
+  CalibrationFit fit;
+  Rig found;
+  std::map<std::string, CalibrationCovariance> covariances;  ///< by camera; none without an estimate
+};
+
+/// A run like that of `edged run`, without its files, that asks each camera by itself. begin: the initial calibration
+/// of the cameras.
+CalibrationRun calibrate_by_run(const Rig& begin, Source& source, Mode mode, bool quiet);
 
 /// Prints the verdict and returns the exit code: 0 fits, 5 does not, 4 cannot be determined.
 int check_calibration(CalibCheckOptions options);

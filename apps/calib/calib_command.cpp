@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "calib/calib_check.hpp"
+#include "calib/calib_refine.hpp"
 #include "commands.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
@@ -133,6 +134,7 @@ struct CalibOptions {
   std::filesystem::path imu, out;
   std::vector<std::string> cameras;  ///< NAME=events|frames|both
   SourceOptions recording;           ///< to check it against
+  std::vector<std::string> refined;  ///< recordings of --refine
   std::string mode = "auto";
   bool quiet = false, json = false;
 };
@@ -223,15 +225,20 @@ int write_template(const CalibOptions& options) {
   return kExitOk;
 }
 
-/// FILE is a calibration as for --calib or --rig; --imu has samples.
+/// FILE is a calibration as for --calib or --rig.
+void take_file(const std::string& file, SourceOptions& source) {
+  if (std::filesystem::exists(file)) {
+    source.calib = file;
+  } else if (!file.empty()) {
+    source.rig = file;
+  }
+}
+
+/// --imu has samples.
 int run_check(const CalibOptions& options) {
   CalibCheckOptions check{options.recording, options.mode, options.out, options.quiet, options.json};
   check.source.imu = options.imu;
-  if (std::filesystem::exists(options.file)) {
-    check.source.calib = options.file;
-  } else if (!options.file.empty()) {
-    check.source.rig = options.file;
-  }
+  take_file(options.file, check.source);
   return check_calibration(std::move(check));
 }
 
@@ -254,8 +261,20 @@ int run_calib(const CalibOptions& options) {
   return kExitOk;
 }
 
-/// --check and the options that need it.
-CLI::Option* add_check_options(CLI::App& calib, CalibOptions& options, CLI::Option* file) {
+int run_refine(const CalibOptions& options) {
+  CalibRefineOptions refine{options.refined, options.recording, options.mode, options.out, options.quiet, options.json};
+  refine.source.imu = options.imu;
+  take_file(options.file, refine.source);
+  return refine_calibration(refine);
+}
+
+struct RunOptionsOfCalib {
+  CLI::Option *check, *refine;
+  std::vector<CLI::Option*> need_either;
+};
+
+/// --check, --refine and the options that need one of them.
+RunOptionsOfCalib add_run_options(CLI::App& calib, CalibOptions& options, CLI::Option* file) {
   CLI::Option* check = calib.add_option(
       "--check", options.recording.recording,
       fmt::format(
@@ -269,9 +288,12 @@ CLI::Option* add_check_options(CLI::App& calib, CalibOptions& options, CLI::Opti
       ->capture_default_str();
   calib.add_flag("--quiet", options.quiet, "No status line");
   const std::vector<CLI::Option*> all = calib.get_options([](const CLI::Option*) { return true; });
-  for (std::size_t i = before; i < all.size(); ++i) all[i]->needs(check);
+  CLI::Option* refine = calib.add_option("--refine", options.refined,
+                                         "Runs over these recordings, each from FILE or their own calibration: writes "
+                                         "what they found together to --out");
+  refine->excludes(check)->type_name("RECORDING");
   for (const char* name : {"--rig", "--calib"}) calib.get_option(name)->excludes(file);
-  return check;
+  return {check, refine, {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()}};
 }
 
 }  // namespace
@@ -301,20 +323,25 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
           ->check(CLI::IsMember(template_names()))
           ->excludes(file)
           ->excludes(json);
-  CLI::Option* check = add_check_options(*calib, *options, file);
-  check->excludes(fresh)->excludes(sees);
+  const RunOptionsOfCalib runs = add_run_options(*calib, *options, file);
+  for (CLI::Option* run : {runs.check, runs.refine}) run->excludes(fresh)->excludes(sees);
   calib->footer(
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"
       "  edged calib camchain-imucam.yaml --imu imu.yaml --out head.yaml\n"
       "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
       "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
+      "  edged calib --refine a.bag b.bag --calib head.yaml --out better.yaml\n"
       "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be determined (too little motion, no start), 3 what "
       "cannot be read.");
-  calib->callback([options, file, fresh, check, &chosen] {
-    if (file->count() + fresh->count() + check->count() == 0) throw CLI::RequiredError("FILE, --new or --check");
+  calib->callback([options, file, fresh, runs, &chosen] {
+    const std::size_t run = runs.check->count() + runs.refine->count();
+    if (file->count() + fresh->count() + run == 0) throw CLI::RequiredError("FILE, --new, --check or --refine");
+    for (const CLI::Option* option : runs.need_either)
+      if (run == 0 && option->count() > 0) throw CLI::RequiresError(option->get_name(), "--check or --refine");
     chosen = [options] {
       if (!options->camera_of_template.empty()) return write_template(*options);
+      if (!options->refined.empty()) return run_refine(*options);
       return options->recording.recording.empty() ? run_calib(*options) : run_check(*options);
     };
   });

@@ -64,9 +64,13 @@ std::string output_frame(const LoadedRun& run) {
   return run.metrics.is_null() ? "body" : run.metrics.value("output_frame", "body");
 }
 
+/// By the calibration that the run found, if it ended.
+Rig rig_of(const LoadedRun& run) { return run.found ? rig_for_poses(run.given->rig, run.found->rig) : run.given->rig; }
+
 /// In the world that is shown: with the alignment of the causal poses.
 Trajectory as_shown(const LoadedRun& run, Trajectory path, const std::string& frame) {
-  const OutputFrame written(run.given->rig, frame), shown(run.given->rig, run.poses.frame);
+  const Rig rig = rig_of(run);
+  const OutputFrame written(rig, frame), shown(rig, run.poses.frame);
   for (StampedPose& pose : path) {
     pose = shown(written.to_body(pose));
     pose.T = run.poses.alignment * pose.T;
@@ -137,8 +141,8 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   std::vector<std::size_t> rows;
   Trajectory body = body_poses(run.states, &rows);
   leave_out_before_map(run, body, rows);
-  run.poses = lay_onto_truth(body, covariance_samples_of(run.states), run.given->rig, output_frame(run), run.truth,
-                             options.how);
+  run.poses =
+      lay_onto_truth(body, covariance_samples_of(run.states), rig_of(run), output_frame(run), run.truth, options.how);
   run.poses.rows = rows;
   return run;
 }
@@ -147,7 +151,7 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
 LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportOptions& options) {
   LoadedRun run{file, {}, {}, {}, {}, std::nullopt, std::nullopt, std::nullopt, {}};
   Trajectory body = read_trajectory(file);
-  const Rig rig = beside ? beside->given->rig : Rig{};
+  const Rig rig = beside ? rig_of(*beside) : Rig{};
   const std::string frame = beside ? beside->poses.frame : "body";
   for (StampedPose& pose : body) pose = OutputFrame(rig, frame).to_body(pose);
   if (beside) run.truth = beside->truth;

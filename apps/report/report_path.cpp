@@ -34,6 +34,12 @@ void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& fr
 
 }  // namespace
 
+Rig rig_for_poses(const Rig& given, Rig found) {
+  for (RigCamera& camera : found.cameras)
+    if (camera.modality == Modality::Events) camera.time_offset = given.camera(camera.name).time_offset;
+  return found;
+}
+
 ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame_name, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how) {

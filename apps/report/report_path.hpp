@@ -31,7 +31,12 @@ struct ReportPath {
   Similarity alignment;                       ///< world of the estimate to the world that is shown
 };
 
-/// body: T_W_B. frame: whose pose is shown without a truth, which has its own frame. samples: empty for a file.
+/// The rig by which poses of its cameras are those of the body: as found by the run. The time offset found for an event
+/// camera contains the latency of its pixels, which no pose has: the given one.
+Rig rig_for_poses(const Rig& given, Rig found);
+
+/// body: T_W_B. rig: as of rig_for_poses. frame: whose pose is shown without a truth, which has its own frame. samples:
+/// empty for a file.
 ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
                           const std::string& frame, const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& how);

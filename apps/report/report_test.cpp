@@ -69,7 +69,7 @@ class Report : public ::testing::Test {
     summary.status = "good";
     const StatesTable states = read_states(folder);
     const Rig& rig = calibration.rig;
-    if (with_truth) evaluate_run(summary, body_poses(states), covariance_samples_of(states), rig, rig, truth);
+    if (with_truth) evaluate_run(summary, body_poses(states), covariance_samples_of(states), rig, truth);
     write_file(folder / "calibration.yaml", to_yaml(calibration));
     write_file(folder / "config_resolved.yaml", options_with_one_changed());
     write_file(folder / "metrics.json", json_text(to_json(summary)));

@@ -29,8 +29,9 @@ class FinalTrajectoryFiles : public RunObserver {
  public:
   explicit FinalTrajectoryFiles(const RunContext& run) : run_(run) {}
   void on_end(const RunEnd& end) override {
-    write_final_trajectory(run_.folder, run_.frame, end.known,
-                           run_.heading("final: corrected by all map matches, not causal"));
+    const OutputFrame frame = run_.found_frame();
+    write_final_trajectory(run_.folder, frame, end.known,
+                           run_.heading(frame, "final: corrected by all map matches, not causal"));
   }
 
  private:

@@ -51,15 +51,6 @@ RunSummary facts_of(const RunContext& run) {
   return summary;
 }
 
-/// The rig that the run found, for the poses of the ground truth. The time offset that was found for an event camera
-/// contains the latency of its pixels, which the ground truth does not have.
-Rig found_for_truth(const Calibration& given, const Rig& found) {
-  Rig rig = with_found(given, found).rig;
-  for (RigCamera& camera : rig.cameras)
-    if (camera.modality == Modality::Events) camera.time_offset = given.rig.camera(camera.name).time_offset;
-  return rig;
-}
-
 }  // namespace
 
 Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
@@ -186,12 +177,10 @@ void Run::compare_with_truth(RunEnd& end) const {
     if (end.in_map_since) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t < *end.in_map_since; });
     return poses;
   };
-  const Rig& rig = run_.source.calibration.rig;
+  const Rig rig = run_.found_rig();
   const StatesTable states = read_states(run_.folder);
   const Trajectory body = in_one_frame(body_poses(states));
-  if (end.truth && !body.empty())
-    evaluate_run(end.summary, body, covariance_samples_of(states), rig,
-                 found_for_truth(run_.source.calibration, run_.odometry.rig()), *end.truth);
+  if (end.truth && !body.empty()) evaluate_run(end.summary, body, covariance_samples_of(states), rig, *end.truth);
   if (end.summary.evaluation) evaluate_final(end.summary, in_one_frame(end.known.poses), rig, *end.truth);
   end.path = lay_onto_truth(body, {}, rig, run_.frame.name(), end.truth, {});
 }

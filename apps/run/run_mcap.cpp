@@ -118,7 +118,7 @@ class McapFile : public RunObserver {
   void on_begin() override { file_.emplace(run_.folder / "results.mcap", run_.odometry.rig(), facts_of_file(run_)); }
   void on_step(const Step& step) override { file_->add(step, run_.album); }
   void on_end(const RunEnd& end) override {
-    const OutputFrame sensor(run_.source.calibration.rig, end.path.frame);
+    const OutputFrame sensor(run_.found_rig(), end.path.frame);
     const SE3 T_estimate_truth = end.path.alignment.T.inverse();
     Trajectory true_body;
     for (const StampedPose& pose : end.path.true_path)

@@ -9,6 +9,7 @@
 
 #include "program.hpp"
 #include "report/report_page.hpp"
+#include "run/verdict.hpp"
 
 namespace edged {
 namespace {
@@ -57,8 +58,12 @@ RunContext::RunContext(const RunOptions& run_options, Source recording, Mode run
       odometry(source.calibration.rig, source.calibration.imu, mode, config.odometry,
                {kInOrder, options.live ? Inference::OwnThread : Inference::Synchronous}) {}
 
-std::vector<std::string> RunContext::heading(const std::string& known_when) const {
-  return {fmt::format("{}; {}", frame.describe(), known_when),
+Rig RunContext::found_rig() const {
+  return rig_for_poses(source.calibration.rig, with_found(source.calibration, odometry.rig()).rig);
+}
+
+std::vector<std::string> RunContext::heading(const OutputFrame& of, const std::string& known_when) const {
+  return {fmt::format("{}; {}", of.describe(), known_when),
           fmt::format("edged {}, recording {}, mode {}", kVersion, info().name, mode_name(mode))};
 }
 

@@ -26,14 +26,18 @@ struct RunContext {
   RunContext(const RunOptions& run_options, Source recording, Mode run_mode, const RunConfig& run_config);
 
   const DatasetInfo& info() const { return source.dataset->info(); }
+  /// The rig for poses of cameras, as found so far.
+  Rig found_rig() const;
+  /// `frame` in that rig.
+  OutputFrame found_frame() const { return {found_rig(), frame.name()}; }
   /// Comments at the head of a trajectory file.
-  std::vector<std::string> heading(const std::string& known_when) const;
+  std::vector<std::string> heading(const OutputFrame& of, const std::string& known_when) const;
 
   const RunOptions& options;
   Source source;
   Mode mode;
   RunConfig config;
-  OutputFrame frame;  ///< whose pose the trajectory files hold
+  OutputFrame frame;  ///< whose pose the trajectory files hold, by the given calibration
   Rig used;           ///< the cameras of the run
   Odometry odometry;
   std::filesystem::path folder, archive;  ///< the second: "" for none

@@ -113,13 +113,13 @@ class SummaryFiles : public RunObserver {
 }  // namespace
 
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& samples,
-                  const Rig& given, const Rig& found, const GroundTruth& truth) {
+                  const Rig& rig, const GroundTruth& truth) {
   try {
-    const OutputFrame frame(given, truth.frame), calibrated(found, truth.frame);
+    const OutputFrame frame(rig, truth.frame);
     const Association association = associate(truth.trajectory, frame(body));
     summary.evaluation = evaluate(association, protocol("P3"));
     Trajectory true_body;
-    for (const StampedPose& pose : truth.trajectory) true_body.push_back(calibrated.to_body(pose));
+    for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
     summary.consistency = check_consistency(true_body, samples);
     summary.truth_offset = fit_time_offset(truth.trajectory, frame(body));
     for (const char* name : {"P1", "P2", "P3", "P4"}) {

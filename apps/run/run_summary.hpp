@@ -73,7 +73,7 @@ struct RunSummary {
 /// run found: a wrong lever arm is no error of the body's pose. Leaves the summary without evaluation, and logs the
 /// reason, if that is not possible.
 void evaluate_run(RunSummary& summary, const Trajectory& body, const std::vector<StateCovarianceSample>& samples,
-                  const Rig& given, const Rig& found, const GroundTruth& truth);
+                  const Rig& rig, const GroundTruth& truth);
 
 /// The same of the final trajectory, which has as many poses.
 void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig, const GroundTruth& truth);

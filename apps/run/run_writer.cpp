@@ -10,6 +10,7 @@
 #include "common/files.hpp"
 #include "common/step_facts.hpp"
 #include "edged/core/check.hpp"
+#include "report/states_table.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {
@@ -65,17 +66,33 @@ std::string state_line(const Step& step) {
   return line + '\n';
 }
 
+constexpr const char* kKnownWhen = "causal: each estimated from the measurements up to its time";
+
 class StatesFiles : public RunObserver {
  public:
   explicit StatesFiles(const RunContext& run) : run_(run) {}
   void on_begin() override {
-    writer_.emplace(run_.folder, run_.frame,
-                    run_.heading("causal: each estimated from the measurements up to its time"));
+    writer_.emplace(run_.folder, run_.frame, run_.heading(run_.frame, kKnownWhen));
     pace_.emplace(run_.folder);
   }
   void on_step(const Step& step) override {
     writer_->add(step);
     pace_->add(step.t, run_.pace);
+  }
+  /// Poses of a camera are written anew, by the calibration that the run found.
+  void on_end(const RunEnd&) override {
+    writer_.reset();
+    if (run_.frame.name() == "body") return;
+    const OutputFrame frame = run_.found_frame();
+    const std::filesystem::path part = run_.folder / "trajectories.part";
+    std::filesystem::create_directory(part);
+    {
+      TrajectoryFiles files(part, run_.heading(frame, kKnownWhen));
+      for (const StampedPose& pose : body_poses(read_states(run_.folder))) files.add(frame(pose));
+      files.flush();
+    }
+    for (const char* name : TrajectoryFiles::kNames) std::filesystem::rename(part / name, run_.folder / name);
+    std::filesystem::remove(part);
   }
 
  private:
@@ -86,12 +103,27 @@ class StatesFiles : public RunObserver {
 
 }  // namespace
 
+TrajectoryFiles::TrajectoryFiles(const std::filesystem::path& folder, const std::vector<std::string>& comments)
+    : tum_(folder / kNames[0], TrajectoryFormat::Tum, comments),
+      euroc_(folder / kNames[1], TrajectoryFormat::EurocCsv, comments),
+      kitti_(folder / kNames[2], TrajectoryFormat::Kitti, {}) {}
+
+void TrajectoryFiles::add(const StampedPose& pose) {
+  tum_.add(pose);
+  euroc_.add(pose);
+  kitti_.add(pose);
+}
+
+void TrajectoryFiles::flush() {
+  tum_.flush();
+  euroc_.flush();
+  kitti_.flush();
+}
+
 RunWriter::RunWriter(const std::filesystem::path& folder, const OutputFrame& frame,
                      const std::vector<std::string>& comments)
     : frame_(frame),
-      tum_(folder / "trajectory.tum", TrajectoryFormat::Tum, comments),
-      euroc_(folder / "trajectory_euroc.csv", TrajectoryFormat::EurocCsv, comments),
-      kitti_(folder / "trajectory.kitti", TrajectoryFormat::Kitti, {}),
+      trajectory_(folder, comments),
       states_file_(folder / "states.csv"),
       states_(open_for_writing(states_file_)) {
   states_ << "# state of the body (IMU) in the world (z up), stamps on the IMU clock, whatever the trajectory's frame\n"
@@ -103,19 +135,14 @@ void RunWriter::add(const Step& step) {
   states_ << state_line(step);
   if (is_tracking(step.status)) {
     ++poses_;
-    const StampedPose pose = frame_({step.t, step.state.T_W_B});
-    tum_.add(pose);
-    euroc_.add(pose);
-    kitti_.add(pose);
+    trajectory_.add(frame_({step.t, step.state.T_W_B}));
   }
   // Each line is flushed: a kill must not leave a partial line.
   flush();
 }
 
 void RunWriter::flush() {
-  tum_.flush();
-  euroc_.flush();
-  kitti_.flush();
+  trajectory_.flush();
   if (!states_.flush()) throw InputError::format("{}: cannot be written; is the disk full?", states_file_.string());
 }
 

@@ -3,6 +3,7 @@
 // The files that grow with every packet: trajectories, states.csv and pace.csv.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -15,7 +16,22 @@
 
 namespace edged {
 
-/// trajectory.tum, trajectory_euroc.csv, trajectory.kitti and states.csv: complete lines up to the last packet,
+/// trajectory.tum, trajectory_euroc.csv and trajectory.kitti.
+class TrajectoryFiles {
+ public:
+  static constexpr std::array kNames{"trajectory.tum", "trajectory_euroc.csv", "trajectory.kitti"};
+  /// comments head the first two.
+  TrajectoryFiles(const std::filesystem::path& folder, const std::vector<std::string>& comments);
+  void add(const StampedPose& pose);
+  void flush();
+
+ private:
+  TrajectoryWriter tum_;
+  TrajectoryWriter euroc_;
+  TrajectoryWriter kitti_;  ///< line i is pose i of the others
+};
+
+/// These and states.csv: complete lines up to the last packet,
 /// whenever the program ends.
 class RunWriter {
  public:
@@ -33,9 +49,7 @@ class RunWriter {
   void flush();
 
   OutputFrame frame_;
-  TrajectoryWriter tum_;
-  TrajectoryWriter euroc_;
-  TrajectoryWriter kitti_;  ///< line i is pose i of the others
+  TrajectoryFiles trajectory_;
   std::filesystem::path states_file_;
   std::ofstream states_;
   std::size_t poses_ = 0;

@@ -10,9 +10,11 @@
 #include <cmath>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/estimator/calibration_prior.hpp"
 #include "edged/survey/run_check.hpp"
 #include "run/run_observer.hpp"
 
@@ -46,28 +48,32 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
                    fmt::format("{}; set time_offset of this camera to {:.4f}", done, 1e-3 * c.time_offset_ms)});
 }
 
+/// "0.0123 +- 0.0012" of a share, "12.3 +- 1.1 mm" of a length: by the unit at the end of its name.
+std::string amount(const CorrectionFound& c) {
+  const std::string unit = c.name.ends_with("_mm") ? " mm" : c.name.ends_with("_px") ? " px" : " %";
+  if (c.name.find('_') == std::string::npos) return fmt::format("{:+.4f} +- {:.4f}", c.off, c.sigma);
+  return fmt::format("{:+.2f} +- {:.2f}{}", c.off, c.sigma, unit);
+}
+
+/// Lens and position beyond three sigma of what is given and of the estimate. A run corrects them, but begins wrong.
+void judge_lens_and_position(const CalibrationFound& c, std::vector<Finding>& out) {
+  std::string list;
+  for (const CorrectionFound& number : c.corrections) {
+    if (!number.beyond()) continue;
+    const std::string what = number.name.substr(0, number.name.find('_'));
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", what, amount(number));
+  }
+  if (list.empty()) return;
+  out.push_back({Severity::Warning, fmt::format("camera {}: differs from the calibration by {}", c.camera, list),
+                 "the run has corrected it; pass calibration_found.yaml of this run with --calib, or calibrate anew"});
+}
+
 /// Calibrations are accurate to a degree: smaller rotations do not determine the direction. The inverse must be far
 /// closer.
 bool fits_inverse(const SE3& given, const SE3& found, double found_deg, double sigma_deg) {
   constexpr double kLeast_deg = 1.0, kSigmas = 4.0, kNearer = 0.4;
   const double inverse_deg = kDegreesPerRadian * so3::log(given.rotation() * found.rotation()).norm();
   return found_deg > std::max(kLeast_deg, kSigmas * sigma_deg) && inverse_deg < kNearer * found_deg;
-}
-
-/// Of lens and position.
-std::vector<CorrectionFound> corrections_of(const RigCamera& given, const RigCamera& found,
-                                            const CalibrationCovariance& P) {
-  const CameraModel &before = given.model, &now = found.model;
-  const Eigen::Vector3d moved_mm = 1e3 * (found.T_B_C.translation() - given.T_B_C.translation());
-  const auto sigma = [&](Eigen::Index i, double unit) { return unit * std::sqrt(P(i, i)); };
-  return {{"x_mm", moved_mm.x(), sigma(4, 1e3)},
-          {"y_mm", moved_mm.y(), sigma(5, 1e3)},
-          {"z_mm", moved_mm.z(), sigma(6, 1e3)},
-          {"fx_percent", 100.0 * (now.fx() / before.fx() - 1.0), sigma(7, 100.0)},
-          {"fy_percent", 100.0 * (now.fy() / before.fy() - 1.0), sigma(8, 100.0)},
-          {"cx_px", now.cx() - before.cx(), sigma(9, before.fx())},
-          {"cy_px", now.cy() - before.cy(), sigma(10, before.fy())},
-          {"k1", now.coefficients()[0] - before.coefficients()[0], sigma(11, 1.0)}};
 }
 
 /// Inconsistencies appear in the biases first.
@@ -234,6 +240,29 @@ class RunJudge : public RunObserver {
 
 }  // namespace
 
+std::vector<CorrectionFound> corrections_of(const RigCamera& given, const RigCamera& found,
+                                            const CalibrationCovariance& P, const CalibrationConfig& config) {
+  using namespace calibration_at;
+  const CalibrationVector off = correction_between(given, found), prior = calibration_sigmas(config, given.model);
+  const double fx = given.model.fx(), fy = given.model.fy();
+  struct Number {
+    std::string name;
+    Eigen::Index at;
+    double unit;
+  };
+  std::vector<Number> numbers{{"x_mm", kLeverArm, 1e3},          {"y_mm", kLeverArm + 1, 1e3},
+                              {"z_mm", kLeverArm + 2, 1e3},      {"fx_percent", kFocal, 100.0},
+                              {"fy_percent", kFocal + 1, 100.0}, {"cx_px", kCentre, fx},
+                              {"cy_px", kCentre + 1, fy}};
+  const std::vector<std::string_view> coefficients = coefficient_names(lens_model(given.model.distortion()));
+  for (int i = 0; i < corrected_coefficients(given.model); ++i)
+    numbers.push_back({std::string(coefficients[static_cast<std::size_t>(i)]), kDistortion + i, 1.0});
+  std::vector<CorrectionFound> out;
+  for (const auto& [name, at, unit] : numbers)
+    out.push_back({name, unit * off[at], unit * std::sqrt(P(at, at)), unit * prior[at]});
+  return out;
+}
+
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config) {
   constexpr double kBeyond = 4.0;  // sigmas of the prior
@@ -252,15 +281,15 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& o
                    std::abs(found.time_offset_ms - found.given_offset_ms) > kBeyond * config.time_offset_sigma_ms;
     found.events = camera.modality == Modality::Events;
     if (const auto P = odometry.calibration_covariance(camera.name)) {
-      const Eigen::Matrix3d rotation = P->topLeftCorner<3, 3>();
+      const Eigen::Matrix3d rotation = P->block<3, 3>(calibration_at::kRotation, calibration_at::kRotation);
       // Of the estimated angle; if that is zero, of the least certain axis.
       const Eigen::Vector3d axis = turned.normalized();
       const double variance = turned.norm() > 0.0
                                   ? axis.dot(rotation * axis)
                                   : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation).eigenvalues()[2];
       found.rotation_sigma_deg = kDegreesPerRadian * std::sqrt(variance);
-      found.time_sigma_ms = 1e3 * std::sqrt((*P)(3, 3));
-      found.corrections = corrections_of(before, camera, *P);
+      found.time_sigma_ms = 1e3 * std::sqrt((*P)(calibration_at::kTime, calibration_at::kTime));
+      found.corrections = corrections_of(before, camera, *P, config);
       found.inverse = fits_inverse(before.T_B_C, camera.T_B_C, found.rotation_deg, *found.rotation_sigma_deg);
     }
     out.push_back(found);
@@ -286,7 +315,10 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
   const RunStatistics& statistics = s.statistics;
   const bool ever_good = statistics.first_good_s().has_value();
   if (!imu_unusable(verdict.findings))
-    for (const CalibrationFound& found : s.calibration) judge_calibration(found, verdict.findings);
+    for (const CalibrationFound& found : s.calibration) {
+      judge_calibration(found, verdict.findings);
+      judge_lens_and_position(found, verdict.findings);
+    }
   if (ever_good) {
     judge_losses(statistics, verdict.findings);
     if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);

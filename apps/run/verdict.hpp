@@ -19,6 +19,10 @@ namespace edged {
 std::vector<CalibrationFound> compare_calibrations(const Rig& given, Odometry& odometry,
                                                    const CalibrationConfig& config);
 
+/// Of position and lens: what was found of a camera minus what is given.
+std::vector<CorrectionFound> corrections_of(const RigCamera& given, const RigCamera& found,
+                                            const CalibrationCovariance& P, const CalibrationConfig& config);
+
 /// The given calibration with the estimated lens, pose and clock of these cameras. Other cameras behind the same lens
 /// get its lens and pose, and so remain behind one lens in the next run.
 Calibration with_found(Calibration given, const Rig& found);

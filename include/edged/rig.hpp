@@ -20,13 +20,14 @@ namespace edged {
 
 enum class DistortionModel {
   None,
-  RadTan,          ///< Brown: k1, k2, p1, p2 [, k3]
-  Equidistant,     ///< Kannala-Brandt: k1..k4
-  Rational,        ///< OpenCV: k1, k2, p1, p2, k3..k6
-  FieldOfView,     ///< Devernay: w
-  Omni,            ///< Mei, with Brown's distortion: xi [, k1, k2, p1, p2]
-  DoubleSphere,    ///< Usenko: xi, alpha
-  ExtendedUnified  ///< Khomutenko: alpha, beta
+  RadTan,           ///< Brown: k1, k2, p1, p2 [, k3]
+  Equidistant,      ///< Kannala-Brandt: k1..k4
+  Rational,         ///< OpenCV: k1, k2, p1, p2, k3..k6
+  FieldOfView,      ///< Devernay: w
+  Omni,             ///< Mei, with Brown's distortion: xi [, k1, k2, p1, p2]
+  DoubleSphere,     ///< Usenko: xi, alpha
+  ExtendedUnified,  ///< Khomutenko: alpha, beta
+  OmniEquidistant   ///< Mei's sphere, then Kannala-Brandt on its plane: xi, k1..k4
 };
 
 inline constexpr std::size_t kMostLensCoefficients = 8;
@@ -145,9 +146,17 @@ struct RigCamera {
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };
 
-/// Covariance of the calibration of a camera: rotation about its axes [rad], time offset [s], position in the body [m],
-/// ln fx, ln fy, principal point over the focal lengths, first distortion coefficient.
-using CalibrationCovariance = Eigen::Matrix<double, 12, 12>;
+/// What is estimated of a camera's calibration, and where it is in its covariance.
+namespace calibration_at {
+inline constexpr int kRotation = 0;     ///< three, about the camera's axes [rad]
+inline constexpr int kTime = 3;         ///< offset [s]
+inline constexpr int kLeverArm = 4;     ///< three, position in the body [m]
+inline constexpr int kFocal = 7;        ///< two, ln fx and ln fy
+inline constexpr int kCentre = 9;       ///< two, principal point over the focal lengths
+inline constexpr int kDistortion = 11;  ///< two, the first coefficients of the lens; zero where it has fewer
+inline constexpr int kSize = 13;
+}  // namespace calibration_at
+using CalibrationCovariance = Eigen::Matrix<double, calibration_at::kSize, calibration_at::kSize>;
 
 /// A run uses the first event camera and the first frame camera, or those that the option `cameras` names.
 struct Rig {

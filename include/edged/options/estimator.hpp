@@ -18,10 +18,11 @@ struct CalibrationConfig {
   double rotation_sigma_deg = 1.0;
   double time_offset_sigma_ms = 8.0;
   double lever_arm_sigma_mm = 4.0;
-  double focal_sigma = 4e-3;                 ///< of ln fx and ln fy
-  double principal_point_sigma_px = 1.0;     ///< of each coordinate
-  double distortion_sigma = 0.01;            ///< of the first coefficient
-  double imu_sigma = 5e-3;                   ///< of each entry of the IMU's intrinsics
+  double focal_sigma = 4e-3;              ///< of ln fx and ln fy
+  double principal_point_sigma_px = 1.0;  ///< of each coordinate
+  double distortion_sigma =
+      0.01;                 ///< of the first coefficient; the second's has the same effect at the rim of the image
+  double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
   double relative_rotation_sigma_deg = 0.2;  ///< of a camera and the first one of its kind
   double baseline_sigma_mm = 1.0;            ///< between them
   /// All as given.

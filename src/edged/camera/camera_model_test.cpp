@@ -47,6 +47,8 @@ std::vector<NamedCamera> all_cameras() {
       {"omni_without_distortion", CameraModel(346, 260, 300, 301, 170, 131, DistortionModel::Omni, {0.8})},
       {"ds", CameraModel(640, 480, 310, 311, 322, 239, DistortionModel::DoubleSphere, {-0.18, 0.59})},
       {"eucm", CameraModel(640, 480, 330, 331, 322, 239, DistortionModel::ExtendedUnified, {0.61, 1.08})},
+      {"omni_equidistant",
+       CameraModel(640, 480, 600, 601, 322, 239, DistortionModel::OmniEquidistant, {1.1, 0.05, -0.02, 0.01, -0.002})},
       {"fisheye_150_degrees",
        CameraModel(640, 480, 300, 301, 322, 239, DistortionModel::Equidistant, {0.01, -0.004, 0.002, -0.0003, 0.0})},
   };
@@ -162,7 +164,7 @@ TEST(LensTable, HasOneRowAModelThatEachOfItsNamesFinds) {
         << lens.name << " has no camera in these tests";
   }
   EXPECT_EQ(find_lens_model(""), nullptr);
-  EXPECT_EQ(lens_model_names(), "none, radtan, equidistant, rational, fov, omni, ds, eucm");
+  EXPECT_EQ(lens_model_names(), "none, radtan, equidistant, rational, fov, omni, ds, eucm, omni-equidistant");
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryCamera, testing::ValuesIn(all_cameras()),

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -53,8 +54,14 @@ ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& mo
   by_pixel(1, 1) = at.point.y();
   by_pixel(0, 2) = given.fx() / model.fx();
   by_pixel(1, 3) = given.fy() / model.fy();
-  if (lens.by_coefficients) by_pixel.col(4) = lens.by_coefficients(model.coefficients(), point).col(0);
+  if (const int corrected = corrected_coefficients(model); corrected > 0)
+    by_pixel.middleCols(kCoefficientsAt, corrected) =
+        lens.by_coefficients(model.coefficients(), point).leftCols(corrected);
   return -at.d_point.inverse() * by_pixel;
+}
+
+int corrected_coefficients(const CameraModel& camera) {
+  return std::min(kCorrectedCoefficients, static_cast<int>(lens_model(camera.distortion()).most));
 }
 
 Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point) {
@@ -73,7 +80,8 @@ Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, con
 std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction) {
   if (correction.isZero(0.0)) return given;
   LensCoefficients k = given.coefficients();
-  if (given.distortion() != DistortionModel::None) k[0] += correction[4];
+  for (int i = 0; i < corrected_coefficients(given); ++i)
+    k[static_cast<std::size_t>(i)] += correction[kCoefficientsAt + i];
   try {
     CameraModel model(given.width(), given.height(), given.fx() * std::exp(correction[0]),
                       given.fy() * std::exp(correction[1]), given.cx() + given.fx() * correction[2],

@@ -10,14 +10,19 @@
 
 namespace edged {
 
-/// ln of fx and of fy, principal point over the given focal lengths, k1: all are shares of the field of view.
-inline constexpr int kIntrinsics = 5;
+/// ln of fx and of fy, principal point over the given focal lengths, the first two coefficients of the lens: all are
+/// shares of the field of view.
+inline constexpr int kIntrinsics = 6;
+inline constexpr int kCorrectedCoefficients = 2, kCoefficientsAt = kIntrinsics - kCorrectedCoefficients;
 using IntrinsicsCorrection = Eigen::Matrix<double, kIntrinsics, 1>;
 using ByIntrinsics = Eigen::Matrix<double, 2, kIntrinsics>;
 
 /// The derivative by the corrections of the point at which a pixel lies (C8); `model`: the given one with corrections,
-/// `point`: by that model. A lens without distortion has no k1.
+/// `point`: by that model. Zero for coefficients that the lens lacks.
 ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& model, const Eigen::Vector2d& point);
+
+/// How many coefficients of the lens are corrected.
+int corrected_coefficients(const CameraModel& camera);
 
 /// The point by `model` of the pixel that `given` sees at `point`; the two are within a few percent of each other.
 Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point);

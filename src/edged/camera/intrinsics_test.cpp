@@ -47,7 +47,7 @@ TEST(Intrinsics, DerivativeOfAPointByCorrectionsMatchesDifferences) {
     for (const Eigen::Vector2d& pixel :
          {Eigen::Vector2d(5, 7), Eigen::Vector2d(100, 60), Eigen::Vector2d(235, 170), Eigen::Vector2d(210, 9)}) {
       const ByIntrinsics by = point_by_intrinsics(camera, camera, camera.pixel_to_point(pixel));
-      const int known = camera.distortion() == DistortionModel::None ? 4 : kIntrinsics;
+      const int known = kCoefficientsAt + corrected_coefficients(camera);
       for (int i = 0; i < known; ++i) {
         const IntrinsicsCorrection step = 1e-5 * IntrinsicsCorrection::Unit(i);
         const Eigen::Vector2d numeric = (corrected_model(camera, step)->pixel_to_point(pixel) -
@@ -60,12 +60,12 @@ TEST(Intrinsics, DerivativeOfAPointByCorrectionsMatchesDifferences) {
 }
 
 TEST(Intrinsics, DerivativeAtACorrectedModelMatchesDifferences) {
-  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022, -0.015);
   for (const CameraModel& camera : corrected_cameras()) {
     const Eigen::Vector2d pixel(200, 150);
     const CameraModel model = *corrected_model(camera, off);
     const ByIntrinsics by = point_by_intrinsics(camera, model, model.pixel_to_point(pixel));
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < kCoefficientsAt + corrected_coefficients(camera); ++i) {
       const IntrinsicsCorrection step = 1e-5 * IntrinsicsCorrection::Unit(i);
       const Eigen::Vector2d numeric = (corrected_model(camera, off + step)->pixel_to_point(pixel) -
                                        corrected_model(camera, off - step)->pixel_to_point(pixel)) /
@@ -76,7 +76,7 @@ TEST(Intrinsics, DerivativeAtACorrectedModelMatchesDifferences) {
 }
 
 TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
-  const IntrinsicsCorrection off(1e-3, -1e-3, 1e-3, -1e-3, 2e-3);
+  const IntrinsicsCorrection off(1e-3, -1e-3, 1e-3, -1e-3, 2e-3, -1e-3);
   for (const CameraModel& camera : corrected_cameras()) {
     const CameraModel corrected = *corrected_model(camera, off);
     for (const Eigen::Vector2d& pixel :
@@ -89,7 +89,7 @@ TEST(Intrinsics, PointsOfCorrectedModelsAreThoseOfTheirDerivativeToFirstOrder) {
 }
 
 TEST(Intrinsics, PointsByACorrectedModelAreThoseOfTheirPixels) {
-  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022, -0.015);
   for (const CameraModel& camera : corrected_cameras()) {
     const CameraModel model = *corrected_model(camera, off);
     for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(20, 20), Eigen::Vector2d(100, 60), Eigen::Vector2d(235, 170)})
@@ -98,7 +98,7 @@ TEST(Intrinsics, PointsByACorrectedModelAreThoseOfTheirPixels) {
 }
 
 TEST(Intrinsics, TheModelOfAnUndistortedImageFollowsItsLens) {
-  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022);
+  const IntrinsicsCorrection off(0.01, -0.01, 0.01, -0.01, 0.022, -0.015);
   for (const CameraModel& camera : corrected_cameras()) {
     const CameraModel ideal = ideal_pinhole(camera), image = *corrected_image_model(ideal, camera, off),
                       lens = *corrected_model(camera, off);
@@ -123,7 +123,7 @@ TEST(Intrinsics, CorrectedModelKeepsMaskAndViewLimit) {
 TEST(Intrinsics, ACorrectionThatNoLensHasIsNotApplied) {
   const CameraModel camera = corrected_cameras()[1];
   IntrinsicsCorrection off = IntrinsicsCorrection::Zero();
-  off[4] = -1.5;  // turns back within the image
+  off[kCoefficientsAt] = -1.5;  // turns back within the image
   EXPECT_FALSE(corrected_model(camera, off));
   EXPECT_EQ(corrected_model(camera, IntrinsicsCorrection::Zero()), camera);
 }

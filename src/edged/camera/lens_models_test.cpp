@@ -33,6 +33,12 @@ Vector2d project_omni(const LensCoefficients& k, const Vector3d& p) {
          Vector2d(2.0 * k[3] * x * y + k[4] * (r2 + 2.0 * x * x), k[3] * (r2 + 2.0 * y * y) + 2.0 * k[4] * x * y);
 }
 
+Vector2d project_omni_equidistant(const LensCoefficients& k, const Vector3d& p) {
+  const Vector2d m = p.head<2>() / (p.z() + k[0] * p.norm());
+  const double theta = std::atan(m.norm()), t2 = theta * theta;
+  return theta * (1.0 + t2 * (k[1] + t2 * (k[2] + t2 * (k[3] + t2 * k[4])))) / m.norm() * m;
+}
+
 Vector2d project_double_sphere(const LensCoefficients& k, const Vector3d& p) {
   const double d1 = p.norm(), z = k[0] * d1 + p.z(), d2 = std::sqrt(p.head<2>().squaredNorm() + z * z);
   return p.head<2>() / (k[1] * d2 + (1.0 - k[1]) * z);
@@ -53,6 +59,7 @@ const std::vector<WideLens>& wide_lenses() {
   static const std::vector<WideLens> lenses{
       {DistortionModel::FieldOfView, {0.95}, project_fov},
       {DistortionModel::Omni, {1.1, -0.05, 0.01, 3e-3, -2e-3}, project_omni},
+      {DistortionModel::OmniEquidistant, {1.1, 0.05, -0.02, 0.01, -0.002}, project_omni_equidistant},
       {DistortionModel::DoubleSphere, {-0.2, 0.6}, project_double_sphere},
       {DistortionModel::ExtendedUnified, {0.65, 1.05}, project_extended_unified},
   };

@@ -11,6 +11,7 @@
 #include "edged/camera/lenses/extended_unified.hpp"
 #include "edged/camera/lenses/fov.hpp"
 #include "edged/camera/lenses/omni.hpp"
+#include "edged/camera/lenses/omni_equidistant.hpp"
 #include "edged/camera/lenses/radtan.hpp"
 #include "edged/camera/lenses/rational.hpp"
 
@@ -19,8 +20,8 @@ namespace {
 
 constexpr LensModel kNoDistortion{.model = DistortionModel::None, .name = "none", .coefficients = "", .also = {"no"}};
 
-constexpr std::array kLensModels{kNoDistortion, kRadTan, kEquidistant,  kRational,
-                                 kFieldOfView,  kOmni,   kDoubleSphere, kExtendedUnified};
+constexpr std::array kLensModels{kNoDistortion, kRadTan,       kEquidistant,     kRational,       kFieldOfView,
+                                 kOmni,         kDoubleSphere, kExtendedUnified, kOmniEquidistant};
 
 }  // namespace
 
@@ -37,6 +38,18 @@ const LensModel* find_lens_model(std::string_view name) {
     return lens.name == name || (!name.empty() && std::ranges::find(lens.also, name) != lens.also.end());
   });
   return found == kLensModels.end() ? nullptr : &*found;
+}
+
+std::vector<std::string_view> coefficient_names(const LensModel& lens) {
+  constexpr std::string_view kBetween = " []";
+  std::vector<std::string_view> names;
+  for (std::string_view rest = lens.coefficients; !rest.empty();) {
+    const std::size_t begin = std::min(rest.find_first_not_of(kBetween), rest.size()),
+                      end = std::min(rest.find_first_of(kBetween, begin), rest.size());
+    if (end > begin) names.push_back(rest.substr(begin, end - begin));
+    rest.remove_prefix(end);
+  }
+  return names;
 }
 
 std::string lens_model_names() {

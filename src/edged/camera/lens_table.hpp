@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "edged/camera/lens_model.hpp"
 
@@ -20,6 +21,9 @@ const LensModel* find_lens_model(std::string_view name);
 
 /// Both steps of a lens at a point of the unit plane.
 Distorted distorted(const LensModel& lens, const LensCoefficients& k, const Eigen::Vector2d& point);
+
+/// In the order of the model, also those that may be missing.
+std::vector<std::string_view> coefficient_names(const LensModel& lens);
 
 /// "none, radtan, ...", for messages.
 std::string lens_model_names();

@@ -33,8 +33,6 @@ constexpr double kRestGyroBiasSigma = 5e-4;
 // Times an observation's sigma, where the gyro is saturated: images blur, features are tracked without its prediction,
 // and errors common to an image, which the gyro otherwise outweighs, rotate the estimate.
 constexpr double kUnseenTurnNoise = 6.0;
-// Of sigmas, events alone, times that of the options: dynamic objects mislead them more easily.
-constexpr double kEventsAloneInflation = 1.4;
 
 /// Biases beyond those of such sensors, a speed beyond the intended use, or values that are not finite.
 bool plausible(const OdomState& state) {

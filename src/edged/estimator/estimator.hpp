@@ -18,6 +18,9 @@
 
 namespace edged {
 
+/// Of sigmas, events alone, times that of the options: dynamic objects mislead them more easily.
+inline constexpr double kEventsAloneInflation = 1.4;
+
 struct EstimatorResult {
   std::string waiting_for;          ///< while not initialised: what is missing, with numbers
   std::vector<FeatureId> outliers;  ///< outlier tracks, which should end

@@ -66,9 +66,11 @@ void CalibrationConfig::visit(ConfigFields& fields) {
              {"1", 0, 0.1, "Prior relative uncertainty of each camera's focal lengths. 0 keeps the given values."});
   fields.add("principal_point_sigma_px", principal_point_sigma_px,
              {"px", 0, 50, "Prior uncertainty of each camera's principal point. 0 keeps the given value."});
-  fields.add(
-      "distortion_sigma", distortion_sigma,
-      {"1", 0, 0.5, "Prior uncertainty of the first distortion coefficient of each camera. 0 keeps the given value."});
+  fields.add("distortion_sigma", distortion_sigma,
+             {"1", 0, 0.5,
+              "Prior uncertainty of the first distortion coefficient of each camera; that of the second is as large at "
+              "the rim of "
+              "the image. 0 keeps the given values."});
   fields.add("relative_rotation_sigma_deg", relative_rotation_sigma_deg,
              {"deg", 0.001, 10, "Prior uncertainty of the rotation between a camera and the first one of its kind."});
   fields.add(

@@ -54,13 +54,20 @@ WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& er
   return out;
 }
 
-/// J^T J, of its lower triangle the blocks of six.
+/// J^T J, of its lower triangle the blocks of six, and the rows that are left over.
 template <int Size>
 void add_lower(const Transposed<Size>& J, Eigen::Matrix<double, Size, Size>& H) {
-  static_assert(Size % 6 == 0);
-  for (int i = 0; i < Size; i += 6) {
+  constexpr int kWhole = Size / 6 * 6, kRest = Size - kWhole;
+  for (int i = 0; i < kWhole; i += 6) {
     const Transposed<6> row = J.template middleRows<6>(i);
     for (int j = 0; j <= i; j += 6) H.template block<6, 6>(i, j) += product<6, 6>(row, J.template middleRows<6>(j));
+  }
+  if constexpr (kRest > 0) {
+    for (int j = 0; j < kWhole; j += 6)
+      H.template block<kRest, 6>(kWhole, j) +=
+          product<kRest, 6>(J.template bottomRows<kRest>(), J.template middleRows<6>(j));
+    H.template block<kRest, kRest>(kWhole, kWhole) +=
+        product<kRest, kRest>(J.template bottomRows<kRest>(), J.template bottomRows<kRest>());
   }
 }
 

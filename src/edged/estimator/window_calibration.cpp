@@ -2,25 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The calibrations in the window: cameras and IMU.
 #include <algorithm>
-#include <numbers>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/estimator/calibration_prior.hpp"
 #include "edged/estimator/relative_pose_prior.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
 namespace {
-
-CalibrationVector sigmas_of(const CalibrationConfig& config, const CameraModel& model) {
-  CalibrationVector sigmas;
-  sigmas.head<3>().setConstant(config.rotation_sigma_deg * std::numbers::pi / 180.0);
-  sigmas[kTimeAt] = config.time_offset_sigma_ms * 1e-3;
-  sigmas.segment<3>(kLeverArmAt).setConstant(config.lever_arm_sigma_mm * 1e-3);
-  const double centre = config.principal_point_sigma_px;
-  sigmas.tail<kIntrinsics>() << config.focal_sigma, config.focal_sigma, centre / model.fx(), centre / model.fy(),
-      config.distortion_sigma;
-  return sigmas;
-}
 
 /// All corrections of two cameras but the time are equal: those of rotation and lens to 1e-4, of the lever arm to 0.1
 /// mm.
@@ -106,11 +95,13 @@ void Window::free_calibration(const CalibrationConfig& config) {
   std::erase_if(soft_priors_, [](const auto& soft) { return is_calibration(soft->blocks().front()); });
   for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
     const WindowCamera& of = cameras_[camera];
-    CalibrationVector sigmas = sigmas_of(config, of.given.model);
+    CalibrationVector sigmas = calibration_sigmas(config, of.given.model);
     if (of.given.modality == Modality::Events && std::ranges::none_of(cameras_, [&](const WindowCamera& other) {
           return other.given.modality == Modality::Frames && is_same_lens(of.given, other.given);
-        }))
+        })) {
       sigmas.segment<2>(kCentreAt).setZero();  // events alone do not tell its shift from a rotation of the camera
+      sigmas[calibration_at::kDistortion + 1] = 0.0;  // nor the second coefficient from the first
+    }
     const auto twin =
         std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
                              [&](const WindowCamera& other) { return is_same_lens(of.given, other.given); });

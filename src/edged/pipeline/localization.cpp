@@ -45,6 +45,7 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       rig_(without_offsets(given_rig_)),
       intrinsics_(cameras.cameras.size(), IntrinsicsCorrection::Zero()),
       image_models_(cameras.cameras.size()),
+      lens_models_(cameras.cameras.size()),
       timings_(&timings),
       estimator_(fresh_estimator()),
       mapper_(config.map, config.status.lost_after_s),
@@ -128,10 +129,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   if (!estimator_.initialized()) return result;
   const SE3 T_new_old = body_.correct(estimator_.newest(), result.new_frame);
   if (result.new_frame) correction.T_new_old = T_new_old;
-  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
-    rig_.cameras[camera] = estimator_.window().calibrated(camera);
-    intrinsics_[camera] = estimator_.window().intrinsics(camera);
-  }
+  take_calibrations();
   correction.cameras = rig_.cameras;
   correction.landmarks = landmark_depths();
   // The drift of the map filter is that of an odometry with a gyro: without one, the pose is as uncertain as after a
@@ -142,6 +140,16 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     mapper_.doubt(body_.now());
   }
   return result;
+}
+
+void Localization::take_calibrations() {
+  constexpr double kMoved = 1e-5;  // a few thousandths of a pixel
+  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
+    rig_.cameras[camera] = estimator_.window().calibrated(camera);
+    intrinsics_[camera] = estimator_.window().intrinsics(camera);
+    if (!lens_models_[camera].holds(intrinsics_[camera], kMoved))
+      lens_models_[camera] = {intrinsics_[camera], estimator_.window().model(camera)};
+  }
 }
 
 LandmarkDepths Localization::landmark_depths() const {
@@ -167,9 +175,9 @@ std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::ve
 
 const CameraModel& Localization::image_model(std::size_t camera, const CameraModel& given) {
   constexpr double kMoved = 2e-4;
-  ImageModel& known = image_models_[camera];
+  KnownModel& known = image_models_[camera];
   const IntrinsicsCorrection& now = intrinsics_[camera];
-  if (!known.model || (now - known.intrinsics).cwiseAbs().maxCoeff() > kMoved) {
+  if (!known.holds(now, kMoved)) {
     const std::optional<CameraModel> corrected = corrected_image_model(given, rig_.cameras[camera].model, now);
     known = {now, corrected ? *corrected : known.model.value_or(given)};
   }
@@ -232,8 +240,7 @@ void Localization::update_covariance(Timestamp t) {
 Rig Localization::rig() const {
   Rig rig = rig_;
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
-    rig.cameras[camera].model =
-        corrected_model(rig.cameras[camera].model, intrinsics_[camera]).value_or(rig.cameras[camera].model);
+    if (lens_models_[camera].model) rig.cameras[camera].model = *lens_models_[camera].model;
     rig.cameras[camera].time_offset += given_rig_.cameras[camera].time_offset;
   }
   return rig;

@@ -61,6 +61,7 @@ class Localization {
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
   std::size_t mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const;
+  void take_calibrations();
   const CameraModel& image_model(std::size_t camera, const CameraModel& given);
   void update_covariance(Timestamp t);
   Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
@@ -70,12 +71,16 @@ class Localization {
   Rig given_rig_;  ///< the cameras of the run
   Rig rig_;        ///< the same with online calibration of poses and clocks; with residual time offsets
   std::vector<IntrinsicsCorrection> intrinsics_;  ///< of rig_'s cameras, estimated
-  /// The model of a camera's images with corrections: for the map, whose points have them.
-  struct ImageModel {
+  /// A model with corrections, made anew once these have moved.
+  struct KnownModel {
     IntrinsicsCorrection intrinsics = IntrinsicsCorrection::Zero();
     std::optional<CameraModel> model;
+    bool holds(const IntrinsicsCorrection& now, double most_off) const {
+      return model && (now - intrinsics).cwiseAbs().maxCoeff() <= most_off;
+    }
   };
-  std::vector<ImageModel> image_models_;
+  std::vector<KnownModel> image_models_;  ///< of the cameras' images: for the map, whose points have them
+  std::vector<KnownModel> lens_models_;   ///< of the cameras: for rig(), which the ROS node calls at each step
   StageTimings* timings_;
   Estimator estimator_;
   ExternalCounters counters_before_;  ///< by the estimators before

@@ -118,14 +118,7 @@ double SimulatedCameraConfig::coefficient(std::string_view name) const {
 CameraModel SimulatedCameraConfig::model() const {
   LensCoefficients k{};
   std::size_t count = 0;
-  std::string_view names = lens_model(distortion).coefficients;
-  while (!names.empty()) {
-    const std::size_t begin = names.find_first_not_of(" []"),
-                      end = std::min(names.find_first_of(" ]", begin), names.size());
-    if (begin == std::string_view::npos) break;
-    k.at(count++) = coefficient(names.substr(begin, end - begin));
-    names.remove_prefix(end);
-  }
+  for (const std::string_view name : coefficient_names(lens_model(distortion))) k.at(count++) = coefficient(name);
   return {width, height, fx, fy, cx, cy, distortion, k};
 }
 

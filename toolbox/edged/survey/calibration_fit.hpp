@@ -3,6 +3,7 @@
 // Compares the calibration estimated by a run with the given one.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@ namespace edged {
 struct CorrectionFound {
   std::string name;  ///< with the unit
   double off = 0.0, sigma = 0.0;
+  double prior = 0.0;  ///< sigma of the given number; 0: it is no finding of its own
+
+  /// Beyond three sigma of what is given and of the estimate.
+  bool beyond() const { return prior > 0.0 && std::abs(off) > 3.0 * std::hypot(prior, sigma); }
 };
 
 /// The estimated error of a camera's calibration.

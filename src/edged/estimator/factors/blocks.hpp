@@ -24,10 +24,11 @@ using MotionBlock = std::array<double, 9>;
 
 /// Correction of a camera's calibration: rotation phi [rad] with R_B_C = R_B_C,given * Exp(phi); time [s] with
 /// t_imu = t_given + time; lever arm [m] with t_B_C = t_B_C,given + it; intrinsics (IntrinsicsCorrection).
-inline constexpr int kTimeAt = 3, kLeverArmAt = 4, kIntrinsicsAt = 7, kCalibrationSize = kIntrinsicsAt + kIntrinsics;
-inline constexpr int kCentreAt = kIntrinsicsAt + 2;  ///< the principal point
+inline constexpr int kTimeAt = calibration_at::kTime, kLeverArmAt = calibration_at::kLeverArm,
+                     kIntrinsicsAt = calibration_at::kFocal, kCentreAt = calibration_at::kCentre,
+                     kCalibrationSize = calibration_at::kSize;
+static_assert(kCalibrationSize == kIntrinsicsAt + kIntrinsics);
 using CalibrationBlock = std::array<double, kCalibrationSize>;
-static_assert(kCalibrationSize == CalibrationCovariance::RowsAtCompileTime);
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 
 /// Errors of scale and axes of the IMU: E_g row by row, then E_a. measured = (I + E) true + bias.

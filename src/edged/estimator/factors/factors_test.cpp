@@ -70,7 +70,8 @@ TEST(StandstillFactor, JacobiansMatchCentralDifferences) {
 }
 
 const std::vector<double> kExact(kCalibrationSize, 0.0);
-const std::vector<double> kOff{0.03, -0.02, 0.04, 0.012, 0.02, -0.01, 0.015, 0.01, -0.02, 0.005, -0.008, 0.02};
+const std::vector<double> kOff{0.03, -0.02, 0.04, 0.012, 0.02, -0.01, 0.015, 0.01, -0.02, 0.005, -0.008, 0.02, -0.015};
+static_assert(kCalibrationSize == 13, "one number here, and in every list of these tests");
 ByIntrinsics by_intrinsics_of(const CameraModel& camera, const Eigen::Vector2d& point) {
   return point_by_intrinsics(camera, camera, point);
 }
@@ -117,7 +118,7 @@ TEST(LandmarkFactor, JacobiansOfAnotherCameraMatchCentralDifferences) {
   const std::vector<SE3> T_B_C = {SE3(so3::exp({0.02, -0.01, 1.5}), {0.05, -0.02, 0.03}),
                                   SE3(so3::exp({-0.03, 0.04, 1.4}), {-0.06, 0.01, 0.02})};
   const std::vector<double> one = kOff,
-                            other{-0.01, 0.03, 0.02, -0.008, 0.01, 0.02, -0.03, -0.01, 0.01, 0.004, 0.007, 0.03};
+                            other{-0.01, 0.03, 0.02, -0.008, 0.01, 0.02, -0.03, -0.01, 0.01, 0.004, 0.007, 0.03, -0.02};
   const BodyRate rate_0{{0.5, -1.2, 0.8}, {1.0, -0.4, 0.3}}, rate_1{{-0.7, 0.9, 0.4}, {0.8, 0.2, -0.6}},
       rate_2{{0.3, 0.2, -0.9}, {-0.5, 0.7, 0.1}};
   const auto pose_0 = pose({0.1, 0.2, -0.1}, {1, 0.5, 0.2}), pose_1 = pose({0.15, 0.15, -0.05}, {1.1, 0.45, 0.22}),

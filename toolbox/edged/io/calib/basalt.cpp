@@ -36,6 +36,7 @@ const std::vector<BasaltType>& basalt_types() {
       {"kb4", "equidistant", {"k1", "k2", "k3", "k4"}},
       {"ds", "ds", {"xi", "alpha"}},
       {"eucm", "eucm", {"alpha", "beta"}},
+      {"ucm", "eucm", {"alpha"}},  // whose beta is 1
       {"fov", "fov", {"w"}},
   };
   return types;
@@ -53,6 +54,7 @@ CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>
   Intrinsics in{size[0], size[1], {}, std::string(type->distortion), {}};
   for (const char* key : {"fx", "fy", "cx", "cy"}) in.projection.push_back(values.at(key).number());
   for (const std::string& key : type->keys) in.coefficients.push_back(values.at(key).number());
+  if (name == "ucm") in.coefficients.push_back(1.0);
   return make_model(values, in);
 }
 

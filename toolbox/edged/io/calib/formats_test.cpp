@@ -229,6 +229,13 @@ TEST_F(CalibrationFormats, KannalaBrandtOfVinsIsEquidistantAndMeiIsOmni) {
   EXPECT_EQ(load(mei, "c.yaml", frames).rig.cameras[0].model,
             CameraModel(752, 480, 1877.3, 1871.4, 361.5, 248.3, DistortionModel::Omni,
                         {3.06, 0.67, 7.05, -0.0007, 0.000004}));
+  const std::string full =
+      "%YAML:1.0\nmodel_type: PINHOLE_FULL\nimage_width: 752\nimage_height: 480\n"
+      "distortion_parameters: {k1: 0.2, k2: 0, k3: 0, k4: 0.4, k5: 0.01, k6: 0, p1: 0.001, p2: 0.002}\n"
+      "projection_parameters: {fx: 460, fy: 461, cx: 370, cy: 240}\n";
+  EXPECT_EQ(
+      load(full, "c.yaml", frames).rig.cameras[0].model,
+      CameraModel(752, 480, 460, 461, 370, 240, DistortionModel::Rational, {0.2, 0, 1e-3, 2e-3, 0, 0.4, 0.01, 0}));
   EXPECT_THAT(complaint(changed(kInline, "PINHOLE", "MEI")), HasSubstr("mirror_parameters is missing"));
   EXPECT_THAT(complaint(changed(kInline, "PINHOLE", "SCARAMUZZA")), HasSubstr("model SCARAMUZZA is not supported"));
 }

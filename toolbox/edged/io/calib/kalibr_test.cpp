@@ -106,9 +106,12 @@ TEST_F(Kalibr, CameraModelsHaveTheirCoefficientsBeforeTheFocalLengths) {
             CameraModel(346, 260, 226, 227, 173, 133, DistortionModel::FieldOfView, {0.9}));
   EXPECT_THAT(complaint(with_model("ds", "-0.2, 0.6, 226, 227, 173, 133", radtan)),
               HasSubstr("camera model ds with distortion radtan is not supported; with none it is"));
-  EXPECT_THAT(complaint(with_model("omni", "1.2, 500, 501, 173, 133",
-                                   "distortion_model: equidistant\n  distortion_coeffs: [0.1, 0, 0, 0]")),
-              HasSubstr("with radtan (k1 k2 p1 p2) and none it is"));
+  EXPECT_EQ(second(with_model("omni", "1.2, 500, 501, 173, 133",
+                              "distortion_model: equidistant\n  distortion_coeffs: [0.05, 0, 0, 0]")),
+            CameraModel(346, 260, 500, 501, 173, 133, DistortionModel::OmniEquidistant, {1.2, 0.05}));
+  EXPECT_THAT(
+      complaint(with_model("omni", "1.2, 500, 501, 173, 133", "distortion_model: fov\n  distortion_coeffs: [0.9]")),
+      HasSubstr("with radtan (k1 k2 p1 p2), equidistant and none it is"));
 }
 
 TEST_F(Kalibr, ModelsWithoutSupportAreRefusedByName) {

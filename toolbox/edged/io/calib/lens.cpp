@@ -93,11 +93,15 @@ void take_camera_model(const YamlReader& camera, const std::string& model, Intri
   const auto begin = in.projection.begin(), end = begin + static_cast<std::ptrdiff_t>(own);
   const Distortion second = distortion_of(camera, in);
   std::vector<double> coefficients(begin, end);
-  if (second.k != LensCoefficients{}) {
+  if (lens->model == DistortionModel::Omni && second.model == DistortionModel::Equidistant) {
+    lens = &lens_model(DistortionModel::OmniEquidistant);
+    coefficients.insert(coefficients.end(), second.k.begin(), second.k.begin() + 4);
+  } else if (second.k != LensCoefficients{}) {
     if (second.model != DistortionModel::RadTan || lens->most < own + 4 || second.k[4] != 0.0)
       camera.at("camera_model")
-          .fail(fmt::format("camera model {} with distortion {} is not supported{}", lens->name, in.distortion,
-                            lens->most > own ? "; with radtan (k1 k2 p1 p2) and none it is" : "; with none it is"));
+          .fail(fmt::format(
+              "camera model {} with distortion {} is not supported{}", lens->name, in.distortion,
+              lens->most > own ? "; with radtan (k1 k2 p1 p2), equidistant and none it is" : "; with none it is"));
     coefficients.insert(coefficients.end(), second.k.begin(), second.k.begin() + 4);
   }
   in.projection.erase(begin, end);

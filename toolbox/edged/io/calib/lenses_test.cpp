@@ -29,6 +29,7 @@ std::vector<CameraModel> every_lens() {
       CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::DoubleSphere, {-0.2, 0.6}),
       CameraModel(346, 260, 90, 91, 170, 130, DistortionModel::DoubleSphere, {-0.2, 0.6}).within(60.0 * kDegree),
       CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::ExtendedUnified, {0.6, 1.1}),
+      CameraModel(346, 260, 500, 501, 170, 130, DistortionModel::OmniEquidistant, {1.1, 0.05, -0.02, 0.01, -0.002}),
   };
 }
 
@@ -61,6 +62,8 @@ TEST(Lenses, OfBasaltAreReadByTheirType) {
             CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::DoubleSphere, {-0.2, 0.6}));
   EXPECT_EQ(model("eucm", R"("alpha": 0.6, "beta": 1.1)"),
             CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::ExtendedUnified, {0.6, 1.1}));
+  EXPECT_EQ(model("ucm", R"("alpha": 0.6)"),
+            CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::ExtendedUnified, {0.6, 1.0}));
   EXPECT_EQ(model("fov", R"("w": 0.9)"),
             CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::FieldOfView, {0.9}));
   EXPECT_EQ(

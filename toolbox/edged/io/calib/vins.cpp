@@ -49,7 +49,7 @@ std::vector<double> read_camodocal_distortion(const YamlReader& distortion) {
   return out;
 }
 
-/// The models of camodocal: PINHOLE is radtan, KANNALA_BRANDT is equidistant, MEI is omni.
+/// The models of camodocal: PINHOLE is radtan, PINHOLE_FULL rational, KANNALA_BRANDT equidistant, MEI omni.
 CameraModel read_camodocal(const YamlReader& root) {
   const std::string type = root.text_or("model_type", "PINHOLE");
   const YamlReader projection = root.at("projection_parameters");
@@ -64,11 +64,12 @@ CameraModel read_camodocal(const YamlReader& root) {
     in.projection = numbers_at(projection, {"gamma1", "gamma2", "u0", "v0"});
     const std::vector<double> brown = numbers_at(root.at("distortion_parameters"), {"k1", "k2", "p1", "p2"});
     in.coefficients.insert(in.coefficients.end(), brown.begin(), brown.end());
-  } else if (type == "PINHOLE") {
+  } else if (type == "PINHOLE" || type == "PINHOLE_FULL") {
     in.projection = numbers_at(projection, {"fx", "fy", "cx", "cy"});
     in.coefficients = read_camodocal_distortion(root.at("distortion_parameters"));
   } else {
-    root.at("model_type").fail("model " + type + " is not supported; PINHOLE, KANNALA_BRANDT and MEI are");
+    root.at("model_type")
+        .fail("model " + type + " is not supported; PINHOLE, PINHOLE_FULL, KANNALA_BRANDT and MEI are");
   }
   return make_model(projection, in);
 }

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calib_refine.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "calib/calib_check.hpp"
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "edged/core/angles.hpp"
+#include "edged/core/check.hpp"
+#include "edged/estimator/calibration_prior.hpp"
+#include "edged/estimator/estimator.hpp"
+#include "edged/pipeline/mode.hpp"
+#include "run/verdict.hpp"
+
+namespace edged {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// What one recording tells.
+struct Told {
+  std::string recording;
+  std::string why_not;                                     ///< there is no estimate; empty where there is one
+  std::map<std::string, CorrectionEstimate> cameras = {};  ///< by name
+};
+
+/// Of all recordings together.
+struct RefinedCamera {
+  RigCamera given, found;
+  CorrectionEstimate estimate;
+};
+
+/// As the covariances of a run are inflated, its prior is.
+CalibrationVector inflated_prior(const RigCamera& camera, Mode mode) {
+  const EstimatorConfig config;
+  const double inflation = config.sigma_inflation * (mode == Mode::Events ? kEventsAloneInflation : 1.0);
+  return inflation * calibration_sigmas(config.calibration, camera.model);
+}
+
+bool same_cameras(const Rig& a, const Rig& b) {
+  return std::ranges::equal(a.cameras, b.cameras, [](const RigCamera& one, const RigCamera& other) {
+    return one.name == other.name && one.model == other.model && one.time_offset == other.time_offset &&
+           one.T_B_C.matrix().isApprox(other.T_B_C.matrix(), 1e-9);
+  });
+}
+
+Told ask(const std::string& recording, Source& source, Mode mode, bool quiet) {
+  Told told{recording, {}};
+  const CalibrationRun run = calibrate_by_run(source.calibration.rig, source, mode, quiet);
+  if (run.covariances.empty()) {
+    told.why_not = run.fit.cameras.empty() ? "there was no estimate" : run.fit.cameras.front().why;
+    return told;
+  }
+  for (const RigCamera& found : run.found.cameras)
+    if (const auto P = run.covariances.find(found.name); P != run.covariances.end())
+      told.cameras[found.name] = {correction_between(source.calibration.rig.camera(found.name), found), P->second};
+  return told;
+}
+
+std::vector<RefinedCamera> combine(const std::vector<Told>& all, const Rig& given, Mode mode) {
+  std::vector<RefinedCamera> refined;
+  for (const RigCamera& camera : given.cameras) {
+    std::vector<CorrectionEstimate> estimates;
+    for (const Told& told : all)
+      if (const auto of = told.cameras.find(camera.name); of != told.cameras.end()) estimates.push_back(of->second);
+    if (estimates.empty()) continue;
+    const CorrectionEstimate estimate = combined(estimates, inflated_prior(camera, mode));
+    refined.push_back({camera, corrected_camera(camera, estimate.correction), estimate});
+  }
+  return refined;
+}
+
+/// Numbers with units: those of corrections_of, and before them rotation and time.
+std::vector<CorrectionFound> numbers_of(const RigCamera& given, const CorrectionEstimate& estimate) {
+  std::vector<CorrectionFound> numbers;
+  for (int i = 0; i < 3; ++i)
+    numbers.push_back({fmt::format("rotation_{}_deg", "xyz"[i]), kDegreesPerRadian * estimate.correction[i],
+                       kDegreesPerRadian * std::sqrt(estimate.covariance(i, i))});
+  numbers.push_back(
+      {"time_ms", 1e3 * estimate.correction[kTimeAt], 1e3 * std::sqrt(estimate.covariance(kTimeAt, kTimeAt))});
+  const auto rest = corrections_of(given, corrected_camera(given, estimate.correction), estimate.covariance,
+                                   EstimatorConfig().calibration);
+  numbers.insert(numbers.end(), rest.begin(), rest.end());
+  return numbers;
+}
+
+/// The numbers in which a recording is beyond three sigma of what all say together.
+std::string contradictions(const Told& told, const std::vector<RefinedCamera>& refined) {
+  constexpr double kSigmas = 3.0;
+  std::string list;
+  for (const RefinedCamera& camera : refined) {
+    const auto own = told.cameras.find(camera.given.name);
+    if (own == told.cameras.end()) continue;
+    const auto alone = numbers_of(camera.given, own->second), all = numbers_of(camera.given, camera.estimate);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (std::abs(alone[i].off - all[i].off) > kSigmas * alone[i].sigma)
+        list += fmt::format("{}{} of {} {:+.3f} +- {:.3f}, of all {:+.3f}", list.empty() ? "" : "; ", alone[i].name,
+                            camera.given.name, alone[i].off, alone[i].sigma, all[i].off);
+  }
+  return list;
+}
+
+std::string text_of(const std::vector<Told>& all, const std::vector<RefinedCamera>& refined) {
+  std::string text;
+  for (const RefinedCamera& camera : refined) {
+    text += fmt::format("{}\n", camera.given.name);
+    for (const CorrectionFound& number : numbers_of(camera.given, camera.estimate))
+      text += fmt::format("  {:<15} {:+10.4f} +- {:.4f}\n", number.name, number.off, number.sigma);
+  }
+  for (const Told& told : all) {
+    const std::string off = contradictions(told, refined);
+    text += fmt::format("{:<11} {}\n", told.recording,
+                        !told.why_not.empty() ? "not used: " + told.why_not
+                        : off.empty()         ? "agrees within 3 sigma"
+                                              : "differs by more than 3 sigma: " + off);
+  }
+  return text;
+}
+
+ordered_json json_of(const std::vector<Told>& all, const std::vector<RefinedCamera>& refined) {
+  ordered_json out = {{"cameras", ordered_json::array()}, {"recordings", ordered_json::array()}};
+  for (const RefinedCamera& camera : refined) {
+    ordered_json numbers = ordered_json::object();
+    for (const CorrectionFound& number : numbers_of(camera.given, camera.estimate))
+      numbers[number.name] = {{"off", number.off}, {"sigma", number.sigma}};
+    out["cameras"].push_back({{"camera", camera.given.name}, {"corrections", numbers}});
+  }
+  for (const Told& told : all)
+    out["recordings"].push_back(
+        {{"recording", told.recording}, {"not_used", told.why_not}, {"contradicts", contradictions(told, refined)}});
+  return out;
+}
+
+/// The given calibration of the cameras used, the same for all recordings.
+struct Begin {
+  std::optional<Calibration> calibration;
+  Rig used;
+  Mode mode = Mode::Fused;
+};
+
+void take_begin(Begin& begin, const Source& source, Mode mode, const std::string& recording) {
+  const Rig used = used_cameras(source.calibration.rig, mode);
+  if (!begin.calibration) {
+    begin = {source.calibration, used, mode};
+  } else if (mode != begin.mode || !same_cameras(used, begin.used)) {
+    throw InputError::format(
+        "{}: has other cameras or another calibration than the first recording: give all the same one with --calib, "
+        "and refine recordings with other cameras by themselves",
+        recording);
+  }
+}
+
+}  // namespace
+
+int refine_calibration(const CalibRefineOptions& options) {
+  catch_interrupts();
+  if (options.out.empty()) throw InputError("--refine: give the file for the calibration with --out FILE");
+  check_writable(options.out, "--out");
+  Begin begin;
+  std::vector<Told> all;
+  for (const std::string& recording : options.recordings) {
+    SourceOptions one = options.source;
+    one.recording = recording;
+    Source source = open_source(one);
+    const Mode mode = choose_mode(options.mode, source.dataset->info());
+    match_cameras(source, mode);
+    take_begin(begin, source, mode, recording);
+    all.push_back(ask(recording, source, mode, options.quiet));
+    if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  }
+  const std::vector<RefinedCamera> refined = combine(all, begin.used, begin.mode);
+  fmt::print("{}", options.json ? json_text(json_of(all, refined)) + "\n" : text_of(all, refined));
+  if (refined.empty()) return kExitNeverGood;
+  Rig found;
+  for (const RefinedCamera& camera : refined) found.cameras.push_back(camera.found);
+  write_file(options.out, to_yaml(with_found(*begin.calibration, found)));
+  if (!options.json) fmt::print("{:<11} edged run RECORDING --calib {}\n", "next", shell_word(options.out.string()));
+  return kExitOk;
+}
+
+}  // namespace edged
