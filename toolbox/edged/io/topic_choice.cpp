@@ -181,8 +181,8 @@ class CameraChooser {
 
   void take_wanted() {
     for (const auto& [name, topic] : wishes_.wanted) {
-      std::erase_if(free_, [&](std::size_t i) { return topics_[i].name == topic && name != kind_name(modality_); });
       const bool whole_kind = name == kind_name(modality_);
+      if (!whole_kind) std::erase_if(free_, [this, &topic = topic](std::size_t i) { return topics_[i].name == topic; });
       if (topic == "none" || (!whole_kind && !is_camera(name, modality_, wishes_.rig))) continue;
       take(whole_kind ? name_by_calibration(topic).value_or(name) : name, wanted_topic(topics_, role(), topic, file_));
     }
