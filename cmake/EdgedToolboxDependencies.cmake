@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 # What edged::toolbox needs on top.
+find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)  # of libopencv-contrib
 find_package(BZip2 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(PkgConfig REQUIRED)

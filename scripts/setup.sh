@@ -7,7 +7,8 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build pkg-config git python3 ca-certificates xz-utils clang-format doxygen
-  libopencv-dev libeigen3-dev libceres-dev libopengv-dev
+  libopencv-dev libopencv-contrib-dev libeigen3-dev  # contrib: aruco, for the tags of calibration targets
+  libceres-dev libopengv-dev
   zlib1g-dev libyaml-cpp-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
   libhdf5-dev libblosc-dev liblzf-dev

@@ -300,7 +300,7 @@ class Calib(WithFolder):
             self.assertEqual([c["name"] for c in shown["cameras"]], names)
             self.assertEqual(shown["warnings"], [])
         self.assert_refused(edged("calib", "--new", "evk4", "--out", head), "exists")
-        self.assert_refused(edged("calib"), "FILE, --new, --check or --refine", code=2)
+        self.assert_refused(edged("calib"), "FILE, --new, --check, --refine or --print-target", code=2)
 
     def test_what_looks_wrong_is_said(self):
         self.chain.write_text(self.KALIBR.replace("-0.1]", "-100]"))

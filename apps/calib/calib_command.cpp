@@ -15,6 +15,8 @@
 
 #include "calib/calib_check.hpp"
 #include "calib/calib_refine.hpp"
+#include "calib/calib_target.hpp"
+#include "calib/calib_template.hpp"
 #include "commands.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
@@ -24,107 +26,6 @@
 
 namespace edged {
 namespace {
-
-struct CameraFacts {
-  const char* name;
-  const char* what;
-  int width, height;
-  double pitch_um;  ///< of the pixels
-  bool frames;      ///< from the same pixels
-  const char* imu;  ///< what it has
-  /// White noise: data sheet times 5 and 2.5, as in the shipped rigs, for scale, axis and sampling errors.
-  double gyro_noise, accel_noise;
-};
-
-constexpr std::array kCameras = {
-    CameraFacts{"davis346", "iniVation DAVIS346: events and frames of the same pixels, IMU on the board", 346, 260,
-                18.5, true, "on the board; data sheet of the MPU-6500, 0.01 deg/s/sqrt(Hz) and 300 ug/sqrt(Hz)", 8.7e-4,
-                7.4e-3},
-    CameraFacts{"dvxplorer", "iniVation DVXplorer: events, IMU on the board (the Lite has 320 x 240 pixels of 18 um)",
-                640, 480, 9.0, false,
-                "on the board; data sheet of the BMI160, 0.007 deg/s/sqrt(Hz) and 180 ug/sqrt(Hz)", 6.1e-4, 4.4e-3},
-    CameraFacts{
-        "evk4",
-        "Prophesee EVK4 (Sony IMX636): events; it has no IMU: mount one, synchronise it, give its file to --imu", 1280,
-        720, 4.86, false, "one of your own; here a consumer MEMS, take its data sheet", 1e-3, 2e-2},
-};
-
-std::string imu_part(const CameraFacts& c) {
-  return fmt::format(
-      "imu:\n"
-      "  # {}.\n"
-      "  # White noise: 5 (gyro) and 2.5 times (accelerometer) the data sheet; `edged info REC` measures it where the\n"
-      "  # camera lies still.\n"
-      "  gyro_noise: {:.1e}        # rad/s/sqrt(Hz)\n"
-      "  accel_noise: {:.1e}       # m/s^2/sqrt(Hz)\n"
-      "  # Bias walk: typical of the class.\n"
-      "  gyro_walk: 2.0e-5         # rad/s^2/sqrt(Hz)\n"
-      "  accel_walk: 3.0e-4        # m/s^3/sqrt(Hz)\n"
-      "  # Just below the ranges that the driver sets: 2000 deg/s is 34.9 rad/s, 1000 deg/s 17.45, 8 g 78.5 m/s^2.\n"
-      "  gyro_saturation: FILL_IN  # rad/s\n"
-      "  accel_saturation: FILL_IN # m/s^2\n",
-      c.imu, c.gyro_noise, c.accel_noise);
-}
-
-/// "none; radtan: k1 k2 ...; ..."
-std::string distortion_list() {
-  std::string list;
-  for (const LensModel& lens : lens_models())
-    list += fmt::format("{}{}{}{}", list.empty() ? "" : "; ", lens.name, lens.most > 0 ? ": " : "", lens.coefficients);
-  return list;
-}
-
-std::string camera_part(const CameraFacts& c) {
-  return fmt::format(
-      "  - name: events\n"
-      "    modality: events\n"
-      "    resolution: [{0}, {1}]  # px\n"
-      "    # fx fy cx cy [px], from a calibration (docs/calibration.md). About: focal length of the lens / {2} um, so "
-      "{3:.0f} px for\n"
-      "    # 4 mm and {4:.0f} px for 8 mm; the centre near {5:.0f}, {6:.0f}.\n"
-      "    intrinsics: [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "    # {7}\n"
-      "    distortion: radtan\n"
-      "    coefficients: [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "    # Where parts of the vehicle are in view: a picture of {0} x {1} px, black where pixels are to be ignored.\n"
-      "    # mask: mask.png\n"
-      "    # Camera to IMU, p_B = T_B_C * p_C: columns are the camera's x (right), y (down) and z (forward) axes in "
-      "the IMU's,\n"
-      "    # then its place in metres. T_C_B instead is the inverse: Kalibr's T_cam_imu.\n"
-      "    T_B_C:\n"
-      "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "      - [FILL_IN, FILL_IN, FILL_IN, FILL_IN]\n"
-      "      - [0.0, 0.0, 0.0, 1.0]\n"
-      "    # t_imu = t_cam + time_offset; Kalibr's timeshift_cam_imu. A run refines it by some milliseconds.\n"
-      "    time_offset: 0.0  # s\n",
-      c.width, c.height, c.pitch_um, 4e3 / c.pitch_um, 8e3 / c.pitch_um, 0.5 * (c.width - 1), 0.5 * (c.height - 1),
-      distortion_list());
-}
-
-std::vector<std::string> template_names() {
-  std::vector<std::string> names;
-  for (const CameraFacts& camera : kCameras) names.emplace_back(camera.name);
-  return names;
-}
-
-std::string calibration_template(const std::string& camera) {
-  const auto facts = std::ranges::find(kCameras, camera, &CameraFacts::name);
-  EDGED_CHECK(facts != kCameras.end(), "no template {}", camera);
-  std::string text = fmt::format(
-      "# {}.\n"
-      "# Fill in what reads FILL_IN, then: edged calib FILE, edged doctor REC --calib FILE, edged run REC --calib "
-      "FILE.\n"
-      "# From a calibration of Kalibr, VINS, basalt ... this file is made by: edged calib THEIRS --out FILE\n"
-      "edged_rig: 1\n"
-      "name: {}\n\n{}\ncameras:\n{}",
-      facts->what, facts->name, imu_part(*facts), camera_part(*facts));
-  if (facts->frames)
-    text +=
-        "  # Same pixels behind the same lens.\n"
-        "  - name: frames\n    modality: frames\n    same_as: events\n";
-  return text;
-}
 
 using nlohmann::ordered_json;
 
@@ -137,6 +38,8 @@ struct CalibOptions {
   std::vector<std::string> refined;  ///< recordings of --refine
   std::string mode = "auto";
   bool quiet = false, json = false;
+  CalibTargetOptions target;
+  std::filesystem::path printed_target;
 };
 
 std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts) {
@@ -242,6 +145,17 @@ int run_check(const CalibOptions& options) {
   return check_calibration(std::move(check));
 }
 
+/// FILE is the recording.
+int run_target(const CalibOptions& options) {
+  CalibTargetOptions target = options.target;
+  const std::vector<std::string> cameras = target.source.cameras;
+  target.source = options.recording;
+  target.source.recording = options.file, target.source.imu = options.imu, target.source.cameras = cameras;
+  target.mode = options.mode, target.out = options.out;
+  target.quiet = options.quiet, target.json = options.json;
+  return calibrate_from_target(std::move(target));
+}
+
 int run_calib(const CalibOptions& options) {
   Calibration calibration = load_chosen(options);
   if (!options.out.empty()) {
@@ -268,14 +182,9 @@ int run_refine(const CalibOptions& options) {
   return refine_calibration(refine);
 }
 
-struct RunOptionsOfCalib {
-  CLI::Option *check, *refine;
-  std::vector<CLI::Option*> need_either;
-};
-
-/// --check, --refine and the options that need one of them.
-RunOptionsOfCalib add_run_options(CLI::App& calib, CalibOptions& options, CLI::Option* file) {
-  CLI::Option* check = calib.add_option(
+/// --check, --refine, and the options that need a recording: for one of them or for --target.
+std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& options) {
+  calib.add_option(
       "--check", options.recording.recording,
       fmt::format(
           "Whether FILE, or the calibration of the recording, fits this recording: a run over its first {:.0f} s "
@@ -288,12 +197,35 @@ RunOptionsOfCalib add_run_options(CLI::App& calib, CalibOptions& options, CLI::O
       ->capture_default_str();
   calib.add_flag("--quiet", options.quiet, "No status line");
   const std::vector<CLI::Option*> all = calib.get_options([](const CLI::Option*) { return true; });
-  CLI::Option* refine = calib.add_option("--refine", options.refined,
-                                         "Runs over these recordings, each from FILE or their own calibration: writes "
-                                         "what they found together to --out");
-  refine->excludes(check)->type_name("RECORDING");
-  for (const char* name : {"--rig", "--calib"}) calib.get_option(name)->excludes(file);
-  return {check, refine, {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()}};
+  calib
+      .add_option(
+          "--refine", options.refined,
+          "Runs over these recordings, each from FILE or their own calibration: writes what they found together "
+          "to --out")
+      ->excludes("--check")
+      ->type_name("RECORDING");
+  return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
+}
+
+/// What belongs to a recording, or to a target, stands beside one.
+void check_company(const CLI::App& calib, const std::vector<CLI::Option*>& of_recordings) {
+  const bool runs = calib.count("--check") + calib.count("--refine") > 0, target = calib.count("--target") > 0;
+  for (const CLI::Option* option : of_recordings)
+    if (option->count() > 0 && !runs && !target)
+      throw CLI::RequiresError(option->get_name(), "--check, --refine or --target");
+  for (const char* name : {"--rows", "--columns", "--size", "--ratio", "--lens", "--format", "--cameras", "--no-imu",
+                           "--report", "--print-target"})
+    if (calib.count(name) > 0 && !target) throw CLI::RequiresError(name, "--target");
+  for (const char* name : {"--rig", "--calib"})
+    if (runs && calib.count(name) > 0 && calib.count("FILE") > 0) throw CLI::ExcludesError(name, "FILE");
+}
+
+int run_chosen(const CalibOptions& options) {
+  if (!options.camera_of_template.empty()) return write_template(options);
+  if (!options.printed_target.empty()) return print_target(options.target.target, options.printed_target);
+  if (!options.target.target.kind.empty()) return run_target(options);
+  if (!options.refined.empty()) return run_refine(options);
+  return options.recording.recording.empty() ? run_calib(options) : run_check(options);
 }
 
 }  // namespace
@@ -323,8 +255,16 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
           ->check(CLI::IsMember(template_names()))
           ->excludes(file)
           ->excludes(json);
-  const RunOptionsOfCalib runs = add_run_options(*calib, *options, file);
-  for (CLI::Option* run : {runs.check, runs.refine}) run->excludes(fresh)->excludes(sees);
+  const std::vector<CLI::Option*> of_recordings = add_recording_options(*calib, *options);
+  CLI::Option *check = calib->get_option("--check"), *refine = calib->get_option("--refine");
+  for (CLI::Option* run : {check, refine}) run->excludes(fresh)->excludes(sees);
+  add_target_options(*calib, options->target);
+  calib->get_option("--target")->excludes(fresh)->excludes(check)->excludes(refine)->excludes(sees);
+  CLI::Option* print = calib
+                           ->add_option("--print-target", options->printed_target,
+                                        "Instead: write the target to this file, svg or pdf, in true size")
+                           ->excludes(file)
+                           ->excludes(check);
   calib->footer(
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"
@@ -332,18 +272,15 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
       "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
       "  edged calib --refine a.bag b.bag --calib head.yaml --out better.yaml\n"
+      "  edged calib --target aprilgrid --size 88 --print-target grid.pdf\n"
+      "  edged calib --target aprilgrid --size 88 moved.bag --out head.yaml\n"
       "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be determined (too little motion, no start), 3 what "
       "cannot be read.");
-  calib->callback([options, file, fresh, runs, &chosen] {
-    const std::size_t run = runs.check->count() + runs.refine->count();
-    if (file->count() + fresh->count() + run == 0) throw CLI::RequiredError("FILE, --new, --check or --refine");
-    for (const CLI::Option* option : runs.need_either)
-      if (run == 0 && option->count() > 0) throw CLI::RequiresError(option->get_name(), "--check or --refine");
-    chosen = [options] {
-      if (!options->camera_of_template.empty()) return write_template(*options);
-      if (!options->refined.empty()) return run_refine(*options);
-      return options->recording.recording.empty() ? run_calib(*options) : run_check(*options);
-    };
+  calib->callback([options, calib, of_recordings, file, fresh, check, refine, print, &chosen] {
+    if (file->count() + fresh->count() + check->count() + refine->count() + print->count() == 0)
+      throw CLI::RequiredError("FILE, --new, --check, --refine or --print-target");
+    check_company(*calib, of_recordings);
+    chosen = [options] { return run_chosen(*options); };
   });
 }
 

@@ -51,8 +51,8 @@ Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate,
         "stamps (TUM, EuRoC csv)",
         options.truth.string(), truth.size(), options.estimate.string(), estimate.size());
   Evaluation result = evaluate(associate_by_index(truth, estimate), chosen_protocol(options.how), {}, {});
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  result.duration_s = result.start_scale = result.first_scale = result.later_scale = kUnknown;
+  constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+  result.duration_s = result.start_scale = result.first_scale = result.later_scale = kNoTime;
   return result;
 }
 

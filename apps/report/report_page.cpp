@@ -61,6 +61,10 @@ std::string live_report_page(const nlohmann::ordered_json& about) {
 
 std::string player_page(const nlohmann::ordered_json& data) { return filled_page(data, kPlayerJs, "img-src data:"); }
 
+std::string calibration_page(const nlohmann::ordered_json& data) {
+  return filled_page(data, kTargetJs, "img-src data:");
+}
+
 void write_run_report(const std::filesystem::path& folder) {
   write_file(folder / "report.html", report_page(report_data({folder})));
 }

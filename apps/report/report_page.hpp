@@ -18,6 +18,9 @@ std::string live_report_page(const nlohmann::ordered_json& about);
 /// The page of `edged show`, which plays event images. data: a recording and its PlayerData.
 std::string player_page(const nlohmann::ordered_json& data);
 
+/// The page of `edged calib --target`. data: a TargetCalibration as json, with coverage and residuals.
+std::string calibration_page(const nlohmann::ordered_json& data);
+
 /// report.html of one run folder, into it.
 void write_run_report(const std::filesystem::path& folder);
 

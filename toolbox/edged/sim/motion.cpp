@@ -83,6 +83,32 @@ Trajectory random_camera_poses(const MotionConfig& config, double duration_s, st
   return poses;
 }
 
+/// A hand holds the camera towards the target: tilted by where it is, with the target now here, now there in the image.
+Trajectory poses_around_target(const MotionConfig& config, double duration_s, std::uint64_t seed) {
+  constexpr double kRate = 100.0;
+  Random random(seed, 1);
+  const Sway3 position(Eigen::Vector3d(0.35 * config.target_m, config.extent_m, 0.8 * config.extent_m),
+                       config.max_speed, duration_s, random);
+  const Sway3 angles(kDegree * Eigen::Vector3d(config.aim_deg, 0.75 * config.aim_deg, config.max_angle_deg),
+                     config.max_rate_deg_s * kDegree, duration_s, random);
+  Trajectory poses;
+  for (int i = 0; i <= static_cast<int>(std::ceil(duration_s * kRate)); ++i) {
+    const double t = i / kRate;
+    const Eigen::Vector3d from_target = position(t) - config.target_m * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d ahead = -from_target.normalized();
+    const Eigen::Vector3d right = ahead.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d R_W_level;
+    R_W_level << right, ahead.cross(right), ahead;
+    const Eigen::Vector3d a = angles(t);  // to the side, up, roll
+    const Eigen::Quaterniond turn = Eigen::AngleAxisd(a.x(), Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(a.y(), Eigen::Vector3d::UnitX()) *
+                                    Eigen::AngleAxisd(a.z(), Eigen::Vector3d::UnitZ());
+    poses.push_back({timestamp_from_seconds(t),
+                     SE3(Eigen::Quaterniond(R_W_level) * turn, from_target + Eigen::Vector3d(0.0, 0.0, 1.3))});
+  }
+  return poses;
+}
+
 Trajectory recorded_poses(const MotionConfig& config, double duration_s) {
   const Trajectory all = read_tum(config.file);
   if (all.empty()) throw InputError::format("{}: no poses; give a TUM trajectory", config.file);
@@ -123,6 +149,9 @@ void MotionConfig::visit(ConfigFields& fields) {
              {"deg", 0.1, 180, "random motion: reach of yaw; pitch half, roll a third of it"});
   fields.add("max_speed", max_speed, {"m/s", 0.001, 50, "random motion: peak speed"});
   fields.add("max_rate_deg_s", max_rate_deg_s, {"deg/s", 0.1, 2000, "random motion: peak angular rate"});
+  fields.add("target_m", target_m,
+             {"m", 0, 30, "random motion around a target at this mean distance, the camera towards it; 0: none"});
+  fields.add("aim_deg", aim_deg, {"deg", 0, 80, "around a target: how far it strays from the middle of the image"});
 }
 
 ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, const SE3& T_B_C, std::uint64_t seed) {
@@ -132,7 +161,9 @@ ContinuousTrajectory make_motion(const MotionConfig& config, double duration_s, 
   // The blend delays the clock by half its length. A small margin keeps the end of the spline after the recording.
   const double moving_s = std::max(1.0, duration_s - config.rest_s - 0.5 * config.blend_s + 0.1);
   const bool random = config.file.empty();
-  Trajectory poses = random ? random_camera_poses(config, moving_s, seed) : recorded_poses(config, moving_s);
+  Trajectory poses = !random                 ? recorded_poses(config, moving_s)
+                     : config.target_m > 0.0 ? poses_around_target(config, moving_s, seed)
+                                             : random_camera_poses(config, moving_s, seed);
   if (random || config.pose_of == PoseOf::Camera) {
     const SE3 T_C_B = T_B_C.inverse();
     for (StampedPose& pose : poses) pose.T = pose.T * T_C_B;

@@ -45,6 +45,20 @@ void mount_fisheye(SimulatorConfig& config) {
                    .k2 = 0.0007};
 }
 
+void move_around_target(SimulatorConfig& config) {
+  config.duration_s = 40.0;
+  config.scene.kind = SceneKind::Target;
+  config.motion.target_m = 0.5;
+  config.motion.extent_m = 0.5;
+  config.motion.max_speed = 0.8;
+  config.motion.max_angle_deg = 50.0;
+  config.motion.max_rate_deg_s = 110.0;
+  config.motion.aim_deg = 20.0;
+  config.frames.exposure_ms = 4.0;
+  config.frames.electrons_per_level = 45.0;
+  config.frames.rate_hz = 20.0;
+}
+
 struct FlightPlan {
   Manoeuvre manoeuvre;
   LightingKind lighting;
@@ -119,7 +133,7 @@ const std::vector<std::string>& flight_presets() {
 const std::vector<std::string>& simulator_presets() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all{"room",    "poster", "shapes", "handheld-fast", "handheld-wild",
-                                 "walkers", "dark",   "spot",   "fisheye"};
+                                 "walkers", "dark",   "spot",   "fisheye",       "calibration-target"};
     all.insert(all.end(), flight_presets().begin(), flight_presets().end());
     return all;
   }();
@@ -155,10 +169,9 @@ SimulatorConfig simulator_preset(const std::string& name) {
     config.events.bandwidth_per_radiance_hz = 600.0;
     return config;
   }
-  if (name == "fisheye") {
-    mount_fisheye(config);
-    return config;
-  }
+  if (name == "fisheye") mount_fisheye(config);
+  if (name == "calibration-target") move_around_target(config);
+  if (name == "fisheye" || name == "calibration-target") return config;
   if (name == "walkers") {
     config.disturbance = {.kind = DisturbanceKind::Walkers, .at_s = 0.0};
     return config;

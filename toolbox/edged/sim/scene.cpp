@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "edged/sim/target_scene.hpp"
+
 namespace edged {
 namespace {
 
@@ -310,27 +312,16 @@ void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
 
 }  // namespace
 
-Eigen::Vector3d DynamicObject::displacement(double t_s) const {
-  Eigen::Vector3d d = t_s * velocity_W + (std::max(0.0, from_s - t_s) + std::max(0.0, t_s - to_s)) * away_W;
-  for (const Swing& swing : swings) d += std::sin(swing.omega * t_s + swing.phase) * swing.reach_W;
-  return d;
-}
-
-Eigen::Vector3d DynamicObject::velocity(double t_s) const {
-  Eigen::Vector3d v = velocity_W + (t_s < from_s ? -1.0 : t_s > to_s ? 1.0 : 0.0) * away_W;
-  for (const Swing& swing : swings) v += swing.omega * std::cos(swing.omega * t_s + swing.phase) * swing.reach_W;
-  return v;
-}
-
 void SceneConfig::visit(ConfigFields& fields) {
   fields.choice(
       "kind", kind,
       {{"boxes", SceneKind::Boxes},
        {"poster", SceneKind::Poster},
        {"shapes", SceneKind::Shapes},
-       {"hall", SceneKind::Hall}},
-      {.effect =
-           "a room with boxes, one rich wall, a white wall with dark shapes, or a furnished hall of 6 x 6 x 3 m"});
+       {"hall", SceneKind::Hall},
+       {"target", SceneKind::Target}},
+      {.effect = "a room with boxes, one rich wall, a white wall with dark shapes, a furnished hall of 6 x 6 x 3 m, or "
+                 "a calibration target before a wall"});
   fields.add("objects", objects, {"", 0, 200, "boxes in the room"});
   fields.add("twin_m", twin_m,
              {"m", 0, 100, "boxes once more this far along x; 4, as the walls repeat: two equal rooms; 0: none"});
@@ -347,6 +338,7 @@ void SceneConfig::visit(ConfigFields& fields) {
                  {"sun", LightingKind::Sun}},
                 {.effect = "of the hall: the same everywhere, panels at the ceiling, lamps on the walls that go on and "
                            "off, or the sun through a window"});
+  fields.group("target", target);
 }
 
 Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed,
@@ -369,6 +361,10 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
     case SceneKind::Shapes:
       scene.textures.push_back(make_shapes_texture(2 * kTextureSize, random));
       add_wall(scene, config, path_W_C);
+      break;
+    case SceneKind::Target:
+      scene.textures.push_back(make_plain_texture(kTextureSize, random));
+      add_target(scene, config);
       break;
   }
   if (disturbance.kind == DisturbanceKind::Person)

@@ -5,57 +5,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "edged/se3.hpp"
 #include "edged/sim/disturbance.hpp"
-#include "edged/sim/light.hpp"
+#include "edged/sim/scene_parts.hpp"
 #include "edged/sim/simulator_config.hpp"
-#include "edged/sim/texture.hpp"
 
 namespace edged {
-
-/// The motion of a dynamic object.
-struct DynamicObject {
-  /// Oscillation: reach_W * sin(omega * t + phase).
-  struct Swing {
-    Eigen::Vector3d reach_W;  ///< [m]
-    double omega = 0.0, phase = 0.0;
-  };
-
-  Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();  ///< [m/s]
-  std::vector<Swing> swings = {};
-  /// It moves with away_W before from_s and after to_s: it approaches and leaves.
-  double from_s = 0.0, to_s = 1e9;
-  Eigen::Vector3d away_W = Eigen::Vector3d::Zero();  ///< [m/s]
-
-  /// Displacement from the centres of its faces.
-  Eigen::Vector3d displacement(double t_s) const;
-  Eigen::Vector3d velocity(double t_s) const;
-};
-
-/// A rectangle that is visible from the side of its normal.
-struct Face {
-  Eigen::Vector3d centre_W, u_W, v_W, normal_W;  ///< the last three orthonormal, u x v = -normal
-  double half_u = 0.0, half_v = 0.0;             ///< [m]
-  int dynamic_object = -1;                       ///< index into the scene: the face moves with it; -1: static
-  std::size_t texture = 0;                       ///< index into the scene
-  float texels_per_m = 256.0F;
-  float offset_u = 0.0F, offset_v = 0.0F;  ///< texel at the centre
-  float brightness = 1.0F;                 ///< radiance of a white spot in light 1
-  bool glows = false;                      ///< its radiance does not depend on the light
-  int lamp = -1;                           ///< the face glows while this lamp of the scene is on; -1: always
-};
-
-struct Scene {
-  std::vector<Texture> textures;
-  std::vector<Face> faces;
-  std::vector<DynamicObject> dynamic_objects;
-  std::optional<Lighting> lighting;    ///< none: light 1 everywhere
-  std::optional<Spotlight> spotlight;  ///< in addition
-};
 
 /// The scene around a camera path: a closed room around it, with objects that keep their distance from it; a wall in
 /// front of it, perpendicular to the mean optical axis; or a hall, in which only the furniture depends on the path.

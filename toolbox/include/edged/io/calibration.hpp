@@ -30,4 +30,12 @@ std::vector<std::string> known_rigs();
 /// Several lines.
 std::string describe(const Calibration& calibration);
 
+/// Kalibr's camchain, which load_calibration reads back. has_poses: T_B_C of the cameras relative to each other are
+/// known (without extrinsics, B is the first camera). Throws InputError where Kalibr lacks the lens.
+std::string to_kalibr_yaml(const Calibration& calibration, bool has_poses);
+
+/// The intrinsics of one camera as OpenCV's samples write them, which load_calibration reads back. Throws InputError
+/// where OpenCV lacks the lens.
+std::string to_opencv_yaml(const RigCamera& camera);
+
 }  // namespace edged

@@ -12,6 +12,7 @@
 #include "edged/imu_noise.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
+#include "edged/target/target.hpp"
 
 namespace edged {
 
@@ -34,13 +35,16 @@ struct MotionConfig {
   double max_angle_deg = 35.0;
   double max_speed = 0.8;
   double max_rate_deg_s = 45.0;
+  /// Random motion around a target at (0, 0, 1.3) that faces -x, at this mean distance; 0: none [m].
+  double target_m = 0.0;
+  double aim_deg = 20.0;
 
   void visit(ConfigFields& fields);
 };
 
 enum class LightingKind { Even, Lamps, Switched, Sun };
 
-enum class SceneKind { Boxes, Poster, Shapes, Hall };
+enum class SceneKind { Boxes, Poster, Shapes, Hall, Target };
 
 struct SceneConfig {
   SceneKind kind = SceneKind::Boxes;
@@ -51,6 +55,7 @@ struct SceneConfig {
   double poster_distance_m = 1.3;
   double light = 1.0;
   LightingKind lighting = LightingKind::Even;
+  TargetSpec target{.rows = 3, .columns = 4, .size_m = 0.08};
 
   void visit(ConfigFields& fields);
 };

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calib_target.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "calib/target_result.hpp"
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/numbers.hpp"
+#include "common/status_line.hpp"
+#include "edged/calibrate/collector.hpp"
+#include "edged/camera/lens_table.hpp"
+#include "edged/core/check.hpp"
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/target/print.hpp"
+
+namespace edged {
+namespace {
+
+TargetSpec spec_of(const TargetOptions& given) {
+  const auto kind = parse_target_kind(given.kind);
+  EDGED_CHECK(kind.has_value(), "target '{}'", given.kind);
+  TargetSpec spec = usual_target(*kind);
+  if (given.rows) spec.rows = *given.rows;
+  if (given.columns) spec.columns = *given.columns;
+  if (given.size_mm) spec.size_m = 1e-3 * *given.size_mm;
+  if (given.ratio) spec.ratio = *given.ratio;
+  spec.validate();
+  return spec;
+}
+
+std::vector<std::string> lens_names() {
+  std::vector<std::string> out;
+  for (const LensModel& lens : lens_models()) out.emplace_back(lens.name);
+  return out;
+}
+
+void show_progress(StatusLine& status, const Measurement& at, const DatasetInfo& info, const ViewCollector& collector) {
+  if (const auto t = last_stamp(at))
+    status.show(progress_text(*t, info, "searched") + "; target in " + collector.progress());
+}
+
+/// Reads the recording once, with the views found so far in the status line.
+void collect(Dataset& dataset, ViewCollector& collector, StatusLine& status) {
+  InterruptibleDataset recording(dataset);
+  while (const std::optional<Measurement> measurement = recording.next()) {
+    collector.add(*measurement);
+    if (status.due()) show_progress(status, *measurement, dataset.info(), collector);
+  }
+  collector.finish();
+}
+
+CollectorOptions collector_options(const CalibTargetOptions& options, const Recording& recording) {
+  CollectorOptions out;
+  out.frames = options.mode != "events";
+  out.events = options.mode != "frames" && recording.dataset->info().has_events;
+  if (out.events) out.event_sensor = recording_event_sensor(recording);
+  if (!out.events) recording.dataset->leave_out(Modality::Events);
+  if (!out.frames) recording.dataset->leave_out(Modality::Frames);
+  return out;
+}
+
+/// The lens of each camera; throws what is missing of all of them in one line.
+void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& cameras, const ViewCollector& collector,
+                DistortionModel lens, StatusLine& status) {
+  std::string needed;
+  for (const TargetViews& views : cameras) {
+    status.show(fmt::format("lens of {} from {} views", views.name, views.views.size()));
+    LensFit fit = fit_lens(views, collector.layout(), lens);
+    result.coverage.push_back(coverage_of(views, fit, collector.layout()));
+    const MissingViews missing = missing_views(views, fit, result.coverage.back());
+    for (const std::string& line : missing.needed) needed += (needed.empty() ? "" : "; ") + line;
+    result.advice.insert(result.advice.end(), missing.advised.begin(), missing.advised.end());
+    result.cameras.push_back({views, std::move(fit)});
+  }
+  if (!needed.empty()) throw InputError("too little for a calibration: " + needed);
+}
+
+std::filesystem::path beside(const std::filesystem::path& out, const std::string& end) {
+  std::filesystem::path path = out;
+  return path.replace_filename(out.stem().string() + end);
+}
+
+/// --out in the format that was asked for; of OpenCV's one file a camera. Returns what has been written.
+std::vector<std::string> write_calibration(const CalibTargetOptions& options, const Calibration& calibration) {
+  if (options.format == "kalibr") {
+    write_file(options.out, to_kalibr_yaml(calibration, true));
+  } else if (options.format == "opencv") {
+    std::vector<std::string> files;
+    for (const RigCamera& camera : calibration.rig.cameras) {
+      const bool alone = calibration.rig.cameras.size() == 1;
+      const auto file = alone ? options.out : beside(options.out, "_" + camera.name + options.out.extension().string());
+      write_file(file, to_opencv_yaml(camera));
+      files.push_back(file.string());
+    }
+    return files;
+  } else {
+    write_file(options.out, to_yaml(calibration));
+  }
+  return {options.out.string()};
+}
+
+void tell(const CalibTargetOptions& options, const TargetCalibration& result, const Calibration& calibration) {
+  if (options.json) {
+    fmt::print("{}\n", json_text(to_json(result)));
+  } else {
+    fmt::print("{}", to_text(result));
+  }
+  std::filesystem::path report = options.report;
+  if (report.empty() && !options.out.empty()) report = beside(options.out, ".html");
+  if (!report.empty()) write_file(report, target_page(result));
+  if (options.out.empty()) return;
+  const std::vector<std::string> files = write_calibration(options, calibration);
+  if (options.json) return;
+  fmt::print("{:<11} {}, {}\n", "written", fmt::join(files, ", "), report.string());
+  if (result.fit.has_imu && options.format != "opencv")
+    fmt::print("{:<11} edged calib {} --check RECORDING\n", "next", shell_word(files.front()));
+}
+
+}  // namespace
+
+void add_target_options(CLI::App& calib, CalibTargetOptions& options) {
+  calib
+      .add_option("--target", options.target.kind,
+                  "Instead: FILE is a recording of this target, from which lenses, poses and clocks of all cameras are "
+                  "calibrated, and the IMU's")
+      ->check(CLI::IsMember({"checkerboard", "aprilgrid", "charuco"}));
+  calib.add_option("--rows", options.target.rows,
+                   "Of the target: of tags, of inner corners of a checkerboard, of squares of a charuco [6]");
+  calib.add_option("--columns", options.target.columns,
+                   "Of the target, likewise [6, 9 of a checkerboard, 8 of a charuco]");
+  calib.add_option(
+      "--size", options.target.size_mm,
+      "Of the target: side of a tag or square as it was measured [mm] [50, 30 of a checkerboard, 40 of a charuco]");
+  calib.add_option(
+      "--ratio", options.target.ratio,
+      "Of the target: gap over side of a tag (Kalibr's tagSpacing) [0.3]; charuco: marker over square [0.75]");
+  calib.add_option("--lens", options.lens, "With --target: model of the lenses")
+      ->check(CLI::IsMember(lens_names()))
+      ->capture_default_str();
+  calib
+      .add_option("--format", options.format, "Of --out with --target: edged, kalibr (camchain) or opencv (intrinsics)")
+      ->check(CLI::IsMember({"edged", "kalibr", "opencv"}))
+      ->capture_default_str();
+  calib.add_option("--cameras", options.source.cameras, "With --target: cameras to read, such as cam0,cam1")
+      ->delimiter(',');
+  calib.add_flag("--no-imu", options.no_imu, "With --target: without the IMU, cameras alone");
+  calib.add_option("--report", options.report, "With --target: page with coverage and residuals [beside --out]");
+}
+
+int print_target(const TargetOptions& target, const std::filesystem::path& file) {
+  if (target.kind.empty())
+    throw InputError("--print-target: say which with --target checkerboard, aprilgrid or charuco");
+  const std::string ending = file.extension().string();
+  if (ending != ".svg" && ending != ".pdf")
+    throw InputError::format("--print-target {}: must end with .svg or .pdf", file.string());
+  const TargetSpec spec = spec_of(target);
+  const TargetLayout layout = layout_of(spec);
+  write_file(file, ending == ".svg" ? target_svg(spec) : target_pdf(spec));
+  fmt::print("{}: {}, {:.0f} x {:.0f} mm; print it at 100 %, measure it, and give the measured --size\n", file.string(),
+             describe(spec), 1e3 * layout.width, 1e3 * layout.height);
+  return kExitOk;
+}
+
+int calibrate_from_target(CalibTargetOptions options) {
+  catch_interrupts();
+  const auto begin = std::chrono::steady_clock::now();
+  if (!options.out.empty()) check_writable(options.out, "--out");
+  TargetCalibration result;
+  result.target = spec_of(options.target);
+  const Recording recording = open_uncalibrated(options.source);
+  result.recording = recording.dataset->info().name;
+  StatusLine status(options.quiet);
+  ViewCollector collector(result.target, collector_options(options, recording));
+  collect(*recording.dataset, collector, status);
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  const std::vector<TargetViews> cameras = collector.cameras();
+  if (cameras.empty())
+    throw InputError::format("{}: there are no pictures and no events; check --mode and --cameras", result.recording);
+  fit_lenses(result, cameras, collector, find_lens_model(options.lens)->model, status);
+  const bool known_noise = recording.calibration && recording.calibration->has_imu_noise;
+  const ImuNoise noise = known_noise ? recording.calibration->imu : ImuNoise();
+  const std::vector<ImuSample> none;
+  const RigFitOptions rig_options{.progress = [&status](int round) {
+    status.show(fmt::format("all cameras, motion and IMU: round {}", round + 1));
+  }};
+  const bool use_imu = !options.no_imu && !collector.imu().empty();
+  result.fit = fit_rig(result.cameras, collector.layout(), use_imu ? collector.imu() : none, noise, rig_options);
+  status.clear();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::string name = options.out.empty() ? result.recording : options.out.stem().string();
+  tell(options, result, to_calibration(result, name, known_noise ? &noise : nullptr));
+  return kExitOk;
+}
+
+}  // namespace edged

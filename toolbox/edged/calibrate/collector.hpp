@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Collects the views of a target, and the samples of the IMU, from a recording.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <opencv2/core/types.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edged/calibrate/event_picture.hpp"
+#include "edged/calibrate/target_view.hpp"
+
+namespace edged {
+
+struct CollectorOptions {
+  bool frames = true, events = true;
+  cv::Size event_sensor;                                    ///< of all event cameras [px]
+  Duration frame_interval = std::chrono::milliseconds(45);  ///< at least, between two pictures that are searched
+  Duration event_interval = std::chrono::milliseconds(95);
+};
+
+/// Frames and pictures made of events are searched as they come. Of a recording with both, those of events are of the
+/// same instants.
+class ViewCollector {
+ public:
+  ViewCollector(const TargetSpec& spec, const CollectorOptions& options);
+
+  void add(const Measurement& measurement);
+  /// After the last measurement.
+  void finish();
+
+  /// In the order of their names.
+  std::vector<TargetViews> cameras() const;
+  const std::vector<ImuSample>& imu() const { return imu_; }
+  const TargetLayout& layout() const { return detector_.layout(); }
+  /// "frames 40 of 52, events 20 of 33": views with the target of pictures searched.
+  std::string progress() const;
+
+ private:
+  struct EventCamera {
+    std::unique_ptr<EventPictures> pictures;
+    std::optional<Timestamp> last_instant;
+  };
+
+  void take_frame(const Frame& frame);
+  void take_events(const EventBatch& batch);
+  void search(TargetViews& camera, Timestamp t, const cv::Mat& picture);
+  TargetViews& camera(const std::string& name, Modality modality, cv::Size size);
+  void ask_for(EventCamera& camera, Timestamp t) const;
+
+  TargetDetector detector_;
+  CollectorOptions options_;
+  std::map<std::string, TargetViews> cameras_;
+  std::map<std::string, EventCamera> event_cameras_;
+  std::map<std::string, Timestamp> last_frame_;
+  std::vector<ImuSample> imu_;
+};
+
+}  // namespace edged

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The lens of one camera from pictures of a target, without any value to start from.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "edged/calibrate/target_view.hpp"
+
+namespace edged {
+
+struct LensFit {
+  FreeLens lens;
+  double sigma_px = 0.0;                  ///< robust deviation of a coordinate of a corner
+  LensParameters sigmas{};                ///< of the parameters; 0 for those that the model lacks
+  std::vector<std::optional<SE3>> T_C_T;  ///< of each view; nothing where it does not fit
+};
+
+struct TargetCamera {
+  TargetViews views;
+  LensFit lens;
+};
+
+/// The pose of the target in front of a known lens; nothing where too few corners fit.
+std::optional<SE3> target_pose(const FreeLens& lens, int width, int height, const TargetView& view,
+                               const TargetLayout& layout);
+
+/// Tries focal lengths and shapes of the lens on a few views, goes on with the best of them, frees one group of
+/// parameters after the other, and ends with all views, of which at most most_views evenly spread ones bear on the
+/// lens. Throws InputError that says what to record where no lens of that model explains the views.
+LensFit fit_lens(const TargetViews& camera, const TargetLayout& layout, DistortionModel distortion,
+                 std::size_t most_views = 150);
+
+}  // namespace edged

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/calibrate/rig_problem.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "edged/camera/lens_table.hpp"
+#include "edged/core/check.hpp"
+#include "edged/estimator/factors/imu_factor.hpp"
+
+namespace edged {
+namespace {
+
+// Of the biases at the start [rad/s, m/s^2]: wider than any sensor's, so that they are never unbounded.
+constexpr double kBiasGyro = 0.2, kBiasAccel = 1.0;
+
+ceres::Problem::Options without_manifolds() {
+  ceres::Problem::Options options;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  return options;
+}
+
+/// The start of a state's motion is known that well.
+ceres::CostFunction* bias_prior() {
+  ceres::Matrix information = ceres::Matrix::Zero(9, 9);
+  information.diagonal().segment<3>(3).setConstant(1.0 / kBiasGyro);
+  information.diagonal().tail<3>().setConstant(1.0 / kBiasAccel);
+  return new ceres::NormalPrior(information, ceres::Vector::Zero(9));
+}
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+SparseMatrix to_eigen(const ceres::CRSMatrix& J) {
+  Eigen::SparseMatrix<double, Eigen::RowMajor> out(J.num_rows, J.num_cols);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(J.values.size());
+  for (int row = 0; row < J.num_rows; ++row)
+    for (int i = J.rows[static_cast<std::size_t>(row)]; i < J.rows[static_cast<std::size_t>(row) + 1]; ++i)
+      entries.emplace_back(row, J.cols[static_cast<std::size_t>(i)], J.values[static_cast<std::size_t>(i)]);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+/// The covariance of the last columns of J, `kept` of them, with the others unknown as well.
+Eigen::MatrixXd marginal_covariance(const SparseMatrix& J, Eigen::Index kept) {
+  const SparseMatrix H = J.transpose() * J;
+  const Eigen::Index others = H.cols() - kept;
+  Eigen::MatrixXd information = H.bottomRightCorner(kept, kept).toDense();
+  if (others > 0) {
+    SparseMatrix states = H.topLeftCorner(others, others);
+    for (Eigen::Index i = 0; i < others; ++i) states.coeffRef(i, i) += 1e-9;
+    const Eigen::MatrixXd coupling = H.topRightCorner(others, kept).toDense();
+    const Eigen::SimplicialLDLT<SparseMatrix> solver(states);
+    information -= coupling.transpose() * solver.solve(coupling);
+  }
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  return scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(kept, kept)) * scale.asDiagonal();
+}
+
+}  // namespace
+
+RigProblem::RigProblem(RigUnknowns& unknowns, const std::vector<TargetCamera>& cameras, const TargetLayout& layout,
+                       std::span<const ImuSample> imu, const ImuNoise& noise)
+    : unknowns_(unknowns), has_imu_(!imu.empty()), problem_(without_manifolds()) {
+  for (RigState& state : unknowns_.states) {
+    problem_.AddParameterBlock(state.T_W_B.data(), 7, &pose_manifold_);
+    problem_.AddParameterBlock(state.motion.data(), 9);
+  }
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    CameraBlocks& camera = unknowns_.cameras[i];
+    problem_.AddParameterBlock(camera.T_B_C.data(), 7, &pose_manifold_);
+    problem_.AddParameterBlock(&camera.correction_s, 1);
+    std::vector<int> fixed(static_cast<std::size_t>(kLensParameters - cameras[i].lens.lens.count()));
+    std::iota(fixed.begin(), fixed.end(), cameras[i].lens.lens.count());
+    lens_manifolds_.emplace_back(kLensParameters, fixed);
+    problem_.AddParameterBlock(camera.lens.data(), kLensParameters, fixed.empty() ? nullptr : &lens_manifolds_.back());
+  }
+  problem_.AddParameterBlock(unknowns_.tilt.data(), 2);
+  add_views(cameras, layout);
+  if (has_imu_) add_imu(imu, noise);
+  hold_what_is_known(cameras);
+}
+
+void RigProblem::add_views(const std::vector<TargetCamera>& cameras, const TargetLayout& layout) {
+  for (RigState& state : unknowns_.states)
+    for (const auto& [camera, view] : state.views) {
+      CameraBlocks& blocks = unknowns_.cameras[camera];
+      const TargetCamera& of = cameras[camera];
+      const TargetView& seen = of.views.views[view];
+      MovingReprojection::Instant instant;
+      instant.after_state_s = to_seconds(seen.t + duration_from_seconds(blocks.time_offset_s) - state.t);
+      instant.gyro_B = state.gyro_B;
+      instant.R_W_T = unknowns_.R_W_T;
+      problem_.AddResidualBlock(
+          new MovingReprojection(pairs_of(seen, layout), of.lens.lens.distortion, of.lens.sigma_px, instant), nullptr,
+          state.T_W_B.data(), state.motion.data(), blocks.T_B_C.data(), &blocks.correction_s, unknowns_.tilt.data(),
+          blocks.lens.data());
+    }
+}
+
+void RigProblem::add_imu(std::span<const ImuSample> imu, const ImuNoise& noise) {
+  problem_.AddParameterBlock(imu_intrinsics_.data(), 18);
+  problem_.SetParameterBlockConstant(imu_intrinsics_.data());
+  for (std::size_t i = 0; i + 1 < unknowns_.states.size(); ++i) {
+    RigState &a = unknowns_.states[i], &b = unknowns_.states[i + 1];
+    const Eigen::Map<const Eigen::Vector3d> bias_gyro(a.motion.data() + 3), bias_accel(a.motion.data() + 6);
+    motions_.emplace_back(slice_imu(imu, a.t, b.t), bias_gyro, bias_accel, noise);
+    imu_terms_.push_back(problem_.AddResidualBlock(new ImuFactor(i, i + 1, motions_.back()), nullptr, a.T_W_B.data(),
+                                                   a.motion.data(), b.T_W_B.data(), b.motion.data(),
+                                                   imu_intrinsics_.data()));
+  }
+  problem_.AddResidualBlock(bias_prior(), nullptr, unknowns_.states.front().motion.data());
+}
+
+void RigProblem::hold_what_is_known(const std::vector<TargetCamera>& cameras) {
+  if (has_imu_) return;
+  for (RigState& state : unknowns_.states) problem_.SetParameterBlockConstant(state.motion.data());
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    problem_.SetParameterBlockConstant(&unknowns_.cameras[i].correction_s);
+  problem_.SetParameterBlockConstant(unknowns_.cameras.front().T_B_C.data());
+  problem_.SetParameterBlockConstant(unknowns_.tilt.data());
+}
+
+void RigProblem::solve(int most_steps) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = most_steps;
+  options.function_tolerance = 1e-8;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem_, &summary);
+  if (!summary.IsSolutionUsable())
+    throw InputError::format("the optimization of the calibration fails ({}); record more, slower motion",
+                             first_line(summary.message));
+}
+
+void RigProblem::take_corrections() {
+  for (CameraBlocks& camera : unknowns_.cameras) {
+    camera.time_offset_s += camera.correction_s;
+    camera.correction_s = 0.0;
+  }
+  unknowns_.R_W_T = so3::exp({unknowns_.tilt[0], unknowns_.tilt[1], 0.0}) * unknowns_.R_W_T;
+  unknowns_.tilt = {};
+}
+
+Eigen::MatrixXd RigProblem::calibration_covariance() {
+  std::vector<double*> order;
+  const auto add = [&](double* block) {
+    if (!problem_.IsParameterBlockConstant(block)) order.push_back(block);
+  };
+  for (RigState& state : unknowns_.states) add(state.T_W_B.data()), add(state.motion.data());
+  add(unknowns_.tilt.data());
+  // Of the calibration: where each column of the derivative belongs in the result.
+  constexpr int kPerCamera = 7 + kLensParameters;
+  std::vector<int> places;
+  for (std::size_t i = 0; i < unknowns_.cameras.size(); ++i) {
+    CameraBlocks& camera = unknowns_.cameras[i];
+    int place = kPerCamera * static_cast<int>(i);
+    for (double* block : {camera.T_B_C.data(), &camera.correction_s, camera.lens.data()}) {
+      const bool estimated = !problem_.IsParameterBlockConstant(block);
+      add(block);
+      const int size = problem_.ParameterBlockTangentSize(block);
+      for (int k = 0; k < size && estimated; ++k) places.push_back(place + k);
+      place += size;
+    }
+  }
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = order;
+  ceres::CRSMatrix J;
+  problem_.Evaluate(options, nullptr, nullptr, nullptr, &J);
+  const Eigen::MatrixXd covariance = marginal_covariance(to_eigen(J), static_cast<Eigen::Index>(places.size()));
+  const int all = kPerCamera * static_cast<int>(unknowns_.cameras.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(all, all);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t k = 0; k < places.size(); ++k)
+      out(places[i], places[k]) = covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+  return out;
+}
+
+double RigProblem::imu_misfit() const {
+  double squares = 0.0;
+  for (const ceres::ResidualBlockId term : imu_terms_) {
+    double cost = 0.0;
+    problem_.EvaluateResidualBlock(term, false, &cost, nullptr, nullptr);
+    squares += 2.0 * cost;
+  }
+  return imu_terms_.empty() ? 0.0 : std::sqrt(squares / (15.0 * static_cast<double>(imu_terms_.size())));
+}
+
+}  // namespace edged
