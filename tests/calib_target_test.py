@@ -81,7 +81,8 @@ class ATarget(WithFolder):
         self.assert_refused(edged("calib", "--target", "charuco", "--print-target", "target.png"), ".svg or .pdf")
         self.assert_refused(edged("calib", *print_to), "--print-target requires --target", code=2)
         self.assert_refused(edged("calib", "davis240c_ecd", "--rows", 5), "--rows requires --target", code=2)
-        self.assert_refused(edged("calib", "davis240c_ecd", "--mode", "frames"), "--mode requires --check or --target", code=2)
+        self.assert_refused(edged("calib", "davis240c_ecd", "--mode", "frames"),
+                            "--mode requires --check, --refine, --target or --imu-noise", code=2)
 
 
 if __name__ == "__main__":

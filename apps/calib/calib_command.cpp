@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "calib/calib_check.hpp"
+#include "calib/calib_imu_noise.hpp"
 #include "calib/calib_refine.hpp"
 #include "calib/calib_target.hpp"
 #include "calib/calib_template.hpp"
@@ -40,6 +41,7 @@ struct CalibOptions {
   bool quiet = false, json = false;
   CalibTargetOptions target;
   std::filesystem::path printed_target;
+  bool imu_noise = false;  ///< FILE is a recording at rest
 };
 
 std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts) {
@@ -182,6 +184,13 @@ int run_refine(const CalibOptions& options) {
   return refine_calibration(refine);
 }
 
+int run_imu_noise(const CalibOptions& options) {
+  CalibImuNoiseOptions noise{options.recording, options.out, options.quiet, options.json};
+  noise.source.recording = options.file;
+  noise.source.imu = options.imu;
+  return measure_imu_noise(noise);
+}
+
 /// --check, --refine, and the options that need a recording: for one of them or for --target.
 std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& options) {
   calib.add_option(
@@ -210,9 +219,10 @@ std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& o
 /// What belongs to a recording, or to a target, stands beside one.
 void check_company(const CLI::App& calib, const std::vector<CLI::Option*>& of_recordings) {
   const bool runs = calib.count("--check") + calib.count("--refine") > 0, target = calib.count("--target") > 0;
+  const bool reads = runs || target || calib.count("--imu-noise") > 0;
   for (const CLI::Option* option : of_recordings)
-    if (option->count() > 0 && !runs && !target)
-      throw CLI::RequiresError(option->get_name(), "--check, --refine or --target");
+    if (option->count() > 0 && !reads)
+      throw CLI::RequiresError(option->get_name(), "--check, --refine, --target or --imu-noise");
   for (const char* name : {"--rows", "--columns", "--size", "--ratio", "--lens", "--format", "--cameras", "--no-imu",
                            "--report", "--print-target"})
     if (calib.count(name) > 0 && !target) throw CLI::RequiresError(name, "--target");
@@ -225,6 +235,7 @@ int run_chosen(const CalibOptions& options) {
   if (!options.printed_target.empty()) return print_target(options.target.target, options.printed_target);
   if (!options.target.target.kind.empty()) return run_target(options);
   if (!options.refined.empty()) return run_refine(options);
+  if (options.imu_noise) return run_imu_noise(options);
   return options.recording.recording.empty() ? run_calib(options) : run_check(options);
 }
 
@@ -265,6 +276,16 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
                                         "Instead: write the target to this file, svg or pdf, in true size")
                            ->excludes(file)
                            ->excludes(check);
+  calib
+      ->add_flag(
+          "--imu-noise", options->imu_noise,
+          "Instead: FILE is a recording of an IMU at rest, whose noise is measured (Allan deviation); --out is a "
+          "Kalibr imu yaml")
+      ->needs(file)
+      ->excludes(check)
+      ->excludes(refine)
+      ->excludes("--target")
+      ->excludes(sees);
   calib->footer(
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"
@@ -274,6 +295,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged calib --refine a.bag b.bag --calib head.yaml --out better.yaml\n"
       "  edged calib --target aprilgrid --size 88 --print-target grid.pdf\n"
       "  edged calib --target aprilgrid --size 88 moved.bag --out head.yaml\n"
+      "  edged calib --imu-noise night.bag --out imu.yaml\n"
       "Exit codes of --check: 0 fits, 5 does not fit, 4 cannot be determined (too little motion, no start), 3 what "
       "cannot be read.");
   calib->callback([options, calib, of_recordings, file, fresh, check, refine, print, &chosen] {

@@ -61,11 +61,30 @@ void collect(Dataset& dataset, ViewCollector& collector, StatusLine& status) {
   collector.finish();
 }
 
+std::map<std::string, cv::Size> event_sensors(const Recording& recording) {
+  std::map<std::string, cv::Size> sensors;
+  for (const RecordedCamera& camera : recorded_cameras(recording.dataset->info()))
+    if (camera.modality == Modality::Events)
+      sensors[camera.name] = camera.sensor.area() > 0 ? camera.sensor : recording_event_sensor(recording);
+  return sensors;
+}
+
+/// Throws InputError for a name that the recording does not have.
+void check_cameras(const std::vector<std::string>& wanted, const DatasetInfo& info) {
+  const std::vector<RecordedCamera> recorded = recorded_cameras(info);
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(recorded, name, &RecordedCamera::name) != recorded.end()) continue;
+    std::string list;
+    for (const RecordedCamera& camera : recorded) list += (list.empty() ? "" : ", ") + camera.name;
+    throw InputError::format("--cameras {}: {} has {}", name, info.name, list);
+  }
+}
+
 CollectorOptions collector_options(const CalibTargetOptions& options, const Recording& recording) {
   CollectorOptions out;
   out.frames = options.mode != "events";
   out.events = options.mode != "frames" && recording.dataset->info().has_events;
-  if (out.events) out.event_sensor = recording_event_sensor(recording);
+  if (out.events) out.event_sensors = event_sensors(recording);
   if (!out.events) recording.dataset->leave_out(Modality::Events);
   if (!out.frames) recording.dataset->leave_out(Modality::Frames);
   return out;
@@ -124,6 +143,11 @@ void tell(const CalibTargetOptions& options, const TargetCalibration& result, co
   const std::vector<std::string> files = write_calibration(options, calibration);
   if (options.json) return;
   fmt::print("{:<11} {}, {}\n", "written", fmt::join(files, ", "), report.string());
+  if (!result.fit.has_imu && result.cameras.size() > 1 && options.format == "edged")
+    fmt::print(
+        "{:<11} the poses of the cameras to each other are not in this file, as it has them to the IMU: --format "
+        "kalibr\n",
+        "note");
   if (result.fit.has_imu && options.format != "opencv")
     fmt::print("{:<11} edged calib {} --check RECORDING\n", "next", shell_word(files.front()));
 }
@@ -153,8 +177,9 @@ void add_target_options(CLI::App& calib, CalibTargetOptions& options) {
       .add_option("--format", options.format, "Of --out with --target: edged, kalibr (camchain) or opencv (intrinsics)")
       ->check(CLI::IsMember({"edged", "kalibr", "opencv"}))
       ->capture_default_str();
-  calib.add_option("--cameras", options.source.cameras, "With --target: cameras to read, such as cam0,cam1")
-      ->delimiter(',');
+  calib.add_option("--cameras", options.source.cameras, "With --target: cameras to read, such as cam0,cam1 [all]")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   calib.add_flag("--no-imu", options.no_imu, "With --target: without the IMU, cameras alone");
   calib.add_option("--report", options.report, "With --target: page with coverage and residuals [beside --out]");
 }
@@ -179,8 +204,10 @@ int calibrate_from_target(CalibTargetOptions options) {
   if (!options.out.empty()) check_writable(options.out, "--out");
   TargetCalibration result;
   result.target = spec_of(options.target);
+  options.source.all_cameras = options.source.cameras.empty();
   const Recording recording = open_uncalibrated(options.source);
   result.recording = recording.dataset->info().name;
+  check_cameras(options.source.cameras, recording.dataset->info());
   StatusLine status(options.quiet);
   ViewCollector collector(result.target, collector_options(options, recording));
   collect(*recording.dataset, collector, status);

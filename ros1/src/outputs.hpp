@@ -19,10 +19,10 @@ class Outputs {
  public:
   Outputs(ros::NodeHandle& node, const NodeConfig& config);
 
-  /// Of one packet; rig: the cameras of the mode with online calibration.
   /// Advertises tracks/NAME of a camera beside the first of its kind.
   void add_camera(ros::NodeHandle& node, const std::string& name);
 
+  /// Of one packet; rig: the cameras of the mode with online calibration.
   void publish(const Step& step, const Eigen::Vector3d& gyro_B, const Rig& rig);
   /// At an IMU sample; covariance: of the newest packet. From another thread than the rest.
   void publish_prediction(const NavState& state, const Eigen::Vector3d& gyro_B,

@@ -215,7 +215,7 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
   Alignment result;
   result.gravity_error = free_length / kGravity - 1.0;
   result.scale_sigma = solver.relative_sigma(*start);
-  result.baseline_sigma = solver.baseline_sigma();
+  result.baseline_sigma = solver.baseline_sigma(found->best.fit);
   result.outliers = outliers_of(*found);
   if (running != nullptr) result.explained = search.explained(*found, *running);
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -10,15 +10,17 @@ namespace edged {
 /// Collects pairs of rays, of each feature at one instant.
 class BaselineScale {
  public:
-  /// Directions in one frame, of any length; sigma: of each [rad].
-  void add(const Eigen::Vector3d& ray_1, const Eigen::Vector3d& ray_2, double sigma);
+  /// Directions in one frame, of any length; baseline: from the first camera to the second in that frame [m]; sigma: of
+  /// each ray [rad].
+  void add(const Eigen::Vector3d& ray_1, const Eigen::Vector3d& ray_2, const Eigen::Vector3d& baseline, double sigma);
 
-  /// Standard deviation of ln scale if it were common to all depths; infinite where the parallax may be noise.
+  /// Standard deviation of ln scale if it were common to all depths (math.md, A3); infinite with few pairs, or where
+  /// the parallax may be noise.
   double sigma() const;
-  int pairs() const { return pairs_; }
 
  private:
   double information_ = 0.0;
+  double squared_parallax_ = 0.0;  ///< summed [rad^2]
   int pairs_ = 0;
 };
 

@@ -21,7 +21,8 @@ double second_coefficient_sigma(double first, const CameraModel& model) {
   if (corrected_coefficients(model) < kCorrectedCoefficients) return 0.0;
   const Eigen::Vector2d rim = model.pixel_to_point({0.0, model.cy()});
   const ByCoefficients by = lens_model(model.distortion()).by_coefficients(model.coefficients(), rim);
-  return first * by.col(0).norm() / by.col(1).norm();
+  const double second = by.col(1).norm();  // zero at the axis
+  return second > 0.0 ? first * by.col(0).norm() / second : 0.0;
 }
 
 }  // namespace

@@ -239,10 +239,14 @@ StartResult Initializer::start_from(const Alignment& alignment, External externa
     return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
   }
   const bool by_baselines = alignment.baseline_sigma <= config_.init_scale_sigma;
+  if (!by_baselines && buffer_.size() < static_cast<std::size_t>(config_.init_min_views))
+    return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
   if (!by_baselines && !(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
-  next_solve_ = buffer_.back().t + (by_baselines ? Duration(0) : kSolveEvery);
+  next_solve_ =
+      buffer_.back().t +
+      (by_baselines && buffer_.size() <= static_cast<std::size_t>(config_.init_min_views) ? Duration(0) : kSolveEvery);
   Window window = aligned_window(alignment, external);
   solve_start(window);
   const double slack = by_baselines ? 1.0 : most_scale_sigma / config_.init_scale_sigma;

@@ -6,8 +6,7 @@
 
 namespace edged {
 
-LinearPrior relative_pose_prior(const CalibratedCamera& one, const CalibratedCamera& other,
-                                const CalibrationConfig& config) {
+LinearPrior relative_pose_prior(const CameraInPair& one, const CameraInPair& other, const CalibrationConfig& config) {
   const Eigen::Matrix3d R_one = one.T_B_C.R(), R_other = other.T_B_C.R();
   const Eigen::Vector3d baseline = R_one.transpose() * (other.T_B_C.translation() - one.T_B_C.translation());
   Eigen::Matrix<double, 6, 2 * kCalibrationSize> J = Eigen::Matrix<double, 6, 2 * kCalibrationSize>::Zero();

@@ -12,7 +12,7 @@
 namespace edged {
 
 /// One of the two cameras: its index in the window, its pose as given, its calibration now.
-struct CalibratedCamera {
+struct CameraInPair {
   std::size_t index;
   SE3 T_B_C;
   const CalibrationBlock& calibration;
@@ -20,7 +20,6 @@ struct CalibratedCamera {
 
 /// The rotation between two cameras is as given to relative_rotation_sigma_deg, the baseline, in the frame of the
 /// first, to baseline_sigma_mm. Linear in the corrections, which are small.
-LinearPrior relative_pose_prior(const CalibratedCamera& one, const CalibratedCamera& other,
-                                const CalibrationConfig& config);
+LinearPrior relative_pose_prior(const CameraInPair& one, const CameraInPair& other, const CalibrationConfig& config);
 
 }  // namespace edged

@@ -286,14 +286,16 @@ double StartSolver::relative_sigma(const RefinedStart& start) const {
 }
 
 /// Of each track the first frame that two cameras have it in: later ones have the same errors.
-double StartSolver::baseline_sigma() const {
+double StartSolver::baseline_sigma(const Chosen& chosen) const {
   BaselineScale scale;
-  const auto ray = [&](const StartObservation& seen) {
-    return Vector3d(rig_->cameras[seen.camera].T_B_C.R() * seen.point.homogeneous());
-  };
-  for (const StartTrack& track : tracks_) {
-    const auto first = std::ranges::adjacent_find(track.observations, {}, &StartObservation::frame);
-    if (first != track.observations.end()) scale.add(ray(*first), ray(*std::next(first)), first->sigma);
+  const auto T_B_C = [&](const StartObservation& seen) -> const SE3& { return rig_->cameras[seen.camera].T_B_C; };
+  const auto ray = [&](const StartObservation& seen) { return Vector3d(T_B_C(seen).R() * seen.point.homogeneous()); };
+  for (const std::size_t track : chosen) {
+    const std::vector<StartObservation>& seen = tracks_[track].observations;
+    const auto first = std::ranges::adjacent_find(seen, {}, &StartObservation::frame);
+    if (first == seen.end()) continue;
+    const StartObservation& second = *std::next(first);
+    scale.add(ray(*first), ray(second), T_B_C(second).translation() - T_B_C(*first).translation(), first->sigma);
   }
   return scale.sigma();
 }

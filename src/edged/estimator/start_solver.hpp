@@ -104,7 +104,7 @@ class StartSolver {
   double relative_sigma(const RefinedStart& start) const;
 
   /// Standard deviation of ln scale by the baselines between cameras.
-  double baseline_sigma() const;
+  double baseline_sigma(const Chosen& chosen) const;
 
   /// Direction of a track in the middle of its life, in the first body frame.
   Eigen::Vector3d direction(std::size_t track) const;

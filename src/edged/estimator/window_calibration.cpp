@@ -114,7 +114,8 @@ void Window::free_calibration(const CalibrationConfig& config) {
     const auto beside = std::ranges::find_if(
         cameras_, [&](const WindowCamera& other) { return other.given.modality == of.given.modality; });
     if (const auto first = static_cast<std::size_t>(beside - cameras_.begin());
-        first < camera && config.baseline_sigma_mm > 0.0)
+        first < camera && config.baseline_sigma_mm > 0.0 &&
+        twin == cameras_.begin() + static_cast<std::ptrdiff_t>(camera))  // else the other one behind the lens has it
       add_soft_prior(relative_pose_prior({first, beside->given.T_B_C, beside->calibration},
                                          {camera, of.given.T_B_C, of.calibration}, config));
   }

@@ -311,7 +311,7 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
 void FeatureTracker::merge(Matches& matches) const {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (matches.fates[i] != Fate::Kept) continue;
-    for (std::size_t j = i + 1; j < tracks_.size(); ++j) {  // j is younger
+    for (std::size_t j = i + 1; j < tracks_.size(); ++j) {  // j is younger, or of another camera
       if (matches.fates[j] != Fate::Kept) continue;
       if (distance(matches.points[i], matches.points[j]) < config_.merge_px) matches.fates[j] = Fate::Merged;
     }

@@ -48,25 +48,26 @@ void ViewCollector::search(TargetViews& camera, Timestamp t, const cv::Mat& pict
 
 void ViewCollector::take_frame(const Frame& frame) {
   const auto last = last_frame_.find(frame.camera);
-  if (last != last_frame_.end() && frame.t - last->second < options_.frame_interval) return;
+  // A stamp that is far ahead must not hide the frames after it.
+  if (last != last_frame_.end() && frame.t >= last->second && frame.t - last->second < options_.frame_interval) return;
   last_frame_[frame.camera] = frame.t;
   search(camera(frame.camera, Modality::Frames, frame.image.size()), frame.t, frame.image);
   for (auto& [name, events] : event_cameras_) ask_for(events, frame.t);
 }
 
 void ViewCollector::ask_for(EventCamera& camera, Timestamp t) const {
-  if (camera.last_instant && t - *camera.last_instant < options_.event_interval) return;
+  if (camera.last_instant && t < *camera.last_instant + options_.event_interval) return;
   camera.last_instant = t;
   camera.pictures->add_instant(t);
 }
 
 void ViewCollector::take_events(const EventBatch& batch) {
   if (batch.events.empty()) return;
+  const auto sensor = options_.event_sensors.find(batch.camera);
+  if (sensor == options_.event_sensors.end()) return;
   EventCamera& events = event_cameras_[batch.camera];
   if (!events.pictures) {
-    if (options_.event_sensor.area() <= 0)
-      throw InputError("the size of the event sensor is not known: give it with --geometry, such as 640x480");
-    TargetViews& views = camera(batch.camera, Modality::Events, options_.event_sensor);
+    TargetViews& views = camera(batch.camera, Modality::Events, sensor->second);
     events.pictures = std::make_unique<EventPictures>(
         views.width, views.height, [this, &views](Timestamp t, const cv::Mat& picture) { search(views, t, picture); });
   }

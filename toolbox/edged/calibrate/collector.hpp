@@ -17,7 +17,7 @@ namespace edged {
 
 struct CollectorOptions {
   bool frames = true, events = true;
-  cv::Size event_sensor;                                    ///< of all event cameras [px]
+  std::map<std::string, cv::Size> event_sensors = {};       ///< by the name of the event camera [px]
   Duration frame_interval = std::chrono::milliseconds(45);  ///< at least, between two pictures that are searched
   Duration event_interval = std::chrono::milliseconds(95);
 };

@@ -33,8 +33,7 @@ EventPictures::EventPictures(int width, int height, Receiver receiver)
 
 void EventPictures::add(std::span<const Event> events) {
   for (const Event& event : events) {
-    EDGED_CHECK(event.x < width_ && event.y < height_, "event at {}, {}", event.x, event.y);
-    waiting_.push_back(event);
+    if (event.x < width_ && event.y < height_) waiting_.push_back(event);
   }
   if (!waiting_.empty()) pass(waiting_.back().t);
 }
@@ -42,18 +41,18 @@ void EventPictures::add(std::span<const Event> events) {
 void EventPictures::finish() { pass(Timestamp::max()); }
 
 void EventPictures::pass(Timestamp now) {
+  if (range_ == 0.0F && waiting_.size() > kFewestEvents * past_.size()) find_range();
   while (!instants_.empty() && (now == Timestamp::max() || now > instants_.front() + kReach)) {
-    if (range_ == 0.0F && waiting_.size() > kFewestEvents * past_.size()) find_range();
     if (range_ > 0.0F) {
       take_until(instants_.front());
       make(instants_.front());
-    } else if (waiting_.front().t < instants_.front() - 2 * kReach) {  // still at rest
+    } else if (!waiting_.empty() && waiting_.front().t < instants_.front() - 2 * kReach) {  // still at rest
       waiting_.erase(waiting_.begin(), std::ranges::lower_bound(waiting_, instants_.front() - kReach, {}, &Event::t));
     }
     instants_.pop_front();
   }
-  // Without instants nothing waits for what is past.
-  if (range_ > 0.0F && instants_.empty() && now != Timestamp::max()) take_until(now - kReach);
+  // The next instant is later than that: nothing waits for what is past.
+  if (range_ > 0.0F && now != Timestamp::max()) take_until(now - kReach);
 }
 
 /// Half the steps of the strong edges: the events are sorted by the length of the run of equal steps that they are in.

@@ -160,13 +160,16 @@ RigUnknowns start_without_imu(const std::vector<TargetCamera>& cameras, std::siz
   return out;
 }
 
-/// The states at the new times of their views: they keep pose and motion, moved by the change of the clock.
+/// The states at the new times of their views: they keep pose and motion. Those that leave the samples of the IMU go.
 void retime(RigUnknowns& unknowns, const std::vector<TargetCamera>& cameras, std::span<const ImuSample> imu) {
   for (RigState& state : unknowns.states) {
     const auto& [camera, view] = state.views.front();
     state.t = cameras[camera].views.views[view].t + duration_from_seconds(unknowns.cameras[camera].time_offset_s);
     state.gyro_B = gyro_at(imu, state.t);
   }
+  std::erase_if(unknowns.states, [&](const RigState& s) { return s.t < imu.front().t || s.t > imu.back().t; });
+  if (unknowns.states.size() < kFewestStates)
+    throw InputError("the clocks of cameras and IMU do not fit: their recordings hardly overlap by the clock found");
   std::ranges::stable_sort(unknowns.states, {}, &RigState::t);
   // Two cameras whose clocks turn out to be the same share no state; too short an interval has no information.
   const auto close = [](const RigState& a, const RigState& b) { return b.t - a.t < std::chrono::microseconds(50); };

@@ -16,6 +16,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/io/dataset_folders.hpp"
 #include "edged/io/text_parsing.hpp"
 
@@ -53,7 +54,8 @@ class LazyFile {
 
 void write_calibration(const WriterSetup& setup, const fs::path& folder) {
   const Calibration named = setup.calibration_when_read();
-  const RigCamera* events = named.rig.find(Modality::Events);
+  const auto written = std::ranges::find(named.rig.cameras, usual_camera_name(Modality::Events, 0), &RigCamera::name);
+  const RigCamera* events = written != named.rig.cameras.end() ? &*written : named.rig.find(Modality::Events);
   const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
   if (m.distortion() == DistortionModel::None || m.distortion() == DistortionModel::RadTan) {
     const auto& k = m.coefficients();
@@ -89,8 +91,13 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
     return truth.trajectory;
   }
   const Rig& rig = calibration->rig;
+  // Readers take it as that of the first event camera that is written.
+  const std::vector<RigCamera> renamed = setup.calibration_when_read().rig.cameras;
+  const auto written = std::ranges::find(renamed, usual_camera_name(Modality::Events, 0), &RigCamera::name);
   const RigCamera* events = rig.find(Modality::Events);
-  const RigCamera& to = events ? *events : rig.cameras.front();
+  const RigCamera& to = written != renamed.end() ? rig.cameras[static_cast<std::size_t>(written - renamed.begin())]
+                        : events                 ? *events
+                                                 : rig.cameras.front();
   if (truth.frame == to.name) return truth.trajectory;
   const RigCamera body;  // identity and no offset
   const RigCamera& from = truth.frame == "body" ? body : find_camera(setup, truth.frame);

@@ -184,7 +184,11 @@ class CameraChooser {
       const bool whole_kind = name == kind_name(modality_);
       if (!whole_kind) std::erase_if(free_, [this, &topic = topic](std::size_t i) { return topics_[i].name == topic; });
       if (topic == "none" || (!whole_kind && !is_camera(name, modality_, wishes_.rig))) continue;
-      take(whole_kind ? name_by_calibration(topic).value_or(name) : name, wanted_topic(topics_, role(), topic, file_));
+      const std::string camera = whole_kind ? name_by_calibration(topic).value_or(name) : name;
+      if (std::ranges::find(chosen_, camera, &CameraTopic::name) != chosen_.end())
+        throw InputError::format("--topic {}={}: camera {} has a topic already; give each camera once", name, topic,
+                                 camera);
+      take(camera, wanted_topic(topics_, role(), topic, file_));
     }
   }
 
@@ -258,8 +262,12 @@ class CameraChooser {
     std::vector<std::string> streams;
     for (const std::size_t i : free_) streams.push_back(topics_[i].name);
     NamedStreams named = name_streams(&rest, modality_, streams, wishes_.cameras, file_);
-    for (std::string& name : named.names)  // two cameras of one name are none
-      for (std::size_t i = 0; by_user(name); ++i) name = usual_camera_name(modality_, i);
+    std::vector<std::string> used;
+    for (std::string& name : named.names) {  // two cameras of one name are none
+      const auto taken = [&] { return by_user(name) || std::ranges::find(used, name) != used.end(); };
+      for (std::size_t i = 0; taken(); ++i) name = usual_camera_name(modality_, i);
+      used.push_back(name);
+    }
     if (!named.said.empty()) spdlog::warn(fmt::format("{}; --topic CAMERA=NAME assigns others", named.said));
     if (named.said.empty() && streams.size() > 1 && !wishes_.all_cameras)
       spdlog::warn(

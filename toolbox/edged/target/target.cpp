@@ -151,7 +151,7 @@ void TargetSpec::validate() const {
   if (!(size_m > 0.0 && size_m <= 10.0))
     throw InputError::format("a target '{}' of size {:g} mm: must be above 0 and at most 10000", name, 1e3 * size_m);
   if (kind == TargetKind::Checkerboard) {
-    if (rows < 2 || columns < 2) throw InputError("a checkerboard needs at least 2 x 2 inner corners");
+    if (rows < 3 || columns < 3) throw InputError("a checkerboard needs at least 3 x 3 inner corners");
     if ((rows + columns) % 2 == 0)
       throw InputError::format(
           "a checkerboard of {} x {} inner corners looks the same when it is turned by 180 degrees; one of rows and "
@@ -163,8 +163,12 @@ void TargetSpec::validate() const {
     throw InputError::format("a target '{}' with ratio {:g}: must lie between 0 and 1 ({})", name, ratio,
                              kind == TargetKind::AprilGrid ? "gap over tag" : "marker over square");
   const int most = tag_family(kind == TargetKind::AprilGrid)->bytesList.rows;
+  // Eight corners make a view.
+  if (kind == TargetKind::AprilGrid && rows * columns < 2)
+    throw InputError("a target 'aprilgrid' needs at least two tags");
   if (kind == TargetKind::AprilGrid) return check_tags(rows * columns, most, name);
-  if (rows < 3 || columns < 3) throw InputError("a target 'charuco' needs at least 3 x 3 squares");
+  if (rows < 3 || columns < 3 || (rows - 1) * (columns - 1) < 8)
+    throw InputError("a target 'charuco' needs at least 3 x 5 or 4 x 4 squares");
   check_tags(rows * columns / 2, most, name);
 }
 

@@ -38,11 +38,14 @@ KalibrLens kalibr_lens(const RigCamera& camera) {
     out.distortion_model = "radtan", out.distortion = {k[0], k[1], k[2], k[3]};
   } else if (m.distortion() == DistortionModel::Equidistant) {
     out.distortion_model = "equidistant", out.distortion = {k[0], k[1], k[2], k[3]};
+  } else if (m.distortion() == DistortionModel::OmniEquidistant) {
+    out.camera_model = "omni", out.intrinsics = {k[0]};
+    out.distortion_model = "equidistant", out.distortion = {k[1], k[2], k[3], k[4]};
   } else if (m.distortion() == DistortionModel::FieldOfView) {
     out.distortion_model = "fov", out.distortion = {k[0]};
   } else if (m.distortion() != DistortionModel::None) {
     throw InputError::format("camera {}: Kalibr has no lens '{}'{}; choose another --lens, or --format edged",
-                             camera.name, lens.name, k[4] != 0.0 ? " with a k3" : "");
+                             camera.name, lens.name, m.distortion() == DistortionModel::RadTan ? " with a k3" : "");
   }
   out.intrinsics.insert(out.intrinsics.end(), {m.fx(), m.fy(), m.cx(), m.cy()});
   return out;

@@ -57,7 +57,9 @@ std::string RosDataset::truth_frame() const {
   while (const auto message = source->next_of(*topic)) {
     try {
       const NamedPose named = read_named_pose(WireReader(source->wire(), message->data));
-      return camera_by_usual_name(choice_.known, named.frame).value_or("body");
+      if (const auto camera = camera_by_usual_name(choice_.known, named.frame)) return *camera;
+      const bool of_camera = named.frame.starts_with("events") || named.frame.starts_with("frames");
+      return of_camera ? std::string(named.frame) : "body";
     } catch (const Damage&) {
       // Skips a damaged message: the next one is as good.
     }

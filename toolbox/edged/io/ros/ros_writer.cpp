@@ -98,7 +98,8 @@ class RosWriter final : public RecordingWriter {
     if (!setup_.calibration || topics_.contains(topic)) return;
     const std::vector<RigCamera>& cameras = setup_.calibration->rig.cameras;
     const auto named = std::ranges::find(cameras, name, &RigCamera::name);
-    const RigCamera* camera = named != cameras.end() ? &*named : setup_.calibration->rig.find(modality);
+    const RigCamera* only = setup_.place_of(name, modality) == 0 ? setup_.calibration->rig.find(modality) : nullptr;
+    const RigCamera* camera = named != cameras.end() ? &*named : only;
     if (camera && camera->modality == modality)
       send(topic, "sensor_msgs/CameraInfo", t, camera_info_message(sink_->wire(), t, name, camera->model));
   }

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calib_imu_noise.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "commands.hpp"
+#include "common/files.hpp"
+#include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/status_line.hpp"
+#include "edged/core/check.hpp"
+#include "edged/core/statistics.hpp"
+#include "edged/survey/allan_deviation.hpp"
+
+namespace edged {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kAxes = 6;  // gyro, then accelerometer
+constexpr double kShortest_s = 60.0, kLongEnough_s = 3600.0;
+constexpr double kMostTurn = 0.02,
+                 kMostPush = 0.2;           // [rad/s], [m/s^2] of the mean of a second off the first one: at rest
+constexpr std::size_t kFirstSamples = 200;  // of which the period is taken
+constexpr double kGap = 1.5;                // [periods]
+constexpr double kClear = 3.0;              // [sigma] of a random walk that is told
+constexpr std::array kAxisNames = {"gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"};
+
+bool is_gyro(int axis) { return axis < 3; }
+
+double reading(const ImuSample& sample, int axis) {
+  return is_gyro(axis) ? sample.gyro_B[axis] : sample.accel_B[axis - 3];
+}
+
+/// Allan deviations of all axes of a body at rest.
+class RestingImu {
+ public:
+  void add(const ImuSample& sample) {
+    if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+    if (last_ && sample.t <= *last_) return;
+    if (!begin_) begin_ = sample.t;
+    if (axes_.empty()) {
+      first_.push_back(sample);
+      last_ = sample.t;
+      if (first_.size() == kFirstSamples) begin_clusters();
+      return;
+    }
+    take(sample);
+  }
+
+  double length_s() const { return begin_ ? to_seconds(*last_ - *begin_) : 0.0; }
+  double rate_Hz() const { return 1.0 / period_s_; }
+  const std::vector<AllanDeviation>& axes() const { return axes_; }
+  std::size_t gaps() const { return gaps_; }
+
+ private:
+  void begin_clusters() {
+    std::vector<double> periods;
+    for (std::size_t i = 1; i < first_.size(); ++i) periods.push_back(to_seconds(first_[i].t - first_[i - 1].t));
+    period_s_ = median(periods);
+    axes_.assign(kAxes, AllanDeviation(period_s_));
+    last_ = first_.front().t;
+    for (const ImuSample& sample : first_) take(sample);
+  }
+
+  void take(const ImuSample& sample) {
+    if (to_seconds(sample.t - *last_) > kGap * period_s_) {
+      ++gaps_;
+      for (AllanDeviation& axis : axes_) axis.skip_gap();
+    }
+    last_ = sample.t;
+    for (int axis = 0; axis < kAxes; ++axis) {
+      axes_[static_cast<std::size_t>(axis)].add(reading(sample, axis));
+      second_[axis] += reading(sample, axis);
+    }
+    if (++in_second_ * period_s_ >= 1.0) end_second();
+  }
+
+  void end_second() {
+    second_ /= static_cast<double>(in_second_);
+    if (!first_second_) first_second_ = second_;
+    const Eigen::Matrix<double, kAxes, 1> off = (second_ - *first_second_).cwiseAbs();
+    if (off.head<3>().maxCoeff() > kMostTurn || off.tail<3>().maxCoeff() > kMostPush)
+      throw InputError::format(
+          "the IMU moves {:.1f} s after the beginning; record it at rest, on something that does not shake, or choose "
+          "a "
+          "part with --from and --to",
+          to_seconds(*last_ - *begin_));
+    second_.setZero();
+    in_second_ = 0;
+  }
+
+  std::vector<ImuSample> first_;
+  std::vector<AllanDeviation> axes_;
+  std::optional<Timestamp> begin_, last_;
+  double period_s_ = 0.0;
+  std::size_t gaps_ = 0, in_second_ = 0;
+  Eigen::Matrix<double, kAxes, 1> second_ = Eigen::Matrix<double, kAxes, 1>::Zero();
+  std::optional<Eigen::Matrix<double, kAxes, 1>> first_second_;
+};
+
+/// What a run takes: of the worst axis; a walk that is not told is the most that it may be.
+struct WorstNoise {
+  double white = 0.0, walk = 0.0;
+  bool told = false;
+};
+
+double walk_of(const SignalNoise& noise) {
+  return noise.walk > kClear * noise.walk_sigma ? noise.walk : std::max(noise.walk, kClear * noise.walk_sigma);
+}
+
+WorstNoise worst(const std::vector<SignalNoise>& axes, bool gyro) {
+  WorstNoise out;
+  for (int axis = gyro ? 0 : 3; axis < (gyro ? 3 : kAxes); ++axis) {
+    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
+    out.white = std::max(out.white, noise.white);
+    out.told = walk_of(noise) > out.walk ? noise.walk > kClear * noise.walk_sigma : out.told;
+    out.walk = std::max(out.walk, walk_of(noise));
+  }
+  return out;
+}
+
+std::string kalibr_yaml(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
+  const WorstNoise gyro = worst(axes, true), accel = worst(axes, false);
+  return fmt::format(
+      "# Of {:.0f} s at rest by the Allan deviation, the worst axis. In motion errors of scale and sampling add to it: "
+      "a\n"
+      "# run wants some 5 (gyro) and 2.5 (accelerometer) times the noise.\n"
+      "accelerometer_noise_density: {:.3g}  # m/s^2/sqrt(Hz)\n"
+      "accelerometer_random_walk: {:.3g}  # m/s^3/sqrt(Hz){}\n"
+      "gyroscope_noise_density: {:.3g}  # rad/s/sqrt(Hz)\n"
+      "gyroscope_random_walk: {:.3g}  # rad/s^2/sqrt(Hz){}\n"
+      "rostopic: /imu\n"
+      "update_rate: {:.1f}  # Hz\n",
+      imu.length_s(), accel.white, accel.walk, accel.told ? "" : ", at most", gyro.white, gyro.walk,
+      gyro.told ? "" : ", at most", imu.rate_Hz());
+}
+
+std::string text_of(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
+  std::string text = fmt::format("{:.0f} s at {:.0f} Hz, {} gaps\n{:<8} {:>12} {:>12} {:>20}\n", imu.length_s(),
+                                 imu.rate_Hz(), imu.gaps(), "axis", "noise", "instability", "random walk");
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
+    const bool told = noise.walk > kClear * noise.walk_sigma;
+    text += fmt::format("{:<8} {:>12.3g} {:>12.3g} {:>20}\n", kAxisNames[static_cast<std::size_t>(axis)], noise.white,
+                        noise.instability,
+                        told ? fmt::format("{:.2g} +- {:.1g}", noise.walk, noise.walk_sigma)
+                             : fmt::format("at most {:.2g}", walk_of(noise)));
+  }
+  text += "units: gyro rad/s, accelerometer m/s^2; noise per sqrt(Hz), random walk per s per sqrt(Hz)\n";
+  if (imu.length_s() < kLongEnough_s)
+    text += fmt::format("the random walk shows in an hour or more; this is {:.0f} min\n", imu.length_s() / 60.0);
+  return text;
+}
+
+ordered_json json_of(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
+  ordered_json json = {{"seconds", imu.length_s()}, {"rate_Hz", imu.rate_Hz()}, {"gaps", imu.gaps()}};
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
+    ordered_json points = ordered_json::array();
+    for (const AllanDeviation::Point& point : imu.axes()[static_cast<std::size_t>(axis)].points())
+      points.push_back({{"tau_s", point.tau_s}, {"deviation", point.deviation}});
+    json["axes"].push_back({{"axis", kAxisNames[static_cast<std::size_t>(axis)]},
+                            {"noise", noise.white},
+                            {"instability", noise.instability},
+                            {"random_walk", noise.walk},
+                            {"random_walk_sigma", noise.walk_sigma},
+                            {"allan_deviation", std::move(points)}});
+  }
+  return json;
+}
+
+void read_all(Dataset& dataset, RestingImu& imu, bool quiet) {
+  dataset.leave_out(Modality::Events);
+  dataset.leave_out(Modality::Frames);
+  StatusLine status(quiet);
+  InterruptibleDataset recording(dataset);
+  while (const std::optional<Measurement> measurement = recording.next()) {
+    if (const auto* sample = std::get_if<ImuSample>(&*measurement)) imu.add(*sample);
+    if (const auto* sample = std::get_if<ImuSample>(&*measurement); sample && status.due())
+      status.show(progress_text(sample->t, dataset.info(), "read"));
+  }
+}
+
+}  // namespace
+
+int measure_imu_noise(const CalibImuNoiseOptions& options) {
+  catch_interrupts();
+  if (!options.out.empty()) check_writable(options.out, "--out");
+  const Recording recording = open_uncalibrated(options.source);
+  const std::string& name = recording.dataset->info().name;
+  RestingImu imu;
+  read_all(*recording.dataset, imu, options.quiet);
+  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (imu.length_s() < kShortest_s || imu.axes().empty())
+    throw InputError::format(
+        "{}: {:.1f} s of IMU samples; record {:.0f} s at rest, for the random walk an hour or more", name,
+        imu.length_s(), kShortest_s);
+  std::vector<SignalNoise> axes;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const std::vector<AllanDeviation::Point> points = imu.axes()[static_cast<std::size_t>(axis)].points();
+    if (points.size() < 3)
+      throw InputError::format("{}: {} does not change: a dead sensor, or not in its unit", name,
+                               kAxisNames[static_cast<std::size_t>(axis)]);
+    axes.push_back(fit_noise(points));
+  }
+  fmt::print("{}", options.json ? json_text(json_of(imu, axes)) + "\n" : text_of(imu, axes));
+  if (options.out.empty()) return kExitOk;
+  write_file(options.out, kalibr_yaml(imu, axes));
+  if (!options.json)
+    fmt::print("written {}\nnext: edged calib CALIBRATION --imu {} --out head.yaml\n", options.out.string(),
+               options.out.string());
+  return kExitOk;
+}
+
+}  // namespace edged
