@@ -77,9 +77,9 @@ struct StartCase {
 };
 void PrintTo(const StartCase& start, std::ostream* out) { *out << start.name; }
 
-class Start : public testing::TestWithParam<StartCase> {};
+class Beginning : public testing::TestWithParam<StartCase> {};
 
-TEST_P(Start, IsRightAtEverySeed) {
+TEST_P(Beginning, IsRightAtEverySeed) {
   const StartCase& how = GetParam();
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -103,7 +103,7 @@ TEST_P(Start, IsRightAtEverySeed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Initializer, Start,
+    Initializer, Beginning,
     testing::Values(StartCase{"rest", {.rest_s = 1.0}, 1.0}, StartCase{"rest_large_biases", {.rest_s = 1.0}, 1.0, true},
                     StartCase{"smooth", {}, 3.0}, StartCase{"smooth_drifting_tracks", {.pixel_walk = 0.7}, 3.0},
                     StartCase{"small", {.speed = 0.3}, 6.0}, StartCase{"slow", {.tempo = 0.4}, 25.0},

@@ -126,7 +126,7 @@ TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
   ASSERT_NE(tie, window.soft_priors().end());
   const std::vector<BlockKey> of_the_lens{{BlockKind::Calibration, 0}, {BlockKind::Calibration, 1}};
   EXPECT_EQ((*tie)->blocks(), of_the_lens);
-  EXPECT_EQ(window.soft_priors().size(), 5U);  // three cameras, one tie, the IMU
+  EXPECT_EQ(window.soft_priors().size(), 6U);  // three cameras, one tie, the frame cameras to each other, the IMU
   const auto misfit = [&](const CalibrationBlock& events, const CalibrationBlock& frames) {
     const std::array<const double*, 2> blocks{events.data(), frames.data()};
     CalibrationVector residuals;
