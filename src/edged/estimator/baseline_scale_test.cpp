@@ -30,7 +30,7 @@ BaselineScale scale_at(double depth_m, int n, double sigma, double turned_rad = 
 TEST(BaselineScale, IsWhatTheParallaxTells) {
   EXPECT_TRUE(std::isinf(BaselineScale().sigma()));
   const double parallax = 0.1 / 3.0;
-  const double alone = std::hypot(0.01, 5e-4 / parallax);
+  const double alone = std::hypot(0.01, 5e-4 / parallax, 1.0 / std::sqrt(60 * 100.0));
   EXPECT_NEAR(scale_at(3.0, 60, 1e-4).sigma(), alone, 0.1 * alone) << "with good features the calibration decides";
   EXPECT_NEAR(scale_at(3.0, 60, 5e-3).sigma(), std::sqrt(2.0) * 5e-3 / parallax / std::sqrt(60.0), 0.01);
   EXPECT_TRUE(std::isinf(scale_at(3.0, 10, 1e-4).sigma())) << "few";

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How a patch of one image looks in another: the affine warp by camera motion and depth.
+// How a patch of one image appears in another: the affine warp by camera motion and depth.
 #pragma once
 
 #include <Eigen/Core>

@@ -15,7 +15,7 @@ namespace edged {
 /// z-depth of a feature in a camera [m], where known.
 using DepthOf = std::function<std::optional<double>(const Channel& channel, FeatureId id)>;
 
-/// Whether two views of a packet are compared: of the same kind, as events and frames look different.
+/// Whether two views of a packet are compared: of the same kind, as events and frames differ in appearance.
 bool comparable(const ChannelView& one, const ChannelView& other, const StereoConfig& config);
 
 /// Follows features of `from` in `to`, too, up to `most` tracks there.
