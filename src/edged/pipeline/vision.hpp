@@ -97,7 +97,9 @@ class Vision {
 
   OdometryConfig config_;
   Inference inference_;
-  Rig rig_;  ///< with online calibration
+  bool gyro_saturated_ = false;  ///< since the last keyframe
+  bool provisional_ = true;      ///< by the last correction
+  Rig rig_;                      ///< with online calibration
   StageTimings* timings_;
   std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
   std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
@@ -105,9 +107,7 @@ class Vision {
   SceneDepth depth_;
   FeatureId next_feature_ = 1;
   std::optional<Timestamp> last_keyframe_, last_frame_;
-  bool gyro_saturated_ = false;              ///< since the last keyframe
   std::optional<LandmarkDepths> landmarks_;  ///< by the last correction
-  bool provisional_ = true;
 };
 
 }  // namespace edged
