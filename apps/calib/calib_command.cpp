@@ -216,6 +216,18 @@ std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& o
   return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
 }
 
+/// After the options that it excludes.
+void add_imu_noise_option(CLI::App& calib, CalibOptions& options) {
+  CLI::Option* noise =
+      calib
+          .add_flag(
+              "--imu-noise", options.imu_noise,
+              "Instead: FILE is a recording of an IMU at rest, whose noise is measured (Allan deviation); --out is a "
+              "Kalibr imu yaml")
+          ->needs(calib.get_option("FILE"));
+  for (const char* name : {"--check", "--refine", "--target", "--camera"}) noise->excludes(calib.get_option(name));
+}
+
 /// What belongs to a recording, or to a target, stands beside one.
 void check_company(const CLI::App& calib, const std::vector<CLI::Option*>& of_recordings) {
   const bool runs = calib.count("--check") + calib.count("--refine") > 0, target = calib.count("--target") > 0;
@@ -276,16 +288,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
                                         "Instead: write the target to this file, svg or pdf, in true size")
                            ->excludes(file)
                            ->excludes(check);
-  calib
-      ->add_flag(
-          "--imu-noise", options->imu_noise,
-          "Instead: FILE is a recording of an IMU at rest, whose noise is measured (Allan deviation); --out is a "
-          "Kalibr imu yaml")
-      ->needs(file)
-      ->excludes(check)
-      ->excludes(refine)
-      ->excludes("--target")
-      ->excludes(sees);
+  add_imu_noise_option(*calib, *options);
   calib->footer(
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"

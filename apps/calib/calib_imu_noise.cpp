@@ -31,7 +31,7 @@ constexpr double kMostTurn = 0.02,
                  kMostPush = 0.2;           // [rad/s], [m/s^2] of the mean of a second off the first one: at rest
 constexpr std::size_t kFirstSamples = 200;  // of which the period is taken
 constexpr double kGap = 1.5;                // [periods]
-constexpr double kClear = 3.0;              // [sigma] of a random walk that is told
+constexpr double kClear = 3.0;              // [sigma] of a random walk that is significant
 constexpr std::array kAxisNames = {"gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"};
 
 bool is_gyro(int axis) { return axis < 3; }
@@ -107,22 +107,22 @@ class RestingImu {
   std::optional<Eigen::Matrix<double, kAxes, 1>> first_second_;
 };
 
-/// What a run takes: of the worst axis; a walk that is not told is the most that it may be.
+/// What a run takes: of the worst axis; a walk that is not significant is the most that it may be.
 struct WorstNoise {
   double white = 0.0, walk = 0.0;
-  bool told = false;
+  bool significant = false;  ///< the walk
 };
 
-double walk_of(const SignalNoise& noise) {
-  return noise.walk > kClear * noise.walk_sigma ? noise.walk : std::max(noise.walk, kClear * noise.walk_sigma);
-}
+bool is_significant(const SignalNoise& noise) { return noise.walk > kClear * noise.walk_sigma; }
+
+double walk_of(const SignalNoise& noise) { return std::max(noise.walk, kClear * noise.walk_sigma); }
 
 WorstNoise worst(const std::vector<SignalNoise>& axes, bool gyro) {
   WorstNoise out;
   for (int axis = gyro ? 0 : 3; axis < (gyro ? 3 : kAxes); ++axis) {
     const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
     out.white = std::max(out.white, noise.white);
-    out.told = walk_of(noise) > out.walk ? noise.walk > kClear * noise.walk_sigma : out.told;
+    if (walk_of(noise) > out.walk) out.significant = is_significant(noise);
     out.walk = std::max(out.walk, walk_of(noise));
   }
   return out;
@@ -140,8 +140,8 @@ std::string kalibr_yaml(const RestingImu& imu, const std::vector<SignalNoise>& a
       "gyroscope_random_walk: {:.3g}  # rad/s^2/sqrt(Hz){}\n"
       "rostopic: /imu\n"
       "update_rate: {:.1f}  # Hz\n",
-      imu.length_s(), accel.white, accel.walk, accel.told ? "" : ", at most", gyro.white, gyro.walk,
-      gyro.told ? "" : ", at most", imu.rate_Hz());
+      imu.length_s(), accel.white, accel.walk, accel.significant ? "" : ", at most", gyro.white, gyro.walk,
+      gyro.significant ? "" : ", at most", imu.rate_Hz());
 }
 
 std::string text_of(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
@@ -149,11 +149,10 @@ std::string text_of(const RestingImu& imu, const std::vector<SignalNoise>& axes)
                                  imu.rate_Hz(), imu.gaps(), "axis", "noise", "instability", "random walk");
   for (int axis = 0; axis < kAxes; ++axis) {
     const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
-    const bool told = noise.walk > kClear * noise.walk_sigma;
     text += fmt::format("{:<8} {:>12.3g} {:>12.3g} {:>20}\n", kAxisNames[static_cast<std::size_t>(axis)], noise.white,
                         noise.instability,
-                        told ? fmt::format("{:.2g} +- {:.1g}", noise.walk, noise.walk_sigma)
-                             : fmt::format("at most {:.2g}", walk_of(noise)));
+                        is_significant(noise) ? fmt::format("{:.2g} +- {:.1g}", noise.walk, noise.walk_sigma)
+                                              : fmt::format("at most {:.2g}", walk_of(noise)));
   }
   text += "units: gyro rad/s, accelerometer m/s^2; noise per sqrt(Hz), random walk per s per sqrt(Hz)\n";
   if (imu.length_s() < kLongEnough_s)

@@ -27,8 +27,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What one recording tells.
-struct Told {
+/// What was found in one recording.
+struct RecordingEstimate {
   std::string recording;
   std::string why_not;                                     ///< there is no estimate; empty where there is one
   std::map<std::string, CorrectionEstimate> cameras = {};  ///< by name
@@ -54,25 +54,25 @@ bool same_cameras(const Rig& a, const Rig& b) {
   });
 }
 
-Told ask(const std::string& recording, Source& source, Mode mode, bool quiet) {
-  Told told{recording, {}};
+RecordingEstimate estimate_of(const std::string& recording, Source& source, Mode mode, bool quiet) {
+  RecordingEstimate result{recording, {}};
   const CalibrationRun run = calibrate_by_run(source.calibration.rig, source, mode, quiet);
   if (run.covariances.empty()) {
-    told.why_not = run.fit.cameras.empty() ? "there was no estimate" : run.fit.cameras.front().why;
-    return told;
+    result.why_not = run.fit.cameras.empty() ? "there was no estimate" : run.fit.cameras.front().why;
+    return result;
   }
   for (const RigCamera& found : run.found.cameras)
     if (const auto P = run.covariances.find(found.name); P != run.covariances.end())
-      told.cameras[found.name] = {correction_between(source.calibration.rig.camera(found.name), found), P->second};
-  return told;
+      result.cameras[found.name] = {correction_between(source.calibration.rig.camera(found.name), found), P->second};
+  return result;
 }
 
-std::vector<RefinedCamera> combine(const std::vector<Told>& all, const Rig& given, Mode mode) {
+std::vector<RefinedCamera> combine(const std::vector<RecordingEstimate>& all, const Rig& given, Mode mode) {
   std::vector<RefinedCamera> refined;
   for (const RigCamera& camera : given.cameras) {
     std::vector<CorrectionEstimate> estimates;
-    for (const Told& told : all)
-      if (const auto of = told.cameras.find(camera.name); of != told.cameras.end()) estimates.push_back(of->second);
+    for (const RecordingEstimate& result : all)
+      if (const auto of = result.cameras.find(camera.name); of != result.cameras.end()) estimates.push_back(of->second);
     if (estimates.empty()) continue;
     const CorrectionEstimate estimate = combined(estimates, inflated_prior(camera, mode));
     refined.push_back({camera, corrected_camera(camera, estimate.correction), estimate});
@@ -95,12 +95,12 @@ std::vector<CorrectionFound> numbers_of(const RigCamera& given, const Correction
 }
 
 /// The numbers in which a recording is beyond three sigma of what all say together.
-std::string contradictions(const Told& told, const std::vector<RefinedCamera>& refined) {
+std::string contradictions(const RecordingEstimate& result, const std::vector<RefinedCamera>& refined) {
   constexpr double kSigmas = 3.0;
   std::string list;
   for (const RefinedCamera& camera : refined) {
-    const auto own = told.cameras.find(camera.given.name);
-    if (own == told.cameras.end()) continue;
+    const auto own = result.cameras.find(camera.given.name);
+    if (own == result.cameras.end()) continue;
     const auto alone = numbers_of(camera.given, own->second), all = numbers_of(camera.given, camera.estimate);
     for (std::size_t i = 0; i < all.size(); ++i)
       if (std::abs(alone[i].off - all[i].off) > kSigmas * alone[i].sigma)
@@ -110,24 +110,24 @@ std::string contradictions(const Told& told, const std::vector<RefinedCamera>& r
   return list;
 }
 
-std::string text_of(const std::vector<Told>& all, const std::vector<RefinedCamera>& refined) {
+std::string text_of(const std::vector<RecordingEstimate>& all, const std::vector<RefinedCamera>& refined) {
   std::string text;
   for (const RefinedCamera& camera : refined) {
     text += fmt::format("{}\n", camera.given.name);
     for (const CorrectionFound& number : numbers_of(camera.given, camera.estimate))
       text += fmt::format("  {:<15} {:+10.4f} +- {:.4f}\n", number.name, number.off, number.sigma);
   }
-  for (const Told& told : all) {
-    const std::string off = contradictions(told, refined);
-    text += fmt::format("{:<11} {}\n", told.recording,
-                        !told.why_not.empty() ? "not used: " + told.why_not
-                        : off.empty()         ? "agrees within 3 sigma"
-                                              : "differs by more than 3 sigma: " + off);
+  for (const RecordingEstimate& result : all) {
+    const std::string off = contradictions(result, refined);
+    text += fmt::format("{:<11} {}\n", result.recording,
+                        !result.why_not.empty() ? "not used: " + result.why_not
+                        : off.empty()           ? "agrees within 3 sigma"
+                                                : "differs by more than 3 sigma: " + off);
   }
   return text;
 }
 
-ordered_json json_of(const std::vector<Told>& all, const std::vector<RefinedCamera>& refined) {
+ordered_json json_of(const std::vector<RecordingEstimate>& all, const std::vector<RefinedCamera>& refined) {
   ordered_json out = {{"cameras", ordered_json::array()}, {"recordings", ordered_json::array()}};
   for (const RefinedCamera& camera : refined) {
     ordered_json numbers = ordered_json::object();
@@ -135,9 +135,10 @@ ordered_json json_of(const std::vector<Told>& all, const std::vector<RefinedCame
       numbers[number.name] = {{"off", number.off}, {"sigma", number.sigma}};
     out["cameras"].push_back({{"camera", camera.given.name}, {"corrections", numbers}});
   }
-  for (const Told& told : all)
-    out["recordings"].push_back(
-        {{"recording", told.recording}, {"not_used", told.why_not}, {"contradicts", contradictions(told, refined)}});
+  for (const RecordingEstimate& result : all)
+    out["recordings"].push_back({{"recording", result.recording},
+                                 {"not_used", result.why_not},
+                                 {"contradicts", contradictions(result, refined)}});
   return out;
 }
 
@@ -167,7 +168,7 @@ int refine_calibration(const CalibRefineOptions& options) {
   if (options.out.empty()) throw InputError("--refine: give the file for the calibration with --out FILE");
   check_writable(options.out, "--out");
   Begin begin;
-  std::vector<Told> all;
+  std::vector<RecordingEstimate> all;
   for (const std::string& recording : options.recordings) {
     SourceOptions one = options.source;
     one.recording = recording;
@@ -175,7 +176,7 @@ int refine_calibration(const CalibRefineOptions& options) {
     const Mode mode = choose_mode(options.mode, source.dataset->info());
     match_cameras(source, mode);
     take_begin(begin, source, mode, recording);
-    all.push_back(ask(recording, source, mode, options.quiet));
+    all.push_back(estimate_of(recording, source, mode, options.quiet));
     if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
   }
   const std::vector<RefinedCamera> refined = combine(all, begin.used, begin.mode);

@@ -23,6 +23,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/target/print.hpp"
 
 namespace edged {
@@ -74,9 +75,7 @@ void check_cameras(const std::vector<std::string>& wanted, const DatasetInfo& in
   const std::vector<RecordedCamera> recorded = recorded_cameras(info);
   for (const std::string& name : wanted) {
     if (std::ranges::find(recorded, name, &RecordedCamera::name) != recorded.end()) continue;
-    std::string list;
-    for (const RecordedCamera& camera : recorded) list += (list.empty() ? "" : ", ") + camera.name;
-    throw InputError::format("--cameras {}: {} has {}", name, info.name, list);
+    throw InputError::format("--cameras {}: {} has {}", name, info.name, recorded_camera_names(info));
   }
 }
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
@@ -24,14 +23,7 @@ constexpr std::size_t kMostShown = 20000;  // residuals of a camera in the page
 /// "fx", "fy", "cx", "cy" and the coefficients.
 std::vector<std::string> parameter_names(const FreeLens& lens) {
   std::vector<std::string> out{"fx", "fy", "cx", "cy"};
-  std::string name;
-  for (const char c : std::string(lens_model(lens.distortion).coefficients) + " ") {
-    if (c != ' ' && c != '[' && c != ']') {
-      name += c;
-    } else if (!name.empty()) {
-      out.push_back(std::exchange(name, {}));
-    }
-  }
+  for (const std::string_view name : coefficient_names(lens_model(lens.distortion))) out.emplace_back(name);
   out.resize(static_cast<std::size_t>(lens.count()));
   return out;
 }
@@ -108,7 +100,7 @@ ordered_json camera_json(const TargetCalibration& result, std::size_t i) {
   return out;
 }
 
-double two_decimals(double value, double step) { return std::round(value / step) * step; }
+double rounded_to(double value, double step) { return std::round(value / step) * step; }
 
 }  // namespace
 
@@ -165,9 +157,9 @@ std::string target_page(const TargetCalibration& result) {
     ordered_json list = ordered_json::array();
     for (std::size_t k = 0; k < residuals.size(); k += step) {
       const CornerResidual& r = residuals[k];
-      list.push_back({two_decimals(to_seconds(r.t - *begin), 1e-3), two_decimals(r.pixel.x(), 0.1),
-                      two_decimals(r.pixel.y(), 0.1), two_decimals(r.error_px.x(), 1e-3),
-                      two_decimals(r.error_px.y(), 1e-3)});
+      list.push_back({rounded_to(to_seconds(r.t - *begin), 1e-3), rounded_to(r.pixel.x(), 0.1),
+                      rounded_to(r.pixel.y(), 0.1), rounded_to(r.error_px.x(), 1e-3),
+                      rounded_to(r.error_px.y(), 1e-3)});
     }
     camera["residuals"] = std::move(list);
   }

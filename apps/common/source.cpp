@@ -291,12 +291,10 @@ void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wa
   for (const RigCamera& camera : source.calibration.rig.cameras) {
     const bool is_wanted = std::ranges::find(wanted, camera.name) != wanted.end() && uses(mode, camera.modality);
     if (!is_wanted || std::ranges::find(recorded, camera.name, &RecordedCamera::name) != recorded.end()) continue;
-    std::string list;
-    for (const RecordedCamera& there : recorded) list += (list.empty() ? "" : ", ") + there.name;
     throw InputError::format(
         "{}: has no camera '{}', which the option cameras wants; it has {}; for a bag, --topic {}=NAME assigns its "
         "topic",
-        source.dataset->info().name, camera.name, list, camera.name);
+        source.dataset->info().name, camera.name, recorded_camera_names(source.dataset->info()), camera.name);
   }
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     if (!uses(mode, modality)) continue;

@@ -25,6 +25,14 @@ struct Distorted {
   Eigen::Matrix2d d_point;
 };
 
+/// A point at which a radius and its slope are known, moved along its direction to that radius.
+inline Distorted moved_to_radius(const Eigen::Vector2d& p, const Sloped& radius) {
+  const double r = p.norm(), tangential = r == 0.0 ? radius.slope : radius.value / r;
+  Distorted out{tangential * p, tangential * Eigen::Matrix2d::Identity()};
+  if (r > 0.0) out.d_point += (radius.slope - tangential) * (p * p.transpose() / (r * r));
+  return out;
+}
+
 /// The derivative of a distorted point by the coefficients.
 using ByCoefficients = Eigen::Matrix<double, 2, static_cast<int>(kMostLensCoefficients)>;
 

@@ -62,11 +62,8 @@ Distorted distorted(const LensModel& lens, const LensCoefficients& k, const Eige
   Distorted out{p, Eigen::Matrix2d::Identity()};
   if (lens.radius_of_angle) {
     const double r = p.norm();
-    const Sloped radius = lens.radius_of_angle(k, std::atan(r));
-    const double radial = radius.slope / (1.0 + r * r), tangential = r == 0.0 ? radial : radius.value / r;
-    out.point = tangential * p;
-    out.d_point *= tangential;
-    if (r > 0.0) out.d_point += (radial - tangential) * (p * p.transpose() / (r * r));
+    const Sloped of_angle = lens.radius_of_angle(k, std::atan(r));
+    out = moved_to_radius(p, {of_angle.value, of_angle.slope / (1.0 + r * r)});
   }
   if (!lens.distort) return out;
   const Distorted second = lens.distort(k, out.point);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What a calibration tells of two cameras to each other: far more than of each to the IMU.
+// What is known of the calibrations of two cameras to each other: far more than of each to the IMU.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +17,10 @@ struct CameraInPair {
   SE3 T_B_C;
   const CalibrationBlock& calibration;
 };
+
+/// All corrections of two cameras behind one lens but the time are equal: those of rotation and lens to 1e-4, of the
+/// lever arm to 0.1 mm.
+LinearPrior equal_calibrations(const CameraInPair& one, const CameraInPair& other);
 
 /// The rotation between two cameras is as given to relative_rotation_sigma_deg, the baseline, in the frame of the
 /// first, to baseline_sigma_mm. Linear in the corrections, which are small.

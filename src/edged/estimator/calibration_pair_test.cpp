@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/relative_pose_prior.hpp"
+#include "edged/estimator/calibration_pair.hpp"
 
 #include <gtest/gtest.h>
 

@@ -81,26 +81,26 @@ double turned_rad(const std::vector<ImuSample>& imu) {
   return angle;
 }
 
+std::string views_text(int views, int wanted) { return fmt::format("{} of {} views in motion", views, wanted); }
+
 std::string scale_text(double sigma, double most) {
   return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % required",
                      100.0 * std::min(sigma, 9.99), 100.0 * most);
 }
 
-/// The reason to wait for more views of a pair; empty where the velocity is known.
-std::string doubt_about_speed(const Window& window) {
-  const std::optional<Matrix15d> P = covariance(window, window.newest_id());
-  const double sigma = P ? std::sqrt(P->diagonal().segment<3>(6).maxCoeff()) : kFree;
-  if (sigma <= kMaxSpeedSigma) return "";
-  return fmt::format("views that determine the velocity: known to {:.2f} m/s, {:.2f} required", sigma, kMaxSpeedSigma);
-}
+/// How well the newest state is known: standard deviations of its tilt [rad] and its velocity [m/s], of the worst
+/// direction.
+struct StartSigmas {
+  double tilt = kFree, velocity = kFree;
+};
 
-/// Standard deviation of the newest state's tilt, of the worst direction [rad].
-double tilt_sigma(const Window& window) {
+StartSigmas sigmas_of_newest(const Window& window) {
   const std::optional<Matrix15d> P = covariance(window, window.newest_id());
-  if (!P) return kFree;
+  if (!P) return {};
   const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_O_B().R().topRows<2>();
   const Eigen::Matrix2d tilt = horizontal * P->block<3, 3>(3, 3) * horizontal.transpose();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tilt).eigenvalues()[1]);
+  return {std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tilt).eigenvalues()[1]),
+          std::sqrt(P->diagonal().segment<3>(6).maxCoeff())};
 }
 
 }  // namespace
@@ -211,9 +211,7 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
 
 StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
   const int wanted = shares_features(buffer_.back().observations) ? kStereoViews : config_.init_min_views;
-  if (buffer_.size() < static_cast<std::size_t>(wanted)) {
-    return {{}, fmt::format("{} of {} views in motion", buffer_.size(), wanted)};
-  }
+  if (views() < wanted) return {{}, views_text(views(), wanted)};
   const Timestamp now = buffer_.back().t;
   if (now < next_solve_) return {{}, motion_lacks_};
   StartResult result = start_by(External::Unused, most_scale_sigma, running);
@@ -238,20 +236,18 @@ StartResult Initializer::start_from(const Alignment& alignment, External externa
     const double seen = kGravity * (1.0 + alignment.gravity_error);
     return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
   }
-  const bool by_baselines = alignment.baseline_sigma <= config_.init_scale_sigma;
-  if (!by_baselines && buffer_.size() < static_cast<std::size_t>(config_.init_min_views))
-    return {{}, fmt::format("{} of {} views in motion", buffer_.size(), config_.init_min_views)};
+  const bool by_baselines = knows_scale(alignment);
+  if (!by_baselines && views() < config_.init_min_views) return {{}, views_text(views(), config_.init_min_views)};
   if (!by_baselines && !(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
-  next_solve_ =
-      buffer_.back().t +
-      (by_baselines && buffer_.size() <= static_cast<std::size_t>(config_.init_min_views) ? Duration(0) : kSolveEvery);
+  const bool at_each_view = by_baselines && views() <= config_.init_min_views;
+  next_solve_ = buffer_.back().t + (at_each_view ? Duration(0) : kSolveEvery);
   Window window = aligned_window(alignment, external);
   solve_start(window);
-  const double slack = by_baselines ? 1.0 : most_scale_sigma / config_.init_scale_sigma;
-  std::string doubt = doubt_about(window, kMaxTiltSigma_deg * slack);
-  if (doubt.empty() && by_baselines) doubt = doubt_about_speed(window);
+  std::string doubt = by_baselines
+                          ? doubt_about(window, kMaxTiltSigma_deg, kMaxSpeedSigma)
+                          : doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma, kFree);
   if (!doubt.empty()) return {{}, std::move(doubt)};
   const double sigma = by_baselines ? alignment.baseline_sigma : scale_sigma(window);
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
@@ -277,7 +273,7 @@ void Initializer::weigh_observations(Window& window) const {
 }
 
 /// The reason to reject a solved window; empty to accept it.
-std::string Initializer::doubt_about(const Window& window, double most_tilt_deg) const {
+std::string Initializer::doubt_about(const Window& window, double most_tilt_deg, double most_speed_sigma) const {
   const auto landmarks = std::count_if(window.features().begin(), window.features().end(),
                                        [](const auto& entry) { return entry.second.anchor.has_value(); });
   if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);
@@ -285,7 +281,8 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   if (!(rms <= kMaxStartRms)) {
     return fmt::format("motion that fits the IMU: features {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
   }
-  const double tilt_deg = tilt_sigma(window) / kDegree;
+  const StartSigmas known = sigmas_of_newest(window);
+  const double tilt_deg = known.tilt / kDegree;
   if (!(tilt_deg <= most_tilt_deg)) {
     return fmt::format("motion that determines gravity: known to {:.1f} deg, {:.1f} required", tilt_deg, most_tilt_deg);
   }
@@ -298,7 +295,9 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg)
   if (worst_depth_error(window, {0.0, config_.depth_factor.scale_sigma}) > config_.depth_factor.gate) {
     return "motion whose scale the depth source agrees with";
   }
-  return "";
+  if (known.velocity <= most_speed_sigma) return "";
+  return fmt::format("views that determine the velocity: known to {:.2f} m/s, {:.2f} required", known.velocity,
+                     most_speed_sigma);
 }
 
 /// The views of the buffer as keyframes at the poses of the alignment.
@@ -317,7 +316,7 @@ Window Initializer::aligned_window(const Alignment& alignment, External external
   OdomState unbiased = state.nav();
   unbiased.bias_accel.setZero();
   double gyro_bias_sigma = config_.gyro_bias_sigma;
-  if (alignment.baseline_sigma <= config_.init_scale_sigma) {
+  if (knows_scale(alignment)) {
     unbiased.bias_gyro.setZero();
     gyro_bias_sigma = kPairGyroBiasSigma;
   }

@@ -62,7 +62,10 @@ class Initializer {
   Window aligned_window(const Alignment& alignment, External external) const;
   void solve_start(Window& window) const;
   void weigh_observations(Window& window) const;
-  std::string doubt_about(const Window& window, double most_tilt_deg) const;
+  std::string doubt_about(const Window& window, double most_tilt_deg, double most_speed_sigma) const;
+  int views() const { return static_cast<int>(buffer_.size()); }
+  /// By the baselines between cameras.
+  bool knows_scale(const Alignment& alignment) const { return alignment.baseline_sigma <= config_.init_scale_sigma; }
 
   Rig rig_;
   ImuNoise noise_;

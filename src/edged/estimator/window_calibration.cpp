@@ -4,33 +4,11 @@
 #include <algorithm>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/estimator/calibration_pair.hpp"
 #include "edged/estimator/calibration_prior.hpp"
-#include "edged/estimator/relative_pose_prior.hpp"
 #include "edged/estimator/window.hpp"
 
 namespace edged {
-namespace {
-
-/// All corrections of two cameras but the time are equal: those of rotation and lens to 1e-4, of the lever arm to 0.1
-/// mm.
-LinearPrior equal_calibrations(std::size_t one, const CalibrationBlock& at_one, std::size_t other,
-                               const CalibrationBlock& at_other) {
-  constexpr double kEqual = 1e-4;
-  CalibrationVector weights = CalibrationVector::Constant(1.0 / kEqual);
-  weights[kTimeAt] = 0.0;
-  LinearPrior prior;
-  prior.blocks = {{BlockKind::Calibration, one}, {BlockKind::Calibration, other}};
-  prior.x0 = {{at_one.begin(), at_one.end()}, {at_other.begin(), at_other.end()}};
-  const Eigen::MatrixXd W = weights.asDiagonal();
-  prior.J.resize(kCalibrationSize, 2 * kCalibrationSize);
-  prior.J << W, -W;
-  prior.r = weights.cwiseProduct(Eigen::Map<const CalibrationVector>(at_one.data()) -
-                                 Eigen::Map<const CalibrationVector>(at_other.data()));
-  return prior;
-}
-
-}  // namespace
-
 RigCamera Window::calibrated(std::size_t camera) const {
   RigCamera found = cameras_[camera].given;
   const CalibrationBlock& off = cameras_[camera].calibration;
@@ -106,7 +84,8 @@ void Window::free_calibration(const CalibrationConfig& config) {
         std::ranges::find_if(cameras_.begin(), cameras_.begin() + static_cast<std::ptrdiff_t>(camera),
                              [&](const WindowCamera& other) { return is_same_lens(of.given, other.given); });
     if (const auto first = static_cast<std::size_t>(twin - cameras_.begin()); first < camera) {
-      add_soft_prior(equal_calibrations(first, twin->calibration, camera, of.calibration));
+      add_soft_prior(
+          equal_calibrations({first, twin->given.T_B_C, twin->calibration}, {camera, of.given.T_B_C, of.calibration}));
       for (int i = 0; i < kCalibrationSize; ++i)  // one lens has one prior
         if (i != kTimeAt && sigmas[i] > 0.0) sigmas[i] = kFree;
     }

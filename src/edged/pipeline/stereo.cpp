@@ -13,6 +13,10 @@ namespace {
 /// A match that is followed may be so much farther from the epipolar line than a new one.
 constexpr double kFollowedSlack = 1.5;
 
+bool comparable(const ChannelView& one, const ChannelView& other, const StereoConfig& config) {
+  return config.enabled && one.channel->camera.modality == other.channel->camera.modality;
+}
+
 StereoMatcher matcher_of(const ChannelView& from, const ChannelView& to, const BodyMotion& body,
                          const StereoConfig& config) {
   const SE3 T_O_from = from.channel->T_O_C(from.channel->T_O_B_now(body));
@@ -25,12 +29,9 @@ StereoMatcher matcher_of(const ChannelView& from, const ChannelView& to, const B
 
 }  // namespace
 
-bool comparable(const ChannelView& one, const ChannelView& other, const StereoConfig& config) {
-  return config.enabled && one.channel->camera.modality == other.channel->camera.modality;
-}
-
 void share_features(const ChannelView& from, const ChannelView& to, const BodyMotion& body, const DepthOf& depth,
                     int most, const StereoConfig& config) {
+  if (!comparable(from, to, config)) return;
   const StereoMatcher matcher = matcher_of(from, to, body, config);
   FeatureTracker& there = to.channel->tracker;
   for (const Track& track : from.channel->tracker.tracks()) {
@@ -42,6 +43,7 @@ void share_features(const ChannelView& from, const ChannelView& to, const BodyMo
 
 void drop_mismatches(const ChannelView& from, const ChannelView& to, const BodyMotion& body,
                      const StereoConfig& config) {
+  if (!comparable(from, to, config)) return;
   const StereoMatcher matcher = matcher_of(from, to, body, config);
   std::vector<FeatureId> wrong;
   for (const Track& track : from.channel->tracker.tracks()) {

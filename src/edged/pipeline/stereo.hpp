@@ -15,8 +15,7 @@ namespace edged {
 /// z-depth of a feature in a camera [m], where known.
 using DepthOf = std::function<std::optional<double>(const Channel& channel, FeatureId id)>;
 
-/// Whether two views of a packet are compared: of the same kind, as events and frames differ in appearance.
-bool comparable(const ChannelView& one, const ChannelView& other, const StereoConfig& config);
+// Of views of one kind, if that is enabled; of an event camera and a frame camera nothing: they differ in appearance.
 
 /// Follows features of `from` in `to`, too, up to `most` tracks there.
 void share_features(const ChannelView& from, const ChannelView& to, const BodyMotion& body, const DepthOf& depth,

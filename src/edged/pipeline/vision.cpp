@@ -195,8 +195,7 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
 void Vision::reject(std::span<const ChannelView> views, const BodyMotion& body) {
   const auto timer = timings_->measure("reject");
   for (auto view = views.begin(); view != views.end(); ++view) {
-    for (auto other = views.begin(); other != view; ++other)
-      if (comparable(*other, *view, config_.stereo)) drop_mismatches(*other, *view, body, config_.stereo);
+    for (auto other = views.begin(); other != view; ++other) drop_mismatches(*other, *view, body, config_.stereo);
   }
   for (const ChannelView& view : views) view.channel->reject(view.channel->T_O_B_now(body), !gyro_saturated_);
 }
@@ -234,7 +233,6 @@ void Vision::mark_keyframe(const VisionInput& input, std::span<const ChannelView
 }
 
 void Vision::share(const ChannelView& from, const ChannelView& to, const BodyMotion& body) {
-  if (!comparable(from, to, config_.stereo)) return;
   const auto depth = [this](const Channel& channel, FeatureId id) { return landmark_depth(channel, id); };
   share_features(from, to, body, depth, features_wanted(*to.channel, body.now().t), config_.stereo);
 }

@@ -15,6 +15,7 @@
 
 #include "edged/calibrate/lens_start.hpp"
 #include "edged/calibrate/reprojection.hpp"
+#include "edged/calibrate/solve_silently.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/estimator/factors/blocks.hpp"
@@ -164,13 +165,7 @@ void optimize(Trial& trial, Free free, double sigma_px, int most_steps) {
     problem.AddResidualBlock(new PlainReprojection(view.corners, trial.lens.distortion, sigma_px), nullptr,
                              view.T_C_T.data(), lens);
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.max_num_iterations = most_steps;
-  options.function_tolerance = 1e-9;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  solve_silently(problem, ceres::DENSE_SCHUR, most_steps, 1e-9);
   trial.cost = 0.0;
   for (const PosedView& view : trial.views)
     trial.cost += cost_of(trial.lens, pose_of(view.T_C_T.data()), view.corners, sigma_px);

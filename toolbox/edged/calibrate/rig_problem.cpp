@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "edged/calibrate/solve_silently.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
@@ -130,13 +131,7 @@ void RigProblem::hold_what_is_known(const std::vector<TargetCamera>& cameras) {
 }
 
 void RigProblem::solve(int most_steps) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = most_steps;
-  options.function_tolerance = 1e-8;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem_, &summary);
+  const ceres::Solver::Summary summary = solve_silently(problem_, ceres::SPARSE_NORMAL_CHOLESKY, most_steps, 1e-8);
   if (!summary.IsSolutionUsable())
     throw InputError::format("the optimization of the calibration fails ({}); record more, slower motion",
                              first_line(summary.message));

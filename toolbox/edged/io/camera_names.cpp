@@ -88,6 +88,12 @@ std::string usual_camera_name(Modality modality, std::size_t index) {
   return kind_name(modality) + (index == 0 ? "" : std::to_string(index + 1));
 }
 
+std::string recorded_camera_names(const DatasetInfo& info) {
+  std::string list;
+  for (const RecordedCamera& camera : recorded_cameras(info)) list += (list.empty() ? "" : ", ") + camera.name;
+  return list;
+}
+
 std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name) {
   std::size_t events = 0, frames = 0;
   for (const RecordedCamera& camera : all) {

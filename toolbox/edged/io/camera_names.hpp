@@ -31,6 +31,9 @@ std::string usual_camera_name(Modality modality, std::size_t index);
 /// which are those of the recording, read or not, of each kind the first first.
 std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name);
 
+/// "left, right": the cameras of a recording, for messages.
+std::string recorded_camera_names(const DatasetInfo& info);
+
 /// "events" or "frames".
 std::string kind_name(Modality modality);
 

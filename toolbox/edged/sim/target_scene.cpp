@@ -29,7 +29,7 @@ Face facing_minus_x(const Eigen::Vector3d& centre_W, double half_u, double half_
 void add_target(Scene& scene, const SceneConfig& config) {
   const TargetLayout layout = layout_of(config.target);
   const double longest = std::max(layout.width, layout.height) + 2.0 * layout.margin;
-  // The edges of a tag's bits, or of squares, lie between texels at every distance: elsewhere the halved copies of the
+  // The edges of a tag's bits, or of squares, lie between texels at every distance: else the halved copies of the
   // texture have lopsided edges, which shift corners by some hundredths of a pixel.
   const double unit_m = config.target.kind == TargetKind::AprilGrid ? 0.1 * config.target.size_m : config.target.size_m;
   int texels_per_unit = 1;

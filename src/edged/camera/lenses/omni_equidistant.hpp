@@ -17,12 +17,7 @@ inline Sloped omni_equidistant_radius(const LensCoefficients& k, double r) {
 }
 
 inline Distorted distort_omni_equidistant(const LensCoefficients& k, const Eigen::Vector2d& p) {
-  const double r = p.norm();
-  const Sloped radius = omni_equidistant_radius(k, r);
-  const double tangential = r > 0.0 ? radius.value / r : radius.slope;
-  Distorted out{tangential * p, tangential * Eigen::Matrix2d::Identity()};
-  if (r > 0.0) out.d_point += (radius.slope - tangential) / (r * r) * p * p.transpose();
-  return out;
+  return moved_to_radius(p, omni_equidistant_radius(k, p.norm()));
 }
 
 inline ByCoefficients omni_equidistant_by_coefficients(const LensCoefficients& k, const Eigen::Vector2d& p) {
