@@ -82,15 +82,15 @@ def simulated(edged, cache, preset, seed, duration=None, fresh=False, settings=(
         chosen += ["--set", setting]
     folder = cache / (f"{name or preset}_{seed}" + ("" if duration is None else f"_{duration:g}s"))
     resolved = call([edged, "simulate", *chosen, "--list"]) + "".join(f"# {argument}\n" for argument in extra)
-    made_with = folder / "simulation.yaml"
-    if not fresh and made_with.is_file() and made_with.read_text() == resolved:
+    made_with = folder.with_name(folder.name + ".simulation.yaml")  # in the folder, `edged doctor` would wonder about it
+    if not fresh and folder.is_dir() and made_with.is_file() and made_with.read_text() == resolved:
         return folder
     # Named last: an interrupted simulation is none.
     unfinished = folder.with_name(folder.name + ".unfinished")
     for old in (folder, unfinished):
         shutil.rmtree(old, ignore_errors=True)
     call([edged, "simulate", *chosen, "--out", unfinished, "--quiet"])
-    (unfinished / "simulation.yaml").write_text(resolved)
+    made_with.write_text(resolved)
     unfinished.rename(folder)
     return folder
 

@@ -21,10 +21,10 @@ class StereoRecordings(WithFlight):
         self.assertEqual(result.returncode, 0, result.stderr)
         return target
 
-    def run_bits(self, recording):
-        """The rows of the trajectory and of the states of a run with all cameras."""
-        out = self.folder / ("run_" + pathlib.Path(recording).name)
-        edged("run", recording, "--calib", self.flight, "--set", ALL, "--out", out, "--quiet")
+    def run_bits(self, recording, *options):
+        """The rows of the trajectory and of the states of a run."""
+        out = self.folder / ("run_" + pathlib.Path(recording).name + "".join(options).replace("=", "_"))
+        edged("run", recording, "--calib", self.flight, *options, "--out", out, "--quiet")
         poses = [line for line in (out / "trajectory.tum").read_text().splitlines() if not line.startswith("#")]
         self.assertGreater(len(poses), 20, recording)
         return poses, (out / "states.csv").read_text()
@@ -33,6 +33,11 @@ class StereoRecordings(WithFlight):
         folder = self.run_bits(self.flight)
         for name in ("a.bag", "a.mcap", "a.h5", "copy"):
             self.assertEqual(self.run_bits(self.converted(name)), folder, name)
+
+    def test_cameras_whose_views_overlap_are_all_used(self):
+        every = self.run_bits(self.flight)
+        self.assertEqual(self.run_bits(self.flight, "--set", ALL), every)
+        self.assertNotEqual(self.run_bits(self.flight, "--set", "cameras=events,frames"), every)
 
     def test_info_lists_all_cameras_and_doctor_checks_them(self):
         for name in (self.flight, self.converted("a.bag"), self.converted("a.aedat4")):

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -13,6 +14,7 @@
 #include "commands.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
+#include "common/run_source.hpp"
 #include "live/live_page.hpp"
 #include "run/run.hpp"
 #include "run/run_folder.hpp"
@@ -24,9 +26,10 @@ namespace {
 
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
-  const RunConfig config = load_config(options.config);
+  RunConfig config = load_config(options.config);
   options.source.cameras = camera_names(config.odometry.cameras);
-  Source source = open_source(options.source);
+  Source source = open_run_source(options.source);
+  config.odometry.cameras = fmt::format("{}", fmt::join(options.source.cameras, ","));
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode, options.source.cameras);
   for (const Modality modality : {Modality::Events, Modality::Frames})

@@ -158,7 +158,7 @@ inline constexpr int kSize = 13;
 }  // namespace calibration_at
 using CalibrationCovariance = Eigen::Matrix<double, calibration_at::kSize, calibration_at::kSize>;
 
-/// A run uses the first event camera and the first frame camera, or those that the option `cameras` names.
+/// The odometry uses the first event camera and the first frame camera, or those that the option `cameras` names.
 struct Rig {
   std::string name;
   std::vector<RigCamera> cameras;

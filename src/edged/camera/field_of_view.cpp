@@ -5,9 +5,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace edged {
 namespace {
+
+constexpr int kSamples = 20;  // along each side of an image
 
 /// Between the rays of two pixels [rad].
 double angle_between_pixels(const CameraModel& camera, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -28,6 +31,23 @@ FieldOfView field_of_view(const CameraModel& camera) {
 }
 
 double axis_slope(const CameraModel& camera) { return 2.0 * camera.mean_focal() / (camera.fx() + camera.fy()); }
+
+double shared_view(const RigCamera& a, const RigCamera& b, double distance_m) {
+  const SE3 T_b_a = b.T_B_C.inverse() * a.T_B_C;
+  int all = 0, shared = 0;
+  for (int row = 0; row < kSamples; ++row) {
+    for (int column = 0; column < kSamples; ++column) {
+      const Eigen::Vector2d pixel((column + 0.5) * a.model.width() / kSamples - 0.5,
+                                  (row + 0.5) * a.model.height() / kSamples - 0.5);
+      if (!a.model.contains(pixel)) continue;
+      ++all;
+      const std::optional<Eigen::Vector2d> there =
+          b.model.project(T_b_a * (distance_m * a.model.pixel_to_ray(pixel).normalized()));
+      if (there && b.model.contains(*there)) ++shared;
+    }
+  }
+  return all == 0 ? 0.0 : static_cast<double>(shared) / all;
+}
 
 bool is_same_lens(const RigCamera& a, const RigCamera& b) {
   return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();

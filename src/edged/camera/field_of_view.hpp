@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Field of view of a camera, and which cameras share a lens.
+// Field of view of a camera, which cameras share a lens, and how much of a view two share.
 #pragma once
 
 #include "edged/rig.hpp"
@@ -19,6 +19,9 @@ FieldOfView field_of_view(const CameraModel& camera);
 
 /// CameraModel::mean_focal() over (fx + fy) / 2: the slope of the radius by the angle on the axis.
 double axis_slope(const CameraModel& camera);
+
+/// The share of the image of `a`, 0 to 1, whose points `b` sees, too, if all are at that distance from `a` [m].
+double shared_view(const RigCamera& a, const RigCamera& b, double distance_m);
 
 /// Of a DAVIS, whose lens gives events and frames.
 bool is_same_lens(const RigCamera& a, const RigCamera& b);

@@ -37,5 +37,21 @@ TEST(FieldOfView, BarrelDistortionWidensIt) {
   EXPECT_GT(barrel.diagonal, plain.diagonal);
 }
 
+TEST(SharedView, OfCamerasBesideEachOtherIsWhatTheBaselineLeaves) {
+  const CameraModel lens(200, 200, 100, 100, 99.5, 99.5);
+  const RigCamera left{"left", Modality::Frames, lens, SE3()};
+  const RigCamera right{"right", Modality::Frames, lens, SE3(Eigen::Quaterniond::Identity(), {0.1, 0, 0})};
+  EXPECT_NEAR(shared_view(left, left, 3.0), 1.0, 1e-12);
+  EXPECT_NEAR(shared_view(left, right, 3.0), 0.95, 0.051);
+  EXPECT_LT(shared_view(left, right, 0.1), 0.65);
+}
+
+TEST(SharedView, OfCamerasInOppositeDirectionsIsNothing) {
+  const CameraModel lens(200, 200, 100, 100, 99.5, 99.5);
+  const RigCamera front{"front", Modality::Frames, lens, SE3()};
+  const RigCamera rear{"rear", Modality::Frames, lens, SE3(Eigen::Quaterniond(0, 0, 1, 0), Eigen::Vector3d::Zero())};
+  EXPECT_EQ(shared_view(front, rear, 3.0), 0.0);
+}
+
 }  // namespace
 }  // namespace edged

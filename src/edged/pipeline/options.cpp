@@ -91,7 +91,7 @@ void OdometryConfig::visit(ConfigFields& fields) {
 void OdometryConfig::declare(ConfigFields& fields) {
   fields.add("cameras", cameras,
              {.effect = "Names of the cameras to use, separated by commas. Empty: the first event camera and the first "
-                        "frame camera."});
+                        "frame camera; of a recording, `edged run` adds a second one of a kind whose view overlaps."});
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);

@@ -3,6 +3,7 @@
 #include "edged/eval/time_offset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -49,14 +50,7 @@ class Errors {
   std::size_t fewest_ = 0;
 };
 
-}  // namespace
-
-bool TimeOffset::matters() const {
-  constexpr double kLeast_s = 0.005, kClearlyLess = 0.7;
-  return std::abs(offset_s) > kLeast_s && ate_rmse_m < kClearlyLess * ate_given_m;
-}
-
-TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
+TimeOffset fit(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
   const Errors error(truth, estimate, max_gap);
   const double given = error(0.0);
   if (!std::isfinite(given)) return {};
@@ -71,6 +65,27 @@ TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, 
     for (const double sign : {-1.0, 1.0}) consider(middle_s + sign * step_s);
   }
   return best;
+}
+
+}  // namespace
+
+bool TimeOffset::matters() const {
+  constexpr double kLeast_s = 0.005, kClearlyLess = 0.7, kAlike = 0.5;
+  return std::abs(offset_s) > kLeast_s && ate_rmse_m < kClearlyLess * ate_given_m &&
+         spread_s < kAlike * std::abs(offset_s);
+}
+
+TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
+  TimeOffset all = fit(truth, estimate, max_gap);
+  if (!all.matters()) return all;
+  std::array<double, 3> offsets_s{};
+  for (std::size_t i = 0; i < offsets_s.size(); ++i) {
+    const auto from = estimate.begin() + static_cast<std::ptrdiff_t>(i * estimate.size() / offsets_s.size());
+    const auto to = estimate.begin() + static_cast<std::ptrdiff_t>((i + 1) * estimate.size() / offsets_s.size());
+    offsets_s[i] = fit(truth, {from, to}, max_gap).offset_s;
+  }
+  all.spread_s = std::ranges::max(offsets_s) - std::ranges::min(offsets_s);
+  return all;
 }
 
 }  // namespace edged

@@ -22,6 +22,15 @@ TEST(TimeOffset, IsFoundAtAnyRateOfTheTruth) {
   }
 }
 
+TEST(TimeOffset, OfAPartIsAnErrorOfTheEstimate) {
+  const Trajectory truth = winding_motion(22.0, 50.0);
+  Trajectory estimate = winding_motion(20.0, 50.0);
+  for (std::size_t i = 0; i < 2 * estimate.size() / 3; ++i) estimate[i].t -= duration_from_seconds(0.1);
+  const TimeOffset found = fit_time_offset(truth, estimate);
+  EXPECT_GT(found.offset_s, 0.02);
+  EXPECT_FALSE(found.matters());
+}
+
 TEST(TimeOffset, OfATruthOnTheSameClockDoesNotMatter) {
   const Trajectory motion = winding_motion(20.0, 50.0);
   EXPECT_NEAR(fit_time_offset(motion, motion).offset_s, 0.0, 1e-3);
