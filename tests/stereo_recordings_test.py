@@ -3,7 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two cameras of each kind: simulate, convert, info, doctor, run and its outputs. Usage: EDGED=path/to/edged stereo_recordings_test.py"""
 import json
+import math
 import pathlib
+import re
 import unittest
 
 from program import WithFlight, edged
@@ -38,6 +40,24 @@ class StereoRecordings(WithFlight):
         every = self.run_bits(self.flight)
         self.assertEqual(self.run_bits(self.flight, "--set", ALL), every)
         self.assertNotEqual(self.run_bits(self.flight, "--set", "cameras=events,frames"), every)
+
+    def test_a_bent_rig_is_told_and_corrected(self):
+        lines = (self.flight / "calibration.yaml").read_text().splitlines()
+        begin = next(i for i, line in enumerate(lines) if 'name: "frames2"' in line)
+        rows = next(i for i in range(begin, len(lines)) if "T_B_C" in lines[i]) + 1
+        turn = math.radians(1.0)
+        for i in range(rows, rows + 3):  # T_B_C times a rotation by 1 deg about the camera's z axis
+            x, y, *rest = (float(cell) for cell in lines[i][lines[i].index("[") + 1:lines[i].index("]")].split(","))
+            cells = [x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn), *rest]
+            lines[i] = f"      - [{', '.join(f'{cell:.16g}' for cell in cells)}]"
+        bent = self.folder / "bent.yaml"
+        bent.write_text("\n".join(line for i, line in enumerate(lines) if i != rows + 4) + "\n")  # without q_B_C
+        for calib, told in ((bent, True), (self.flight, False)):
+            result = edged("run", self.flight, "--calib", calib, "--mode", "frames", "--out", self.folder / "bent", "--force",
+                           "--quiet")
+            self.assertEqual(result.returncode, 0, result.stdout)
+            self.assertEqual(bool(re.search(r"cameras frames and frames2: their pose to each other is (0\.9|1\.0)\d deg",
+                                            result.stdout)), told, result.stdout)
 
     def test_info_lists_all_cameras_and_doctor_checks_them(self):
         for name in (self.flight, self.converted("a.bag"), self.converted("a.aedat4")):

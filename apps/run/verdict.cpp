@@ -68,6 +68,28 @@ void judge_lens_and_position(const CalibrationFound& c, std::vector<Finding>& ou
                  "the run has corrected it; pass calibration_found.yaml of this run with --calib, or calibrate anew"});
 }
 
+/// Rotation and baseline of the cameras of a kind to the first one, found against given: a rig that was bent.
+void judge_rig(const Rig& given, const Rig& found, const CalibrationConfig& config, std::vector<Finding>& out) {
+  constexpr double kSigmas = 3.0;  // of the prior: two cameras whose views overlap estimate these far better
+  for (const RigCamera& camera : found.cameras) {
+    const RigCamera& first = *found.find(camera.modality);
+    if (&camera == &first) continue;
+    const SE3 before = given.camera(first.name).T_B_C.inverse() * given.camera(camera.name).T_B_C;
+    const SE3 now = first.T_B_C.inverse() * camera.T_B_C;
+    const double turned_deg = kDegreesPerRadian * so3::log((before.inverse() * now).rotation()).norm();
+    const double moved_mm = 1e3 * (now.translation() - before.translation()).norm();
+    const bool is_bent =
+        turned_deg > kSigmas * config.relative_rotation_sigma_deg || moved_mm > kSigmas * config.baseline_sigma_mm;
+    if (!is_bent || config.relative_rotation_sigma_deg == 0.0 || config.baseline_sigma_mm == 0.0) continue;
+    out.push_back(
+        {Severity::Warning,
+         fmt::format("cameras {} and {}: their pose to each other is {:.2f} deg and {:.1f} mm off the calibration",
+                     first.name, camera.name, turned_deg, moved_mm),
+         "the rig may be bent; the run has corrected it; pass calibration_found.yaml of this run with --calib, or "
+         "calibrate anew"});
+  }
+}
+
 /// Calibrations are accurate to a degree: smaller rotations do not determine the direction. The inverse must be far
 /// closer.
 bool fits_inverse(const SE3& given, const SE3& found, double found_deg, double sigma_deg) {
@@ -229,6 +251,8 @@ class RunJudge : public RunObserver {
     for (Finding& finding : check_.findings(*run_.source.dataset, end.truth))
       summary.verdict.findings.push_back(std::move(finding));
     judge_external(run_.odometry.counters(), summary.verdict.findings);
+    judge_rig(run_.source.calibration.rig, run_.odometry.rig(), run_.config.odometry.estimator.calibration,
+              summary.verdict.findings);
     for (CalibrationFound& found : summary.calibration)
       found.beyond = found.beyond && !check_.agrees_with(run_.odometry.rig().camera(found.camera));
   }
