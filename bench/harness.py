@@ -30,6 +30,7 @@ STREAMS = {"fused": ("events", "frames", "imu"), "frames": ("frames", "imu"), "e
 # A run that loses its way has failed, and so has one that does not know that it has.
 LEAST_COVERAGE = 0.5
 WORST_SHARE_OF_PATH = 0.05
+SHORTEST_PATH = 0.5  # [m] of which a share means something, as in the program
 WHAT_FAILS = (f"Failed: never good, lost at the end, good for less than {LEAST_COVERAGE:.0%} of the time, or a mean error "
               f"above {WORST_SHARE_OF_PATH:.0%} of the path.")
 # What decides between variants: it scatters far less between runs than the ATE.
@@ -194,7 +195,7 @@ def failure(metrics):
         return "lost at the end"
     if metrics["coverage"] < LEAST_COVERAGE:
         return f"coverage {metrics['coverage']:.0%}"
-    share = evaluation["ate_m"]["mean"] / evaluation["path_length_m"]
+    share = evaluation["ate_m"]["mean"] / max(evaluation["path_length_m"], SHORTEST_PATH)
     return f"error {share:.1%} of the path" if share > WORST_SHARE_OF_PATH else ""
 
 

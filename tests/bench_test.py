@@ -96,10 +96,10 @@ class Bench(unittest.TestCase):
 
     def test_alarms_tells_a_false_alarm_from_what_is_true(self):
         alarms = script("alarms")
-        lost, camera = ({"severity": "warning", "text": text} for text in ("lost 1 times, for 0.5 s", "camera events: its rotation"))
+        lost, camera = ({"severity": "warning", "text": text} for text in ("lost 1 time, for 0.5 s", "camera events: its rotation"))
         metrics = {"evaluation": {"ate_m": {"mean": 0.001}, "path_length_m": 3.0}, "first_good_s": 0.4, "coverage": 0.95,
                    "status": "not to be trusted", "findings": [lost, camera]}
-        self.assertEqual(alarms.alarms_of(metrics), (["warning: camera events: its rotation"], ["warning: lost 1 times, for 0.5 s"]))
+        self.assertEqual(alarms.alarms_of(metrics), (["warning: camera events: its rotation"], ["warning: lost 1 time, for 0.5 s"]))
         metrics["evaluation"]["ate_m"]["mean"] = 0.5
         self.assertEqual(alarms.alarms_of(metrics)[0], [])
 

@@ -92,7 +92,7 @@ class Recordings(WithFlight):
         result = edged("doctor", self.changed("imu.txt", swapped))
         self.assertEqual(result.returncode, 3)
         self.assertRegex(result.stdout, r"error +gyro and accelerometer are swapped.*\n.*t ax ay az gx gy gz")
-        self.assertIn("\n1 errors, ", result.stdout)
+        self.assertIn("\n1 error, ", result.stdout)
 
     def test_the_doctor_names_a_gyro_with_negated_axes(self):
         def negated(text):
@@ -109,7 +109,7 @@ class Recordings(WithFlight):
         self.assertEqual(result.stderr, "")
         self.assertRegex(result.stdout, r"warning +.*imu.txt:101")
         self.assertEqual(result.stdout.count("\nwarning "), 1)
-        self.assertIn("0 errors, 1 warnings", result.stdout)
+        self.assertIn("0 errors, 1 warning", result.stdout)
 
     def test_the_doctor_tells_what_it_saw_of_a_recording_that_breaks_off(self):
         broken = self.changed("imu.txt", lambda text: text + "x y z\n" * 2000)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
@@ -266,7 +267,8 @@ std::string to_text(const std::vector<Finding>& findings) {
       if (!finding.remedy.empty()) text += fmt::format("{:<8}   -> {}\n", "", finding.remedy);
     }
   const auto count = [&](Severity severity) { return std::ranges::count(findings, severity, &Finding::severity); };
-  return text + fmt::format("{} errors, {} warnings\n", count(Severity::Error), count(Severity::Warning));
+  return text + fmt::format("{}, {}\n", counted(count(Severity::Error), "error"),
+                            counted(count(Severity::Warning), "warning"));
 }
 
 nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {

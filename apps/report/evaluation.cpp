@@ -66,13 +66,15 @@ Protocol chosen_protocol(const EvaluationOptions& options) {
 
 std::string local_error_text(const std::vector<LocalError>& local) {
   std::string errors, counts;
+  std::size_t most = 0;
   for (const LocalError& e : local) {
     if (e.windows == 0) continue;
     const char* comma = errors.empty() ? "" : ", ";
     errors += fmt::format("{}{:.2f} mm over {} s", comma, 1e3 * e.rmse_m, e.window_s);
     counts += fmt::format("{}{}", comma, e.windows);
+    most = std::max(most, e.windows);
   }
-  return errors.empty() ? "- (too short)" : fmt::format("{} ({} windows)", errors, counts);
+  return errors.empty() ? "- (too short)" : fmt::format("{} ({} {})", errors, counts, most == 1 ? "window" : "windows");
 }
 
 std::string to_table(const Evaluation& e) {
@@ -95,6 +97,8 @@ std::string to_table(const Evaluation& e) {
     table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
   }
   if (timed) table += fmt::format("  local error            {}\n", local_error_text(e.local));
+  if (std::isnan(e.mpe_percent))
+    return table + fmt::format("  errors per metre and scale: - (the path is shorter than {} m)\n", kShortestPath_m);
   table += fmt::format("  mean position error    {:.4f} % of the path\n", e.mpe_percent);
   table +=
       fmt::format("  mean rotation error    {:.4f} deg/m, yaw {:.4f} deg/m\n", e.rotation_deg_per_m, e.yaw_deg_per_m);

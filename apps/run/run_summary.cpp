@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/json_text.hpp"
 #include "common/status_line.hpp"
@@ -244,7 +245,7 @@ std::string to_table(const RunSummary& s) {
   const double span = s.statistics.visual_span_s();
   std::string table = fmt::format("{}, {}, {:.1f} s -> {}\n", s.recording, s.mode, span, s.folder);
   table += line("status", s.status,
-                s.statistics.times_lost() > 0 ? fmt::format("lost {} times", s.statistics.times_lost()) : "");
+                s.statistics.times_lost() > 0 ? "lost " + counted(s.statistics.times_lost(), "time") : "");
   if (s.evaluation) {
     const Evaluation& e = *s.evaluation;
     table += line("ATE RMSE", fmt::format("{:.4f} m", e.ate_m.rmse),
@@ -255,9 +256,15 @@ std::string to_table(const RunSummary& s) {
       table += line("final, not causal", fmt::format("{:.4f} m", s.final_evaluation->ate_m.rmse),
                     "ATE of the final trajectory; local error " + local_error_text(s.final_evaluation->local));
     }
-    table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
+    if (std::isnan(e.mpe_percent))
+      table += line("mean position error", "-", fmt::format("the path is shorter than {} m", kShortestPath_m));
+    else
+      table += line("mean position error", fmt::format("{:.3f} %", e.mpe_percent), "of the path");
     const std::string start = std::isnan(e.start_scale) ? "" : fmt::format("; {:.4f} in the first 5 s", e.start_scale);
-    table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);
+    if (std::isnan(e.scale))
+      table += line("scale", "-", "too little motion");
+    else
+      table += line("scale", fmt::format("{:.4f}", e.scale), "1 is perfect" + start);
     if (s.consistency && s.consistency->poses > 0) table += consistency_line(*s.consistency);
   } else {
     table += line("ATE RMSE", "-", "no ground truth to compare with");

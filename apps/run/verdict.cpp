@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/counted.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
@@ -120,8 +121,8 @@ void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
                    fmt::format("lost for {:.1f} s, {:.0f} % of the time{}", lost_s, 100 * run.lost_share(), why),
                    remedy});
   else if (run.times_lost() > 0)
-    out.push_back(
-        {Severity::Warning, fmt::format("lost {} times, for {:.1f} s{}", run.times_lost(), lost_s, why), remedy});
+    out.push_back({Severity::Warning,
+                   fmt::format("lost {}, for {:.1f} s{}", counted(run.times_lost(), "time"), lost_s, why), remedy});
 }
 
 /// Samples that contradict the estimate are rejected: a few are outliers, many mean a wrong description of the sensor.
@@ -171,9 +172,10 @@ void judge_against_truth(const RunSummary& s, std::vector<Finding>& out) {
          fmt::format("add {:.4f} s to its stamps; `edged eval` takes the file as it is", -offset.offset_s)});
   } else if (s.consistency && s.consistency->silent_s() > 0.0) {
     const Consistency& c = *s.consistency;
-    const bool gross =
-        s.evaluation->mpe_percent > kLeast_percent && (c.silent_s() > kMostOutside * s.evaluation->duration_s ||
-                                                       std::max(c.position.max_nees, c.rotation.max_nees) > kGrossNees);
+    const double path_m = std::max(s.evaluation->path_length_m, kShortestPath_m);
+    const bool gross = 100.0 * s.evaluation->ate_m.mean > kLeast_percent * path_m &&
+                       (c.silent_s() > kMostOutside * s.evaluation->duration_s ||
+                        std::max(c.position.max_nees, c.rotation.max_nees) > kGrossNees);
     out.push_back(
         {gross ? Severity::Error : Severity::Warning,
          fmt::format("ground truth: the estimate is outside 3 sigma of its covariance for {:.1f} s", c.silent_s()),

@@ -176,7 +176,9 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.ate_m = statistics(std::move(position));
   result.rotation_deg = statistics(std::move(rotation));
   result.yaw_deg = statistics(std::move(yaw));
-  const double per_metre = result.path_length_m > 0.0 ? 1.0 / result.path_length_m : 0.0;
+  const bool is_short = result.path_length_m < kShortestPath_m;
+  if (is_short) result.scale = std::numeric_limits<double>::quiet_NaN();
+  const double per_metre = is_short ? std::numeric_limits<double>::quiet_NaN() : 1.0 / result.path_length_m;
   result.mpe_percent = 100.0 * result.ate_m.mean * per_metre;
   result.rotation_deg_per_m = result.rotation_deg.mean * per_metre;
   result.yaw_deg_per_m = result.yaw_deg.mean * per_metre;

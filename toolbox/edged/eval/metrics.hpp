@@ -58,6 +58,9 @@ constexpr std::array<double, 3> kLocalWindows_s = {1.0, 3.0, 10.0};
 /// the last ends before the last pair. Windows of 10 pairs or fewer do not count.
 LocalError local_error(const Association& association, double window_s);
 
+/// [m] Of a shorter path no share means anything: then errors per path length and scale are NaN.
+inline constexpr double kShortestPath_m = 0.5;
+
 struct Evaluation {
   Protocol protocol;
   std::size_t pairs = 0, outside = 0, in_gaps = 0;

@@ -47,6 +47,15 @@ TEST(Evaluation, PrintsTheScaleEvenWhereItIsNotApplied) {
   EXPECT_LT(evaluate(association, protocol("P4")).ate_m.rmse, 1e-12);
 }
 
+TEST(Evaluation, OfAPathOfCentimetresHasNeitherScaleNorErrorsPerMetre) {
+  const Trajectory tiny = scaled(1e-3, winding_motion());
+  const Evaluation found = evaluate(associate(tiny, winding_motion()), protocol("P3"));
+  EXPECT_LT(found.path_length_m, kShortestPath_m);
+  EXPECT_TRUE(std::isnan(found.scale));
+  EXPECT_TRUE(std::isnan(found.mpe_percent));
+  EXPECT_GT(found.ate_m.rmse, 0.0);
+}
+
 TEST(Evaluation, TellsTheScaleOfTheStartApart) {
   // Too small by a fifth in the first 5 s, right from there on.
   const Trajectory truth = winding_motion();
