@@ -32,13 +32,14 @@ void MavlinkOutput::note(const Step& step) {
   tracker_.note(step);
 }
 
-void MavlinkOutput::send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time) {
+bool MavlinkOutput::send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time) {
   const std::lock_guard lock(mutex_);
   std::optional<VehicleOdometry> odometry = tracker_.at(state, gyro_B);
-  if (!odometry || !is_due(state.t)) return;
+  if (!odometry || !is_due(state.t)) return false;
   odometry->timestamp = odometry->timestamp_sample =
       static_cast<std::uint64_t>(unix_time / std::chrono::microseconds(1));
   put(encoder_.odometry(*odometry), counters_.odometry);
+  return true;
 }
 
 /// On average at the rate, whatever that of the IMU; also after a pause, and after a clock that jumped back.

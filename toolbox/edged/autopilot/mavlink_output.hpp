@@ -35,8 +35,8 @@ class MavlinkOutput {
   void note(const Step& step);
 
   /// A state predicted from the newest step, the IMU sample at its time, and this time by the clock of this machine
-  /// since the Unix epoch. Sends it if it is due.
-  void send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time);
+  /// since the Unix epoch. Sends it if it is due, and returns whether it was.
+  bool send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time);
 
   MavlinkCounters counters() const;
 

@@ -38,7 +38,7 @@ constexpr std::size_t kLargestRead = 2048;
 
 InputError no_url(const std::string& url) {
   return InputError::format(
-      "'{}' is not udp:HOST:PORT, udpin:HOST:PORT or serial:DEVICE:BAUD, such as udp:127.0.0.1:14550", url);
+      "MAVLink: '{}' is not udp:HOST:PORT, udpin:HOST:PORT or serial:DEVICE:BAUD, such as udp:127.0.0.1:14550", url);
 }
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR || error == ENOBUFS; }
