@@ -63,7 +63,9 @@ void AutopilotConfig::visit(ConfigFields& fields) {
       "axes", axes,
       {.effect = "How the IMU is mounted: its axes that point forward (back, left, right) and up (down), such "
                  "as \"forward=z up=-y\", or its roll pitch yaw [deg] in the vehicle's axes forward, left, up."});
-  fields.add("rate_hz", rate_hz, {"Hz", 1, 1000, "Messages per second to the autopilot, at most that of the IMU."});
+  fields.add(
+      "rate_hz", rate_hz,
+      {"Hz", 5, 1000, "Messages per second to the autopilot, at most those of the IMU. PX4 takes none below 5."});
   fields.add("system_id", system_id, {"", 1, 255, "MAVLink: id of the vehicle, as in the autopilot."});
   fields.add("component_id", component_id,
              {"", 1, 255, "MAVLink: id of this sender; 197 is visual-inertial odometry."});
