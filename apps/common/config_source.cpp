@@ -9,6 +9,7 @@ namespace edged {
 void RunConfig::visit(ConfigFields& fields) {
   odometry.visit(fields);
   fields.group("live", live);
+  fields.group("autopilot", autopilot);
 }
 
 void add_config_options(CLI::App& command, ConfigSource& source) {

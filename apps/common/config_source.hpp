@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/cli_fwd.hpp"
+#include "edged/autopilot/autopilot_config.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/options.hpp"
 
@@ -17,6 +18,7 @@ namespace edged {
 struct RunConfig {
   OdometryConfig odometry;
   QueueConfig live;  ///< queue of a live run
+  AutopilotConfig autopilot;
   void visit(ConfigFields& fields);
 };
 

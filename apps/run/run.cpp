@@ -94,7 +94,9 @@ RunSummary Run::go() {
   catch_interrupts();
   for (const auto& observer : observers_) observer->on_begin();
   run_.meter = ResourceMeter();
-  RunReader reader(run_);
+  RunReader reader(run_, [this](const Measurement& measurement) {
+    for (const auto& observer : observers_) observer->on_due(measurement);
+  });
   try {
     drive(
         run_.odometry, [&] { return next_measurement(reader); },

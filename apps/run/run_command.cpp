@@ -57,6 +57,8 @@ int run_all(const RunOptions& given, const CLI::App& app) {
   if (recordings.size() > 1 && !options.archive.empty() && options.archive != kArchiveBeside)
     throw CLI::ValidationError("--archive",
                                "is one file, the recordings are several; leave =FILE out for one beside each folder");
+  if (recordings.size() > 1 && !options.mavlink.empty())
+    throw CLI::ValidationError("--mavlink", "is for one recording: an autopilot flies one vehicle");
   if (recordings.size() > 1 && !options.serve.empty())
     throw CLI::ValidationError("--serve", "shows one run; give one recording (a port is written --serve=PORT)");
   if (recordings.size() > 1)
@@ -100,6 +102,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "and others (about 10 MB per minute)");
   add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);
+  run_app->add_option(
+      "--mavlink", options->mavlink,
+      "With --live: send the odometry to an autopilot as MAVLink: udp:HOST:PORT, udpin:HOST:PORT (listens) "
+      "or serial:DEVICE:BAUD; how the IMU is mounted, rate and ids: options autopilot.*");
   run_app->add_flag("--quiet", options->quiet, "No status line");
   run_app->add_flag("--json", options->json, "Print the summary as JSON");
   run_app->footer(
@@ -109,6 +115,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged run data/boxes_6dof data/poster_6dof --rig davis240c_ecd --jobs 2    # ends with a table\n"
       "  edged run data/boxes_6dof --live --set depth.source=fused\n"
       "  edged run tcp://127.0.0.1:7777 --calib head.yaml --serve    # a live camera, watched in a browser\n"
+      "  edged run tcp://127.0.0.1:7777 --calib head.yaml --mavlink serial:/dev/ttyACM0:921600\n"
       "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
       "Of several recordings the exit code is that of the first whose is not 0.");
   run_app->callback(

@@ -15,6 +15,7 @@ namespace edged {
 namespace {
 
 constexpr std::array kObservers = {
+    observe_autopilot,  // first, as it is not to wait for the others
     observe_status_line,
     observe_log,
     observe_verdict,

@@ -57,8 +57,8 @@ struct RunEnd {
   ReportPath path;  ///< the causal trajectory, aligned with the truth
 };
 
-/// The constructor throws InputError for invalid options, before the run folder exists. All calls come from the thread
-/// of the run.
+/// The constructor throws InputError for invalid options, before the run folder exists. All calls but on_due come from
+/// the thread of the run.
 class RunObserver {
  public:
   RunObserver() = default;
@@ -70,6 +70,8 @@ class RunObserver {
   virtual const char* stage() const { return "write"; }
   /// The folder exists.
   virtual void on_begin() {}
+  /// Live runs: when the measurement is due, from the thread that plays the recording, until the end of the steps.
+  virtual void on_due(const Measurement&) {}
   /// Called before the odometry gets the measurement.
   virtual void on_measurement(const Measurement&) {}
   virtual void on_step(const Step&) {}
@@ -97,5 +99,6 @@ ObserverFactory observe_album;                     // run_album
 ObserverFactory observe_report;                    // run_observer
 ObserverFactory observe_mcap;                      // run_mcap
 ObserverFactory observe_live_page;                 // live_page
+ObserverFactory observe_autopilot;                 // autopilot
 
 }  // namespace edged

@@ -32,6 +32,7 @@ struct RunOptions {
   bool mcap = false;
   std::string archive;  ///< which file; "true" for the one beside the folder; "" for none
   std::string serve;    ///< address; "true" for the default; "" without a live page
+  std::string mavlink;  ///< URL of the autopilot; "" without one
 };
 
 }  // namespace edged

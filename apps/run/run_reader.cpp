@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run/run_reader.hpp"
 
+#include <utility>
+
 #include "common/interrupt.hpp"
 
 namespace edged {
@@ -12,13 +14,13 @@ constexpr int kReadAheadMegabytes = 16;
 
 }  // namespace
 
-RunReader::RunReader(RunContext& run) : run_(run) {
+RunReader::RunReader(RunContext& run, std::function<void(const Measurement&)> on_due) : run_(run) {
   const auto interrupted = [] { return interrupt_signal() != 0; };
   Dataset& dataset = *run_.source.dataset;
   // The cost of simulation is not part of the cost of estimation, so it does not run in parallel.
   if (run_.source.seed) return;
   if (run_.options.live) {
-    live_.emplace(dataset, run_.config.live, interrupted);
+    live_.emplace(dataset, run_.config.live, interrupted, std::move(on_due));
   } else {
     ahead_.emplace(dataset, QueueConfig{.max_megabytes = kReadAheadMegabytes}, WhenFull::Wait, interrupted);
   }

@@ -4,6 +4,7 @@
 // for a simulation, in the thread of the run.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "edged/live/live_source.hpp"
@@ -14,8 +15,8 @@ namespace edged {
 
 class RunReader {
  public:
-  /// Starts to read.
-  explicit RunReader(RunContext& run);
+  /// Starts to read. on_due: that of LiveSource, in a live run.
+  RunReader(RunContext& run, std::function<void(const Measurement&)> on_due);
 
   /// Nothing at the end, or after an interrupt.
   std::optional<Measurement> next();

@@ -2,30 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/options/estimator.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
-#include <sstream>
-
-#include "edged/core/angles.hpp"
-#include "edged/core/check.hpp"
+#include "edged/core/option_text.hpp"
 
 namespace edged {
-namespace {
-
-Eigen::Vector3d three_numbers(const std::string& text, std::string_view key) {
-  std::string spaced = text;
-  std::ranges::replace(spaced, ',', ' ');
-  std::istringstream in(spaced);
-  Eigen::Vector3d numbers;
-  std::string rest;
-  if (!(in >> numbers.x() >> numbers.y() >> numbers.z()) || in >> rest || !numbers.allFinite()) {
-    throw InputError(fmt::format("{}: '{}' is not three numbers such as \"0.1 0 -0.05\"", key, text));
-  }
-  return numbers;
-}
-
-}  // namespace
 
 void HeightConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled, {.effect = "Use the samples of a height sensor."});
@@ -46,11 +25,7 @@ void VelocityConfig::visit(ConfigFields& fields) {
 }
 
 SE3 VelocityConfig::T_B_S() const {
-  const Eigen::Vector3d angles = kDegree * three_numbers(rotation_deg, "velocity.rotation_deg");
-  const Eigen::Quaterniond R_B_S = so3::exp(Eigen::Vector3d(0.0, 0.0, angles.z())) *
-                                   so3::exp(Eigen::Vector3d(0.0, angles.y(), 0.0)) *
-                                   so3::exp(Eigen::Vector3d(angles.x(), 0.0, 0.0));
-  return {R_B_S, three_numbers(position_m, "velocity.position_m")};
+  return {rotation_of_degrees(rotation_deg, "velocity.rotation_deg"), three_numbers(position_m, "velocity.position_m")};
 }
 
 void CalibrationConfig::visit(ConfigFields& fields) {

@@ -10,10 +10,13 @@
 
 namespace edged {
 
-LiveSource::LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted)
-    : reader_(dataset, config, WhenFull::Shed, std::move(interrupted),
+LiveSource::LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted,
+                       std::function<void(const Measurement&)> on_due)
+    : on_due_(std::move(on_due)),
+      reader_(dataset, config, WhenFull::Shed, std::move(interrupted),
               [this](const Measurement& measurement, const std::function<bool()>& stopped) {
                 if (const auto t = last_stamp(measurement)) clock_.wait_for(*t, stopped);
+                if (on_due_ && !stopped()) on_due_(measurement);
               }) {}
 
 std::optional<Measurement> LiveSource::next() {

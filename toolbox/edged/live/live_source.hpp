@@ -17,8 +17,9 @@ namespace edged {
 class LiveSource {
  public:
   /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
-  /// returns true.
-  LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted);
+  /// returns true. on_due: called by the thread with each measurement when it is due, before it is queued.
+  LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted,
+             std::function<void(const Measurement&)> on_due = {});
 
   /// As Dataset::next, without shed measurements; waits until the next one is due. Rethrows errors of the dataset after
   /// all measurements before them. Warns in the log when shedding begins and ends.
@@ -40,10 +41,11 @@ class LiveSource {
   QueuePeaks peaks() const { return reader_.queue().peaks(); }
 
  private:
+  std::function<void(const Measurement&)> on_due_;
   LiveClock clock_;
   StageTiming latency_;
   ShedReport report_;
-  ReadAhead reader_;  // last member: its thread uses the clock
+  ReadAhead reader_;  // last member: its thread uses the clock and on_due_
 };
 
 }  // namespace edged

@@ -47,6 +47,15 @@ TEST(LiveSource, GivesAllOfARecordingAtItsOwnSpeed) {
   EXPECT_GE(source.latency().max_s(), 0.0);
 }
 
+TEST(LiveSource, ReportsEachMeasurementWhenItIsDueEvenIfNobodyTakesIt) {
+  EventStorm storm = breeze(100);
+  std::atomic<std::size_t> imu = 0;
+  LiveSource source(storm, kRoomy, kNotInterrupted,
+                    [&imu](const Measurement& m) { imu += std::holds_alternative<ImuSample>(m) ? 1 : 0; });
+  while (imu < storm.imu_samples()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(count_all(source).imu, storm.imu_samples());
+}
+
 TEST(LiveSource, WhoIsTooSlowMissesTheOldestEventsAndNoImuSample) {
   EventStorm storm = breeze(300);
   LiveSource source(storm, {.max_age_s = 0.05}, kNotInterrupted);
