@@ -19,10 +19,10 @@ constexpr auto kLongestWait = std::chrono::milliseconds(50);
 
 MavlinkOutput::MavlinkOutput(const std::string& url, const AutopilotConfig& config)
     : url_(url),
-      period_(duration_from_seconds(1.0 / config.rate_hz)),
       port_(url),
       encoder_({static_cast<std::uint8_t>(config.system_id), static_cast<std::uint8_t>(config.component_id)}),
       tracker_(config.R_V_B()),
+      rate_(config.rate_hz),
       thread_([this](const std::stop_token& stop) { serve(stop); }) {}
 
 Duration MavlinkOutput::unix_now() { return std::chrono::system_clock::now().time_since_epoch(); }
@@ -35,18 +35,10 @@ void MavlinkOutput::note(const Step& step) {
 bool MavlinkOutput::send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time) {
   const std::lock_guard lock(mutex_);
   std::optional<VehicleOdometry> odometry = tracker_.at(state, gyro_B);
-  if (!odometry || !is_due(state.t)) return false;
+  if (!odometry || !rate_.is_due(state.t)) return false;
   odometry->timestamp = odometry->timestamp_sample =
       static_cast<std::uint64_t>(unix_time / std::chrono::microseconds(1));
   put(encoder_.odometry(*odometry), counters_.odometry);
-  return true;
-}
-
-/// On average at the rate, whatever that of the IMU; also after a pause, and after a clock that jumped back.
-bool MavlinkOutput::is_due(Timestamp t) {
-  if (next_ && t < *next_ && *next_ - t <= period_) return false;
-  const bool steady = next_ && t >= *next_ && t - *next_ < period_;
-  next_ = (steady ? *next_ : t) + period_;
   return true;
 }
 

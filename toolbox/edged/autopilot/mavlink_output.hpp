@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <mutex>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -13,6 +12,7 @@
 #include "edged/autopilot/autopilot_config.hpp"
 #include "edged/autopilot/mavlink.hpp"
 #include "edged/autopilot/mavlink_port.hpp"
+#include "edged/autopilot/rate_limit.hpp"
 #include "edged/autopilot/vehicle_tracker.hpp"
 
 namespace edged {
@@ -44,18 +44,16 @@ class MavlinkOutput {
   static Duration unix_now();
 
  private:
-  bool is_due(Timestamp t);
   void put(const MavlinkFrame& frame, std::size_t& counter);
   void serve(const std::stop_token& stop);
 
   const std::string url_;
-  const Duration period_;
 
   mutable std::mutex mutex_;  ///< guards all below but the thread
   MavlinkPort port_;          ///< the thread waits and receives
   MavlinkEncoder encoder_;
   VehicleTracker tracker_;
-  std::optional<Timestamp> next_;  ///< when a message is due
+  RateLimit rate_;
   MavlinkCounters counters_;
 
   std::jthread thread_;  ///< last: it uses the others
