@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/environment.hpp"
 
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <sys/socket.h>
+
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
@@ -44,6 +48,24 @@ std::vector<std::string> peers_of(const std::string& text) {
   return peers;
 }
 
+bool has_network() {
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return true;
+  bool found = false;
+  for (const ifaddrs* i = first; i; i = i->ifa_next)
+    found = found || ((i->ifa_flags & IFF_UP) != 0 && (i->ifa_flags & IFF_LOOPBACK) == 0 && i->ifa_addr &&
+                      i->ifa_addr->sa_family == AF_INET);
+  freeifaddrs(first);
+  return found;
+}
+
+/// Peers on this machine use the loopback alone (ROS_LOCALHOST_ONLY) or all interfaces (later distributions): both are
+/// wanted.
+std::string local_interfaces(bool network) {
+  const std::string other = network ? "<NetworkInterface autodetermine=\"true\"/>" : "";
+  return "<Interfaces>" + other + "<NetworkInterface name=\"lo\"/></Interfaces>";
+}
+
 }  // namespace
 
 std::optional<std::string> variable(const char* name) {
@@ -60,6 +82,7 @@ Discovery discovery_of(const Environment& environment) {
     discovery.range = DiscoveryRange::Localhost;
     discovery.peers.clear();
   }
+  discovery.network = has_network();
   discovery.cyclone_uri = environment("CYCLONEDDS_URI").value_or("");
   return discovery;
 }
@@ -70,7 +93,10 @@ std::string cyclone_config(const Discovery& discovery) {
   std::vector<std::string> peers = off ? std::vector<std::string>() : discovery.peers;
   if (localhost) peers.insert(peers.begin(), "localhost");
   std::string parts = kSocketBuffer;
-  if (localhost || off) parts += "<General><AllowMulticast>false</AllowMulticast></General>";
+  if (localhost || off) {
+    const std::string interfaces = localhost ? local_interfaces(discovery.network) : "";
+    parts += "<General>" + interfaces + "<AllowMulticast>false</AllowMulticast></General>";
+  }
   if (off) parts += "<Discovery><ParticipantIndex>none</ParticipantIndex></Discovery>";
   if (!peers.empty()) {
     parts +=

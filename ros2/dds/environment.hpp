@@ -18,6 +18,7 @@ struct Discovery {
   std::uint32_t domain = 0;
   DiscoveryRange range = DiscoveryRange::Subnet;
   std::vector<std::string> peers;  ///< addresses that are asked beside (ROS_STATIC_PEERS)
+  bool network = true;             ///< there is an interface beside the loopback
   std::string cyclone_uri;         ///< the user's own configuration (CYCLONEDDS_URI), which has the last word
 };
 

@@ -72,7 +72,7 @@ Guid guid_of(dds_entity_t entity) {
 Participant::Participant(const Discovery& discovery) {
   const dds_entity_t domain = dds_create_domain(discovery.domain, cyclone_config(discovery).c_str());
   if (domain != DDS_RETCODE_PRECONDITION_NOT_MET)  // else the process has it
-    domain_ = Entity(domain, "the configuration is refused; check CYCLONEDDS_URI and the ROS_ variables");
+    domain_ = Entity(domain, "no network interface is up, or CYCLONEDDS_URI is wrong");
   const QosHandle qos = new_qos(kEnclave);
   participant_ = Entity(dds_create_participant(discovery.domain, qos.get(), nullptr),
                         fmt::format("no network for domain {}; is an interface up?", discovery.domain));

@@ -40,7 +40,7 @@ class TypedPeer {
  public:
   TypedPeer(const std::string& topic, const dds_topic_descriptor_t& type, dds_qos_t* qos = nullptr)
       : participant_(dds_create_participant(test_discovery().domain, nullptr, nullptr), "participant"),
-        topic_(dds_create_topic(participant_.handle(), dds_topic(topic).c_str(), &type, nullptr, nullptr), topic),
+        topic_(dds_create_topic(participant_.handle(), &type, dds_topic(topic).c_str(), nullptr, nullptr), topic),
         qos_(qos ? qos : default_qos(), &dds_delete_qos) {}
 
   void read() { endpoint_ = Entity(dds_create_reader(participant_.handle(), topic_.handle(), qos_.get(), nullptr), ""); }

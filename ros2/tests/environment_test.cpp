@@ -36,6 +36,7 @@ TEST(Ros2Environment, LocalhostAsksThisMachineWithoutMulticast) {
        {"<AllowMulticast>false</AllowMulticast>", "<ParticipantIndex>auto</ParticipantIndex>",
         "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>", "<Peer address=\"localhost\"/>"})
     EXPECT_THAT(config, HasSubstr(part));
+  EXPECT_THAT(config, HasSubstr("<NetworkInterface name=\"lo\"/>"));
   EXPECT_EQ(config, cyclone_config(discovery_with({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_STATIC_PEERS", "10.0.0.1"}})));
 }
 

@@ -158,13 +158,14 @@ class Collector final : public dds::DataReaderListener {
   std::vector<std::string> messages_;
 };
 
-/// On the loopback interface only, with unicast discovery.
+/// With unicast discovery on this machine: as ROS_LOCALHOST_ONLY of Humble has it (the loopback interface only) or as
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST (all interfaces).
 class Participant {
  public:
-  explicit Participant(std::uint32_t domain) {
+  explicit Participant(std::uint32_t domain, bool loopback_only = true) {
     dds::DomainParticipantQos qos;
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    udp->interfaceWhiteList.emplace_back("127.0.0.1");
+    if (loopback_only) udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->receiveBufferSize = udp->sendBufferSize = 4 << 20;
     qos.transport().use_builtin_transports = false;
     qos.transport().user_transports.push_back(udp);

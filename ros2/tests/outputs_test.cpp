@@ -14,12 +14,12 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr Timestamp kTime = timestamp_from_ns(1'700'000'000'123'456'789);
+constexpr Timestamp kOutputTime = timestamp_from_ns(1'700'000'000'123'456'789);
 const node::FrameNames kNames{"odom", "body"};
 
 node::Estimate some_estimate() {
   node::Estimate estimate;
-  estimate.state.t = kTime;
+  estimate.state.t = kOutputTime;
   estimate.state.T_W_B = SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(1, 2, 3));
   estimate.state.v_W = Eigen::Vector3d(4, 5, 6);
   estimate.gyro_B = Eigen::Vector3d(0.1, 0.2, 0.3);
@@ -79,7 +79,7 @@ TEST_F(Ros2Outputs, Path) {
   TypedPeer<nav_msgs_msg_dds__Path_> peer("/out", nav_msgs_msg_dds__Path__desc);
   const SE3 T = some_estimate().state.T_W_B;
   const auto* path =
-      passed(peer, "nav_msgs/Path", node::path_message(Wire::Cdr, kTime, {{kTime, SE3()}, {kTime, T}}, kNames));
+      passed(peer, "nav_msgs/Path", node::path_message(Wire::Cdr, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}, kNames));
   ASSERT_TRUE(path);
   expect_header(path->header, "odom");
   ASSERT_EQ(path->poses._length, 2U);
@@ -93,7 +93,7 @@ TEST_F(Ros2Outputs, Transforms) {
   rig.cameras.push_back(
       {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
   const auto* tf =
-      passed(peer, "tf2_msgs/TFMessage", node::camera_transforms_message(Wire::Cdr, kTime, rig, kNames));
+      passed(peer, "tf2_msgs/TFMessage", node::camera_transforms_message(Wire::Cdr, kOutputTime, rig, kNames));
   ASSERT_TRUE(tf);
   ASSERT_EQ(tf->transforms._length, 1U);
   expect_header(tf->transforms._buffer[0].header, "body");
@@ -106,7 +106,7 @@ TEST_F(Ros2Outputs, Landmarks) {
   TypedPeer<sensor_msgs_msg_dds__PointCloud2_> peer("/out", sensor_msgs_msg_dds__PointCloud2__desc);
   const std::vector<Landmark> landmarks = {{7, {1, 2, 3}}, {9, {4, 5, 6}}};
   const auto* cloud =
-      passed(peer, "sensor_msgs/PointCloud2", node::landmarks_message(Wire::Cdr, kTime, landmarks, kNames));
+      passed(peer, "sensor_msgs/PointCloud2", node::landmarks_message(Wire::Cdr, kOutputTime, landmarks, kNames));
   ASSERT_TRUE(cloud);
   expect_header(cloud->header, "odom");
   EXPECT_EQ(cloud->height, 1U);
@@ -130,7 +130,7 @@ TEST_F(Ros2Outputs, Landmarks) {
 TEST_F(Ros2Outputs, TrackedImages) {
   TypedPeer<sensor_msgs_msg_dds__Image_> peer("/out", sensor_msgs_msg_dds__Image__desc);
   const CameraStep camera{"cam", Modality::Frames, cv::Mat(20, 30, CV_8UC1, cv::Scalar(50))};
-  const auto* image = passed(peer, "sensor_msgs/Image", node::tracks_message(Wire::Cdr, kTime, camera));
+  const auto* image = passed(peer, "sensor_msgs/Image", node::tracks_message(Wire::Cdr, kOutputTime, camera));
   ASSERT_TRUE(image);
   expect_header(image->header, "cam");
   EXPECT_EQ(image->height, 20U);
@@ -146,7 +146,7 @@ TEST_F(Ros2Outputs, Diagnostics) {
   TypedPeer<diagnostic_msgs_msg_dds__DiagnosticArray_> peer("/out", diagnostic_msgs_msg_dds__DiagnosticArray__desc);
   const node::Diagnosis diagnosis{node::Diagnosis::Level::Warning, "Degraded", {{"packets", "3"}, {"late", "4"}}};
   const auto* array = passed(peer, "diagnostic_msgs/DiagnosticArray",
-                             node::diagnostics_message(Wire::Cdr, kTime, "rig", diagnosis));
+                             node::diagnostics_message(Wire::Cdr, kOutputTime, "rig", diagnosis));
   ASSERT_TRUE(array);
   expect_header(array->header, "");
   ASSERT_EQ(array->status._length, 1U);
