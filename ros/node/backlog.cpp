@@ -7,6 +7,11 @@
 #include "edged/core/measurement_stamps.hpp"
 
 namespace edged::node {
+namespace {
+
+constexpr Duration kClockSetBack = std::chrono::seconds(2);  // more than sensors lag behind each other
+
+}  // namespace
 
 Backlog::Backlog(double max_age_s) : max_age_(duration_from_seconds(max_age_s)) {}
 
@@ -14,7 +19,8 @@ bool Backlog::admit(const Measurement& measurement) {
   const std::optional<Timestamp> stamp = last_stamp(measurement);
   if (!stamp) return true;
   const std::lock_guard lock(mutex_);
-  newest_ = std::max(newest_.value_or(*stamp), *stamp);
+  const bool set_back = newest_ && *newest_ - *stamp > kClockSetBack;
+  newest_ = set_back ? *stamp : std::max(newest_.value_or(*stamp), *stamp);
   const Duration age = working_ && step_ ? *stamp - *step_ : Duration(0);
   if (const auto* batch = std::get_if<EventBatch>(&measurement); batch && age > max_age_) {
     counters_.events += batch->events.size();

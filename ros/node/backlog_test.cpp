@@ -36,5 +36,13 @@ TEST(Backlog, LeavesOutNothingWhileTheOdometryWaitsForASensor) {
   EXPECT_TRUE(backlog.admit(frame_at(8.0)));
 }
 
+TEST(Backlog, TheAgeFollowsClocksThatAreSetBack) {
+  Backlog backlog(0.25);
+  EXPECT_TRUE(backlog.admit(events_at(100.0)));
+  EXPECT_TRUE(backlog.admit(events_at(5.0)));
+  backlog.note_step(at(4.9));
+  EXPECT_EQ(backlog.age(), duration_from_seconds(0.1));
+}
+
 }  // namespace
 }  // namespace edged::node

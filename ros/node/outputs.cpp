@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kQueue = 100, kImuQueue = 1000, kImageQueue = 2;  // messages that may wait for a slow listener
 constexpr std::size_t kMostPathPoses = 36'000;                          // an hour by the default distance
-constexpr Duration kPathPeriod = std::chrono::milliseconds(500);
+constexpr Duration kPathPeriod = std::chrono::milliseconds(500), kCamerasPeriod = std::chrono::seconds(1);
 constexpr double kCameraStep_m = 1e-3, kCameraStep_rad = 1e-3;  // worth another message for the online calibration
 
 bool has_moved(const SE3& before, const SE3& now) {
@@ -39,13 +39,15 @@ void Outputs::add_camera(const std::string& name, const std::string& topic) {
 }
 
 void Outputs::publish_cameras(Timestamp t, const Rig& rig) {
-  if (!publish_tf_) return;
+  const bool again = !cameras_sent_ || t < *cameras_sent_ || t - *cameras_sent_ >= kCamerasPeriod;
+  if (!publish_tf_ || !again) return;
   bool changed = false;
   for (const RigCamera& camera : rig.cameras) {
     const auto sent = sent_cameras_.find(camera.name);
     changed = changed || sent == sent_cameras_.end() || has_moved(sent->second, camera.T_B_C);
   }
   if (!changed) return;
+  cameras_sent_ = t;
   for (const RigCamera& camera : rig.cameras) sent_cameras_[camera.name] = camera.T_B_C;
   static_transforms_->publish(camera_transforms_message(wire_, t, rig, frames_));
 }

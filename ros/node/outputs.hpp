@@ -20,7 +20,7 @@ class Outputs {
 
   /// Advertises the tracked images of a camera. topic: "events", "frames", or its name.
   void add_camera(const std::string& name, const std::string& topic);
-  /// The cameras of the mode as calibrated; again after their online calibration has changed.
+  /// The cameras of the mode as calibrated; again, but not often, after their online calibration has changed.
   void publish_cameras(Timestamp t, const Rig& rig);
 
   /// Of one packet; gyro_B: measured at that time.
@@ -45,6 +45,7 @@ class Outputs {
   std::deque<StampedPose> path_;
   std::optional<Timestamp> path_sent_;
   std::map<std::string, SE3> sent_cameras_;  ///< T_B_C
+  std::optional<Timestamp> cameras_sent_;    ///< stamp
 };
 
 }  // namespace edged::node

@@ -34,8 +34,7 @@ struct InputCounters {
 class SensorInput {
  public:
   /// camera: whose events or frames come; of no meaning for the other sensors.
-  SensorInput(Wire wire, Role role, std::string camera)
-      : wire_(wire), role_(role), camera_(std::move(camera)) {
+  SensorInput(Wire wire, Role role, std::string camera) : wire_(wire), role_(role), camera_(std::move(camera)) {
     counters_.optional = external_sensor_of(role) != nullptr;
   }
 

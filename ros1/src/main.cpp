@@ -51,8 +51,7 @@ void run_node() {
   const Calibration calibration = node::load_node_rig(config);
   ROS_INFO("rig %s, mode %s", config.rig.c_str(), mode_name(config.mode).c_str());
   Ros1Transport transport;
-  const node::Diagnosis end =
-      node::Node(config, calibration, transport).run([] { return caught_signal != 0; });
+  const node::Diagnosis end = node::Node(config, calibration, transport).run([] { return caught_signal != 0; });
   for (const auto& [key, value] : end.values) ROS_INFO("%s: %s", key.c_str(), value.c_str());
 }
 

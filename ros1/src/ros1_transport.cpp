@@ -59,8 +59,8 @@ void Ros1Transport::subscribe(const std::string& topic, Role /*role*/, Receive r
     const Bytes bytes = bytes_of(*message);
     receive({message->getDataType(), message->getMD5Sum(), bytes});
   };
-  subscriptions_.push_back(public_.subscribe<AnyMessage>(topic, kNoLimit, callback, nullptr,
-                                                         ros::TransportHints().tcpNoDelay()));
+  subscriptions_.push_back(
+      public_.subscribe<AnyMessage>(topic, kNoLimit, callback, nullptr, ros::TransportHints().tcpNoDelay()));
 }
 
 }  // namespace edged::ros1

@@ -21,9 +21,9 @@ std::string md5_of_ros(const std::string& type) {
 }
 
 TEST(Definitions, HaveTheSumsOfThoseThatRosInstalls) {
-  for (const char* type : {"nav_msgs/Odometry", "geometry_msgs/PoseWithCovarianceStamped", "nav_msgs/Path",
-                           "tf2_msgs/TFMessage", "sensor_msgs/PointCloud2", "sensor_msgs/Image", "sensor_msgs/Imu",
-                           "diagnostic_msgs/DiagnosticArray"})
+  for (const char* type :
+       {"nav_msgs/Odometry", "geometry_msgs/PoseWithCovarianceStamped", "nav_msgs/Path", "tf2_msgs/TFMessage",
+        "sensor_msgs/PointCloud2", "sensor_msgs/Image", "sensor_msgs/Imu", "diagnostic_msgs/DiagnosticArray"})
     EXPECT_EQ(ros1_md5_of(type), md5_of_ros(type)) << type;
 }
 

@@ -8,6 +8,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/io/evt_encoder.hpp"
 #include "edged/io/ros/wire_writer.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/live/live_clock.hpp"
@@ -136,15 +137,15 @@ void Player::send(const EventBatch& batch) {
 void Player::send_packet(EventStream& stream, const std::string& topic, const std::string& camera,
                          std::span<const Event> events) {
   if (stream.encoding.empty()) stream.encoding = whole_microseconds(events) ? "evt3" : "mono";
-  const bool evt3 = stream.encoding == "evt3";
-  const std::string mono = evt3 ? "" : encode_mono(events);
+  EvtEncoder encoder(EvtFormat::Evt3);  // anew for each packet, which can be decoded by itself then
+  const std::string bytes = stream.encoding == "evt3" ? encoder.encode(events) : encode_mono(events);
   const EventPacket packet{events.front().t,
                            static_cast<std::uint32_t>(stream.sensor.width),
                            static_cast<std::uint32_t>(stream.sensor.height),
                            stream.sequence++,
                            static_cast<std::uint64_t>(to_ns(events.front().t)),
                            stream.encoding,
-                           as_bytes(evt3 ? stream.encoder.encode(events) : mono)};
+                           as_bytes(bytes)};
   send(topic, event_packet_message(Wire::Cdr, packet, camera));
 }
 

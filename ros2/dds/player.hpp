@@ -14,7 +14,6 @@
 
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
-#include "edged/io/evt_encoder.hpp"
 #include "edged/io/recording_writer.hpp"
 
 namespace edged::ros2 {
@@ -46,11 +45,10 @@ class Player {
                     const std::function<void(Timestamp)>& progress);
 
  private:
-  /// What the packets of an event camera continue from each other.
+  /// What the packets of an event camera have in common.
   struct EventStream {
     cv::Size sensor;
     std::string encoding;  ///< "evt3" (microseconds), or "mono" for finer stamps; as the first packet needs
-    EvtEncoder encoder{EvtFormat::Evt3};
     std::uint64_t sequence = 0;
   };
 

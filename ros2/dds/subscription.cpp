@@ -7,6 +7,7 @@
 #include <array>
 
 #include "dds/names.hpp"
+#include "edged/core/check.hpp"
 
 namespace edged::ros2 {
 
@@ -68,7 +69,12 @@ void Subscription::note_publisher(const std::string& dds_type) {
       wrong_type_ = type.empty() ? dds_type : type;
       return;
     }
-    wake_for(readers_.try_emplace(type, participant_, setup_.topic, type, setup_.qos).first->second.handle());
+    try {
+      wake_for(readers_.try_emplace(type, participant_, setup_.topic, type, setup_.qos).first->second.handle());
+    } catch (const InputError& error) {
+      failure_ = error.what();
+      return;
+    }
   }
   setup_.on_reader();
 }
@@ -89,6 +95,7 @@ std::size_t Subscription::lost() const {
 
 std::string Subscription::trouble() const {
   const std::lock_guard lock(mutex_);
+  if (!failure_.empty()) return failure_;
   for (const auto& [type, reader] : readers_) {
     const std::string policy = reader.refused_policy();
     if (policy == "reliability")

@@ -51,6 +51,7 @@ class Subscription {
   mutable std::mutex mutex_;               // of what is below
   std::map<std::string, Reader> readers_;  // by type
   std::string wrong_type_;                 // of a publisher
+  std::string failure_;                    // of the making of a reader
   std::jthread thread_;
 };
 

@@ -25,7 +25,8 @@ inline Discovery test_discovery() {
   return discovery;
 }
 
-inline bool eventually(const std::function<bool()>& condition, std::chrono::seconds longest = std::chrono::seconds(10)) {
+inline bool eventually(const std::function<bool()>& condition,
+                       std::chrono::seconds longest = std::chrono::seconds(10)) {
   const auto end = std::chrono::steady_clock::now() + longest;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
@@ -43,8 +44,12 @@ class TypedPeer {
         topic_(dds_create_topic(participant_.handle(), &type, dds_topic(topic).c_str(), nullptr, nullptr), topic),
         qos_(qos ? qos : default_qos(), &dds_delete_qos) {}
 
-  void read() { endpoint_ = Entity(dds_create_reader(participant_.handle(), topic_.handle(), qos_.get(), nullptr), ""); }
-  void write() { endpoint_ = Entity(dds_create_writer(participant_.handle(), topic_.handle(), qos_.get(), nullptr), ""); }
+  void read() {
+    endpoint_ = Entity(dds_create_reader(participant_.handle(), topic_.handle(), qos_.get(), nullptr), "");
+  }
+  void write() {
+    endpoint_ = Entity(dds_create_writer(participant_.handle(), topic_.handle(), qos_.get(), nullptr), "");
+  }
 
   /// The next message, which lives as long as this object; null if none comes.
   const T* take() {

@@ -65,7 +65,8 @@ TEST(Ros2Endpoints, HaveTheNamesQosAndHashesOfRos2) {
   const auto tf = transport.advertise({"/tf", "tf2_msgs/TFMessage", 100});
   const auto fixed = transport.advertise({"/tf_static", "tf2_msgs/TFMessage", 1, true});
   const auto odometry = transport.advertise({"~/odometry", "nav_msgs/Odometry", 10});
-  const auto px4 = transport.advertise({"/fmu/in/vehicle_visual_odometry", "px4_msgs/VehicleOdometry", 1, false, false});
+  const auto px4 =
+      transport.advertise({"/fmu/in/vehicle_visual_odometry", "px4_msgs/VehicleOdometry", 1, false, false});
   const Entity other(dds_create_participant(test_discovery().domain, nullptr, nullptr), "");
   const auto seen = seen_writers(other.handle());
   ASSERT_TRUE(seen.contains("rt/edged/odometry"));

@@ -32,9 +32,8 @@ TEST(Ros2Environment, WithoutVariablesIsDomain0OnTheSubnet) {
 
 TEST(Ros2Environment, LocalhostAsksThisMachineWithoutMulticast) {
   const std::string config = cyclone_config(discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}}));
-  for (const char* part :
-       {"<AllowMulticast>false</AllowMulticast>", "<ParticipantIndex>auto</ParticipantIndex>",
-        "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>", "<Peer address=\"localhost\"/>"})
+  for (const char* part : {"<AllowMulticast>false</AllowMulticast>", "<ParticipantIndex>auto</ParticipantIndex>",
+                           "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>", "<Peer address=\"localhost\"/>"})
     EXPECT_THAT(config, HasSubstr(part));
   EXPECT_THAT(config, HasSubstr("<NetworkInterface name=\"lo\"/>"));
   EXPECT_EQ(config, cyclone_config(discovery_with({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_STATIC_PEERS", "10.0.0.1"}})));
@@ -45,8 +44,8 @@ TEST(Ros2Environment, PeersAreAskedBesideTheSubnetAndNotWithoutDiscovery) {
   EXPECT_EQ(discovery.domain, 42U);
   EXPECT_THAT(discovery.peers, ElementsAre("10.0.0.1", "robot.local"));
   EXPECT_THAT(cyclone_config(discovery), HasSubstr("<Peer address=\"10.0.0.1\"/><Peer address=\"robot.local\"/>"));
-  const std::string off = cyclone_config(
-      discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}, {"ROS_STATIC_PEERS", "10.0.0.1"}}));
+  const std::string off =
+      cyclone_config(discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}, {"ROS_STATIC_PEERS", "10.0.0.1"}}));
   EXPECT_THAT(off, HasSubstr("<AllowMulticast>false</AllowMulticast>"));
   EXPECT_THAT(off, Not(HasSubstr("Peer ")));
 }

@@ -50,8 +50,7 @@ class Ros2Outputs : public ::testing::Test {
 
 TEST_F(Ros2Outputs, Odometry) {
   TypedPeer<nav_msgs_msg_dds__Odometry_> peer("/out", nav_msgs_msg_dds__Odometry__desc);
-  const auto* odometry =
-      passed(peer, "nav_msgs/Odometry", node::odometry_message(Wire::Cdr, some_estimate(), kNames));
+  const auto* odometry = passed(peer, "nav_msgs/Odometry", node::odometry_message(Wire::Cdr, some_estimate(), kNames));
   ASSERT_TRUE(odometry);
   expect_header(odometry->header, "odom");
   EXPECT_STREQ(odometry->child_frame_id, "body");
@@ -67,8 +66,8 @@ TEST_F(Ros2Outputs, Odometry) {
 TEST_F(Ros2Outputs, PoseWithCovariance) {
   TypedPeer<geometry_msgs_msg_dds__PoseWithCovarianceStamped_> peer(
       "/out", geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc);
-  const auto* pose = passed(peer, "geometry_msgs/PoseWithCovarianceStamped",
-                            node::pose_message(Wire::Cdr, some_estimate(), kNames));
+  const auto* pose =
+      passed(peer, "geometry_msgs/PoseWithCovarianceStamped", node::pose_message(Wire::Cdr, some_estimate(), kNames));
   ASSERT_TRUE(pose);
   expect_header(pose->header, "odom");
   EXPECT_EQ(pose->pose.pose.position.y, 2.0);
@@ -79,7 +78,8 @@ TEST_F(Ros2Outputs, Path) {
   TypedPeer<nav_msgs_msg_dds__Path_> peer("/out", nav_msgs_msg_dds__Path__desc);
   const SE3 T = some_estimate().state.T_W_B;
   const auto* path =
-      passed(peer, "nav_msgs/Path", node::path_message(Wire::Cdr, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}, kNames));
+      passed(peer, "nav_msgs/Path",
+             node::path_message(Wire::Cdr, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}, kNames));
   ASSERT_TRUE(path);
   expect_header(path->header, "odom");
   ASSERT_EQ(path->poses._length, 2U);

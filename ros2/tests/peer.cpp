@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
-// Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME] [interfaces=2]
-// Writes OUT.tum (odometry) and OUT.json. listen: ends so long after the last pose.
+// Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
+// [interfaces=2] Writes OUT.tum (odometry) and OUT.json. listen: ends so long after the last pose.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -222,11 +222,13 @@ Json diagnostics_fields(const std::string& bytes) {
 }
 
 Json fields_of(const std::string& type, const std::string& bytes) {
-  const std::map<std::string, Json (*)(const std::string&)> decoders = {
-      {"Odometry", odometry_fields},      {"PoseWithCovarianceStamped", pose_fields},
-      {"Path", path_fields},              {"PointCloud2", cloud_fields},
-      {"Image", image_fields},            {"TFMessage", transforms_fields},
-      {"DiagnosticArray", diagnostics_fields}};
+  const std::map<std::string, Json (*)(const std::string&)> decoders = {{"Odometry", odometry_fields},
+                                                                        {"PoseWithCovarianceStamped", pose_fields},
+                                                                        {"Path", path_fields},
+                                                                        {"PointCloud2", cloud_fields},
+                                                                        {"Image", image_fields},
+                                                                        {"TFMessage", transforms_fields},
+                                                                        {"DiagnosticArray", diagnostics_fields}};
   const std::size_t begin = type.rfind(':') + 1;
   return decoders.at(type.substr(begin, type.size() - begin - 1))(bytes);
 }
@@ -288,7 +290,8 @@ void drive_recording(Driver& driver, const std::string& path, const Options& opt
   const CameraModel& camera = recording.calibration.value().rig.find(Modality::Events)->model;
   const cv::Size sensor(camera.width(), camera.height());
   const double rate = number_of(options, "rate", 1.0);
-  const Duration from = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number_of(options, "from", 0)));
+  const Duration from =
+      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number_of(options, "from", 0)));
   std::optional<Timestamp> first;
   LiveClock pace;
   while (const auto measurement = recording.dataset->next()) {

