@@ -25,6 +25,7 @@ namespace {
 struct Ros2Config : node::NodeConfig {
   bool reliable = false;
   bool use_sim_time = false;
+  QueueConfig live;  ///< of `edged run` alone, whose files are to load here
 
   void visit(ConfigFields& fields) {
     visit_node(fields);
@@ -33,6 +34,7 @@ struct Ros2Config : node::NodeConfig {
         {"", 0, 0, "ask for reliable sensor topics; publishers that are best effort then do not reach the node"});
     fields.add("use_sim_time", use_sim_time, {"", 0, 0, "time of /diagnostics and /tf_static from /clock"});
     options.visit(fields);
+    fields.group("live", live);
   }
 };
 
