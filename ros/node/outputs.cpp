@@ -7,9 +7,11 @@
 namespace edged::node {
 namespace {
 
-constexpr std::size_t kQueue = 100, kImuQueue = 1000, kImageQueue = 2;  // messages that may wait for a slow listener
-constexpr std::size_t kMostPathPoses = 36'000;                          // an hour by the default distance
-constexpr Duration kPathPeriod = std::chrono::milliseconds(500), kCamerasPeriod = std::chrono::seconds(1);
+constexpr std::size_t kQueue = 100, kImuQueue = 200, kImageQueue = 2;  // messages that may wait for a slow listener
+constexpr std::size_t kMostMapPoints = 20'000;
+constexpr std::size_t kMostPathPoses = 36'000;  // an hour by the default distance
+constexpr Duration kPathPeriod = std::chrono::milliseconds(500), kCamerasPeriod = std::chrono::seconds(1),
+                   kMapPeriod = std::chrono::seconds(2);
 constexpr double kCameraStep_m = 1e-3, kCameraStep_rad = 1e-3;  // worth another message for the online calibration
 
 bool has_moved(const SE3& before, const SE3& now) {
@@ -32,7 +34,9 @@ Outputs::Outputs(Transport& transport, const NodeConfig& config)
       transforms_(transport.advertise({"/tf", "tf2_msgs/TFMessage", kQueue})),
       static_transforms_(transport.advertise({"/tf_static", "tf2_msgs/TFMessage", 1, true})),
       landmarks_(transport.advertise({"~/landmarks", "sensor_msgs/PointCloud2", kImageQueue})),
-      diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kQueue})) {}
+      map_(transport.advertise({"~/map", "sensor_msgs/PointCloud2", 1})),
+      diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kQueue})),
+      map_points_(kMostMapPoints) {}
 
 void Outputs::add_camera(const std::string& name, const std::string& topic) {
   tracks_[name] = transport_.advertise({"~/tracks/" + topic, "sensor_msgs/Image", kImageQueue});
@@ -58,6 +62,17 @@ void Outputs::publish(const Step& step, const Eigen::Vector3d& gyro_B) {
   publish_pose({step.state, gyro_B, step.covariance});
   if (!step.landmarks.empty() && landmarks_->wanted())
     landmarks_->publish(landmarks_message(wire_, step.t, step.landmarks, frames_));
+  if (step.keyframe) map_points_.add(step.landmarks);
+  publish_map(step.t);
+}
+
+void Outputs::publish_map(Timestamp t) {
+  const bool due = !map_sent_ || t < *map_sent_ || t - *map_sent_ >= kMapPeriod;
+  if (!due || map_points_.all().empty() || !map_->wanted()) return;
+  map_sent_ = t;
+  std::vector<Landmark> points;
+  for (const auto& [id, p] : map_points_.all()) points.push_back({id, Eigen::Vector3d(p[0], p[1], p[2])});
+  map_->publish(landmarks_message(wire_, t, points, frames_));
 }
 
 void Outputs::publish_pose(const Estimate& estimate) {

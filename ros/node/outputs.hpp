@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "edged/live/seen_points.hpp"
 #include "node/messages.hpp"
 #include "node/transport.hpp"
 
@@ -33,6 +34,7 @@ class Outputs {
   void publish_pose(const Estimate& estimate);
   void publish_images(const Step& step) const;
   void extend_path(const NavState& state);
+  void publish_map(Timestamp t);
 
   Transport& transport_;
   const Wire wire_;
@@ -40,8 +42,10 @@ class Outputs {
   const bool publish_tf_;
   const Duration path_step_;
   std::unique_ptr<Publisher> odometry_, prediction_, pose_, path_topic_, transforms_, static_transforms_, landmarks_,
-      diagnostics_;
+      map_, diagnostics_;
   std::map<std::string, std::unique_ptr<Publisher>> tracks_;  ///< by camera
+  SeenPoints map_points_;
+  std::optional<Timestamp> map_sent_;
   std::deque<StampedPose> path_;
   std::optional<Timestamp> path_sent_;
   std::map<std::string, SE3> sent_cameras_;  ///< T_B_C

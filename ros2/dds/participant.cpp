@@ -92,7 +92,9 @@ Writer::Writer(const Participant& participant, const std::string& topic, std::st
 }
 
 bool Writer::write(std::string_view cdr) const {
-  return dds_writecdr(writer_.handle(), make_raw_message(type_, cdr)) == DDS_RETCODE_OK;
+  const bool written = dds_writecdr(writer_.handle(), make_raw_message(type_, cdr)) == DDS_RETCODE_OK;
+  if (!written) ++*dropped_;
+  return written;
 }
 
 std::size_t Writer::readers() const {

@@ -5,6 +5,7 @@
 
 #include <dds/dds.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -71,6 +72,7 @@ class Writer {
 
   /// False when it had to be dropped: reliable readers do not keep up. From any thread.
   bool write(std::string_view cdr) const;
+  std::size_t dropped() const { return *dropped_; }
   std::size_t readers() const;
   /// The policy that a reader asks for and that is not offered; "" if there is none.
   std::string refused_policy() const;
@@ -81,6 +83,7 @@ class Writer {
 
  private:
   const ddsi_sertype* type_ = nullptr;  // belongs to the topic
+  std::unique_ptr<std::atomic<std::size_t>> dropped_ = std::make_unique<std::atomic<std::size_t>>(0);
   Entity topic_, writer_;
 };
 

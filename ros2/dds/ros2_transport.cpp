@@ -14,6 +14,7 @@ namespace {
 
 // Messages that may wait for the decoder. Drivers send event packets and IMU samples a thousand times a second.
 constexpr std::size_t kSamples = 1000, kFrames = 60;
+constexpr Duration kLongestBlock = std::chrono::milliseconds(2);  // of the odometry, by a slow subscriber
 
 class DdsPublisher final : public node::Publisher {
  public:
@@ -58,7 +59,8 @@ Timestamp Ros2Transport::now() const {
 
 std::unique_ptr<node::Publisher> Ros2Transport::advertise(const node::Advertised& topic) {
   const std::string name = full_name(topic.name);
-  const Qos qos{.reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth};
+  const Qos qos{
+      .reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth, .longest_block = kLongestBlock};
   auto writer = std::make_shared<const Writer>(participant_, name, topic.type, qos);
   writers_[name] = writer;
   return std::make_unique<DdsPublisher>(std::move(writer));
@@ -98,6 +100,8 @@ void Ros2Transport::update_graph() {
 
 std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   for (const auto& [topic, writer] : writers_) {
+    if (writer->dropped() > 0 && said_.insert(topic + " slow").second)
+      spdlog::warn(fmt::format("{}: messages are dropped, as a reliable subscriber does not keep up", topic));
     const std::string policy = writer->refused_policy();
     if (!policy.empty() && said_.insert(topic).second)
       spdlog::warn(

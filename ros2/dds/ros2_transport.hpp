@@ -58,7 +58,7 @@ class Ros2Transport final : public node::Transport {
   std::list<Subscription> subscriptions_;
   std::optional<Subscription> clock_;
   std::atomic<std::int64_t> clock_ns_ = 0;
-  mutable std::set<std::string> said_;  ///< topics with subscribers whose QoS does not fit
+  mutable std::set<std::string> said_;  ///< what is wrong with subscribers
 };
 
 }  // namespace edged::ros2

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
 // Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] Writes OUT.tum (odometry) and OUT.json. listen: ends so long after the last pose.
+// [interfaces=2] [rig=NAME] Writes OUT.tum (odometry) and OUT.json. listen: ends so long after the last pose.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "edged/core/measurement_stamps.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/evt_encoder.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/live/live_clock.hpp"
@@ -116,6 +117,7 @@ const Output kOutputs[] = {
     {"~/pose", "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", {true, false, 1000}},
     {"~/path", "nav_msgs::msg::dds_::Path_", {true, false, 10}},
     {"~/landmarks", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 10}},
+    {"~/map", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 1}},
     {"~/tracks/events", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"~/tracks/frames", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"/tf", "tf2_msgs::msg::dds_::TFMessage_", {true, false, 1000}},
@@ -287,7 +289,9 @@ void drive_recording(Driver& driver, const std::string& path, const Options& opt
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the readers of the other side match as well
-  const CameraModel& camera = recording.calibration.value().rig.find(Modality::Events)->model;
+  const auto rig = options.find("rig");
+  const Calibration calibration = rig == options.end() ? recording.calibration.value() : load_rig(rig->second);
+  const CameraModel& camera = calibration.rig.find(Modality::Events)->model;
   const cv::Size sensor(camera.width(), camera.height());
   const double rate = number_of(options, "rate", 1.0);
   const Duration from =

@@ -191,6 +191,21 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertEqual(node.log().count("/events: numbers are missing"), 1)
         self.assertLess(ate_m(self.truth, self.folder / "peer.tum"), 2 * ate_m(self.truth, self.offline))
 
+    def test_a_recording_is_played_at_twice_its_speed_without_a_loss(self):
+        flight = self.folder / "sensors"
+        edged("simulate", "--duration", 2, "--set", "height.rate_hz=25", "--set", "velocity.rate_hz=25", "--out", flight,
+              "--quiet")
+        node = Node(self, "--set", "delays.external_s=0.2")
+        done = subprocess.run([EDGED, "play", flight, "--ros2", "--wait", "--rate", "2", "--quiet"], capture_output=True,
+                              text=True, check=True, timeout=60)
+        time.sleep(1)
+        counters = node.end()
+        self.assertEqual(done.stdout.split()[1], counters["/events events"])
+        self.assertNotIn("dropped", done.stdout)
+        self.assertEqual(counters["/imu messages"], "2001")
+        self.assertGreater(int(counters["/height messages"]), 40)
+        self.assertGreater(int(counters["/velocity messages"]), 40)
+
     def test_reliable_drivers_are_read_and_a_qos_that_does_not_fit_is_named(self):
         node = Node(self)
         self.peer(self.recording, "peer", reliable=1, interfaces=2)
