@@ -32,6 +32,8 @@ void add_map_command(CLI::App& app, std::function<int()>& chosen);
 void add_enhance_command(CLI::App& app, std::function<int()>& chosen);
 void add_depth_command(CLI::App& app, std::function<int()>& chosen);
 void add_config_command(CLI::App& app, std::function<int()>& chosen);
+void add_ros2_command(CLI::App& app, std::function<int()>& chosen);
+void add_play_command(CLI::App& app, std::function<int()>& chosen);
 void add_manual_command(CLI::App& app, std::function<int()>& chosen);
 
 }  // namespace edged

@@ -47,6 +47,8 @@ int main(int argc, char** argv) {
   add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);
+  add_ros2_command(app, chosen);
+  add_play_command(app, chosen);
   add_manual_command(app, chosen);
   return run_program(app, argc, argv, [&] { return chosen(); });
 }

@@ -12,6 +12,8 @@ packages=(
   zlib1g-dev libyaml-cpp-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
   libhdf5-dev libblosc-dev liblzf-dev
+  cyclonedds-dev                                           # topics of ROS 2
+  cyclonedds-tools libfastrtps-dev libfastcdr-dev          # their tests
   pybind11-dev python3-dev python3-numpy python3-pytest python3-yaml
   python3-rosbag libgtest-dev libgmock-dev libbenchmark-dev
   "$@"

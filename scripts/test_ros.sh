@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/setup.sh libroscpp-dev libtopic-tools-dev libsensor-msgs-dev python3-gencpp \
+scripts/setup.sh libroscpp-dev libtopic-tools-dev python3-genmsg \
   ros-std-msgs ros-geometry-msgs ros-nav-msgs ros-sensor-msgs ros-diagnostic-msgs ros-tf2-msgs \
   python3-roslaunch python3-rosmaster python3-rosbag rosout
 cmake --preset release -B build/ros1 -DEDGED_ROS1=ON -DEDGED_PYTHON=OFF -DEDGED_BENCH=OFF >/dev/null

@@ -28,7 +28,7 @@ class CommandLine(WithFolder):
         self.assert_refused(edged("rnu", "x"), "unknown command 'rnu'", "did you mean 'run'?", "`edged --help`", code=2)
         self.assert_refused(edged("run", "x", "--mdoe", "fused"), "unknown flag '--mdoe'", "'--mode'", "`edged run --help`", code=2)
         self.assert_refused(edged("run", "x", "--mdoe=fused"), "unknown flag '--mdoe'", "'--mode'", code=2)
-        self.assertNotIn("did you mean", edged("fly").stderr)
+        self.assertNotIn("did you mean", edged("hover").stderr)
         self.assertNotIn("did you mean", edged("config", "--what").stderr)
 
     def test_with_json_an_error_is_json_too(self):

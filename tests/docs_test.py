@@ -73,7 +73,7 @@ def commands_of(page):
 
 @functools.lru_cache(None)
 def flags_of(command):
-    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", edged(command, "--help").stdout))
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", edged(command, "--help").stdout))
 
 
 @functools.lru_cache(None)
@@ -91,7 +91,7 @@ def options_of(command):
 
 class Commands(unittest.TestCase):
     def test_commands_on_all_pages_have_flags_and_options_that_there_are(self):
-        known = set(re.findall(r"^  ([a-z]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
+        known = set(re.findall(r"^  ([a-z0-9]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
         count = 0
         for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted(DECISIONS.glob("*.md"))]:
             for line in commands_of(page):

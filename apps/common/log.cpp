@@ -35,6 +35,8 @@ void start_logging() {
   spdlog::set_level(spdlog::level::info);
 }
 
+void show_progress_in_log() { spdlog::default_logger()->sinks().front()->set_level(spdlog::level::info); }
+
 void attach_log_file(const std::filesystem::path& file) {
   const auto to_file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string(), true);
   to_file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");

@@ -17,6 +17,9 @@ namespace edged {
 /// To be called first in main. Keeps the newest lines until attach_log_file().
 void start_logging();
 
+/// For a command that runs for long and has no file: informative lines go to stderr, too.
+void show_progress_in_log();
+
 /// Writes the kept lines to the file, then all later lines, too.
 void attach_log_file(const std::filesystem::path& file);
 

@@ -50,7 +50,7 @@ void RunAlbum::add(const Step& step) {
   last_ = step.t;
   changes_.add(step);
   take_picture(step);
-  if (step.keyframe) note_points(step);
+  if (step.keyframe) points_.add(step.landmarks);
 }
 
 void RunAlbum::take_picture(const Step& step) {
@@ -84,19 +84,6 @@ void RunAlbum::take_picture(const Step& step) {
   due_ = pictures_.back().t + spacing_;
 }
 
-void RunAlbum::note_points(const Step& step) {
-  for (const Landmark& landmark : step.landmarks) {
-    if (landmark.id % every_ == 0 && landmark.p_W.allFinite()) {
-      const Eigen::Vector3f p = landmark.p_W.cast<float>();
-      points_[landmark.id] = {p.x(), p.y(), p.z()};
-    }
-  }
-  while (points_.size() > kMostPoints) {
-    every_ *= 2;
-    std::erase_if(points_, [this](const auto& point) { return point.first % every_ != 0; });
-  }
-}
-
 nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame, std::optional<Timestamp> in_map_since) const {
   nlohmann::ordered_json json = {{"truth_frame", truth_frame},
                                  {"in_map_since_ns", nullptr},
@@ -110,7 +97,7 @@ nlohmann::ordered_json RunAlbum::to_json(const std::string& truth_frame, std::op
                                {"reason", change.reason},
                                {"relocalized", change.relocalized}});
   }
-  for (const auto& [id, point] : points_) {
+  for (const auto& [id, point] : points_.all()) {
     for (const float x : point) json["points"].push_back(std::round(1e3 * static_cast<double>(x)) / 1e3);  // [m]
   }
   for (const Picture& picture : pictures_) {

@@ -14,6 +14,7 @@
 #include "common/step_facts.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/calibration.hpp"
+#include "edged/live/seen_points.hpp"
 #include "edged/odometry.hpp"
 
 namespace edged {
@@ -30,7 +31,7 @@ class RunAlbum {
   void add(const Step& step);
 
   /// x, y, z [m] in the world of the estimate, by landmark.
-  const std::map<FeatureId, std::array<float, 3>>& points() const { return points_; }
+  const std::map<FeatureId, std::array<float, 3>>& points() const { return points_.all(); }
 
   const std::vector<StatusChange>& changes() const { return changes_.all(); }
   Timestamp last() const { return last_; }  ///< step
@@ -52,7 +53,6 @@ class RunAlbum {
   };
 
   void take_picture(const Step& step);
-  void note_points(const Step& step);
 
   std::vector<Picture> pictures_;
   std::optional<Timestamp> due_;  ///< of the next picture
@@ -60,8 +60,7 @@ class RunAlbum {
   bool events_come_ = false, frames_come_ = false;
   StatusChanges changes_;
   Timestamp last_{};
-  std::map<FeatureId, std::array<float, 3>> points_;
-  FeatureId every_ = 1;  ///< only multiples of it are kept
+  SeenPoints points_{kMostPoints};
 };
 
 }  // namespace edged

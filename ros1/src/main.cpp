@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The node `edged`.
+#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/param.h>
 #include <ros/this_node.h>
@@ -10,8 +11,9 @@
 #include <csignal>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration.hpp"
-#include "node.hpp"
+#include "node/node.hpp"
+#include "parameters.hpp"
+#include "ros1_transport.hpp"
 
 namespace edged::ros1 {
 namespace {
@@ -36,8 +38,8 @@ class RosLog final : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 };
 
-NodeConfig load_parameters() {
-  NodeConfig config;
+node::NodeConfig load_parameters() {
+  node::NodeConfig config;
   XmlRpc::XmlRpcValue parameters;
   ros::param::get(ros::this_node::getName(), parameters);
   set_parameters(config, parameters);
@@ -45,12 +47,12 @@ NodeConfig load_parameters() {
 }
 
 void run_node() {
-  const NodeConfig config = load_parameters();
-  const Calibration calibration = load_rig(config.rig);
-  if (!calibration.has_extrinsics)
-    throw InputError::format("parameter ~rig: {} lacks the pose of the camera to the IMU", config.rig);
+  const node::NodeConfig config = load_parameters();
+  const Calibration calibration = node::load_node_rig(config);
   ROS_INFO("rig %s, mode %s", config.rig.c_str(), mode_name(config.mode).c_str());
-  Node(config, calibration).run([] { return caught_signal != 0; });
+  Ros1Transport transport;
+  const node::Diagnosis end = node::Node(config, calibration, transport).run([] { return caught_signal != 0; });
+  for (const auto& [key, value] : end.values) ROS_INFO("%s: %s", key.c_str(), value.c_str());
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ NAME = "mirror_poster"
 RIG = "davis240c_ecd"
 INPUTS = {"/dvs/events": 0, "/camera/image_raw": 0, "/imu/data": 0}
 OUTPUTS = ["/edged/odometry", "/edged/prediction", "/edged/pose", "/edged/path", "/edged/landmarks",
-           "/edged/tracks/frames", "/edged/tracks/events", "/tf", "/diagnostics"]
+           "/edged/tracks/frames", "/edged/tracks/events", "/tf", "/tf_static", "/diagnostics"]
 SOURCE = pathlib.Path(os.environ["EDGED_SOURCE_DIR"])
 ARCHIVE = pathlib.Path(os.environ.get("EDGED_DATA", SOURCE.parent / "shared" / "data")) / "mirror" / (NAME + ".tar.xz")
 if not ARCHIVE.exists():
@@ -171,7 +171,8 @@ class PlayedMirror(unittest.TestCase):
         self.assertGreater(odometry[-1].pose.covariance[0], 0)
 
     def test_frames_landmarks_images_and_path_fit_one_another(self):
-        frames = {(t.header.frame_id, t.child_frame_id) for m in self.published["/tf"] for t in m.transforms}
+        frames = {(t.header.frame_id, t.child_frame_id) for topic in ("/tf", "/tf_static")
+                  for m in self.published[topic] for t in m.transforms}
         self.assertEqual(frames, {("odom", "body"), ("body", "events"), ("body", "frames")})
         for topic in ("/edged/landmarks", "/edged/path"):
             self.assertEqual(self.published[topic][-1].header.frame_id, "odom")

@@ -38,6 +38,8 @@ struct WriterSetup {
 
   /// Number of cameras of a kind in the recording, at least 1.
   std::size_t cameras(Modality modality) const;
+  /// The name of the camera at that place among those of its kind.
+  std::string camera_name(Modality modality, std::size_t place) const { return of_kind(modality).at(place).name; }
   /// The place of that camera of the recording among those of its kind: 0 of a single one, whatever its name. Throws
   /// InputError for an unknown one.
   std::size_t place_of(const std::string& camera, Modality modality) const;

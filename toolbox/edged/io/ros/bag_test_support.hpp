@@ -138,16 +138,11 @@ inline std::filesystem::path write_bag(const TempFolder& folder, const BagContai
 /// event_camera_msgs/EventPacket.
 inline std::string event_packet_message(Wire wire, Timestamp stamp, std::uint64_t sequence, std::uint64_t time_base,
                                         std::string_view encoding, std::string_view events) {
-  WireWriter out(wire);
-  out.header(stamp, "events");
-  out.number(static_cast<std::uint32_t>(kBagSensor.height));
-  out.number(static_cast<std::uint32_t>(kBagSensor.width));
-  out.number(sequence);
-  out.number(time_base);
-  out.text(encoding);
-  out.number(std::uint8_t{0});
-  out.bytes(as_bytes(events));
-  return out.message();
+  return event_packet_message(
+      wire,
+      {stamp, static_cast<std::uint32_t>(kBagSensor.width), static_cast<std::uint32_t>(kBagSensor.height), sequence,
+       time_base, encoding, as_bytes(events)},
+      "events");
 }
 
 /// sensor_msgs/FluidPressure [Pa].

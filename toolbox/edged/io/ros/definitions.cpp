@@ -47,6 +47,62 @@ constexpr std::array kFields = {
            "std_msgs/Header header\n"
            "string child_frame_id\n"
            "geometry_msgs/Transform transform\n"},
+    Fields{"geometry_msgs/Point", "", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Fields{"geometry_msgs/Pose", "",
+           "geometry_msgs/Point position\n"
+           "geometry_msgs/Quaternion orientation\n"},
+    Fields{"geometry_msgs/PoseStamped", "",
+           "std_msgs/Header header\n"
+           "geometry_msgs/Pose pose\n"},
+    Fields{"geometry_msgs/PoseWithCovariance", "",
+           "geometry_msgs/Pose pose\n"
+           "float64[36] covariance\n"},
+    Fields{"geometry_msgs/PoseWithCovarianceStamped", "953b798c0f514ff060a53a3498ce6246",
+           "std_msgs/Header header\n"
+           "geometry_msgs/PoseWithCovariance pose\n"},
+    Fields{"geometry_msgs/Twist", "",
+           "geometry_msgs/Vector3 linear\n"
+           "geometry_msgs/Vector3 angular\n"},
+    Fields{"geometry_msgs/TwistWithCovariance", "",
+           "geometry_msgs/Twist twist\n"
+           "float64[36] covariance\n"},
+    Fields{"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7",
+           "std_msgs/Header header\n"
+           "string child_frame_id\n"
+           "geometry_msgs/PoseWithCovariance pose\n"
+           "geometry_msgs/TwistWithCovariance twist\n"},
+    Fields{"nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7",
+           "std_msgs/Header header\n"
+           "geometry_msgs/PoseStamped[] poses\n"},
+    Fields{"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec", "geometry_msgs/TransformStamped[] transforms\n"},
+    Fields{"diagnostic_msgs/KeyValue", "", "string key\nstring value\n"},
+    Fields{"diagnostic_msgs/DiagnosticStatus", "",
+           "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
+           "byte level\n"
+           "string name\n"
+           "string message\n"
+           "string hardware_id\n"
+           "diagnostic_msgs/KeyValue[] values\n"},
+    Fields{"diagnostic_msgs/DiagnosticArray", "60810da900de1dd6ddd437c3503511da",
+           "std_msgs/Header header\n"
+           "diagnostic_msgs/DiagnosticStatus[] status\n"},
+    Fields{"sensor_msgs/PointField", "",
+           "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\n"
+           "uint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
+           "string name\n"
+           "uint32 offset\n"
+           "uint8 datatype\n"
+           "uint32 count\n"},
+    Fields{"sensor_msgs/PointCloud2", "1158d486dd51d683ce2f1be655c3c181",
+           "std_msgs/Header header\n"
+           "uint32 height\n"
+           "uint32 width\n"
+           "sensor_msgs/PointField[] fields\n"
+           "bool is_bigendian\n"
+           "uint32 point_step\n"
+           "uint32 row_step\n"
+           "uint8[] data\n"
+           "bool is_dense\n"},
     Fields{"dvs_msgs/Event", "", kEvent},
     Fields{"dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
            "std_msgs/Header header\n"

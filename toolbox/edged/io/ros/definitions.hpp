@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Definitions of message types, for writing bags and for messages received from ROS.
+// Definitions of message types, for writing bags and for messages to and from ROS.
 #pragma once
 
 #include <string>

@@ -94,12 +94,27 @@ std::vector<Event> decode_libcaer_cmp(const EventPacket& packet, std::uint16_t& 
   return events;
 }
 
+std::optional<EvtFormat> evt_format(std::string_view encoding) {
+  if (encoding == "evt3") return EvtFormat::Evt3;
+  if (encoding == "evt21") return EvtFormat::Evt21;
+  return encoding == "evt2" ? std::optional(EvtFormat::Evt2) : std::nullopt;
+}
+
 }  // namespace
+
+EvtDecoder& EventPacketDecoder::evt(EvtFormat format) {
+  constexpr int kMostSide = 1 << 11;  // of the coordinates of its words
+  if (!evt_ || evt_->format != format) {
+    evt_.emplace(Evt{format, EvtDecoder(format, kMostSide, kMostSide)});
+    sensor_to_stamps_.reset();
+  }
+  return evt_->decoder;
+}
 
 std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   if (sequence_ && packet.sequence != *sequence_ + 1) {
     sensor_to_stamps_.reset();
-    evt3_.reset();
+    if (evt_) evt_->decoder.reset();
     column_ = 0;
   }
   sequence_ = packet.sequence;
@@ -107,12 +122,13 @@ std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   if (packet.encoding == "libcaer_cmp") return decode_libcaer_cmp(packet, column_);
 
   std::vector<Event> events;
-  if (packet.encoding == "evt3") {
-    evt3_.decode(packet.events, events);
+  if (const auto format = evt_format(packet.encoding)) {
+    evt(*format).decode(packet.events, events);
   } else if (packet.encoding == "mono") {
     events = decode_mono(packet);
   } else {
-    throw Damage("encoding `" + std::string(packet.encoding) + "` is none of evt3, mono, libcaer and libcaer_cmp");
+    throw Damage("encoding `" + std::string(packet.encoding) +
+                 "` is none of evt3, evt21, evt2, mono, libcaer, libcaer_cmp");
   }
   if (events.empty()) return events;
   // The stamp is that of the first event; the times of mono are relative to its time base.

@@ -66,14 +66,15 @@ StampedPose pose_from(Timestamp t, WireReader& message) {
   return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
 }
 
-/// Height by the ICAO standard atmosphere below 11 km, with its standard pressure at sea level. So the zero of the
-/// heights is arbitrary.
+// The ICAO standard atmosphere below 11 km, with its standard pressure at sea level. So the zero of the heights is
+// arbitrary.
+constexpr double kSeaLevel_pa = 101325.0, kAtmosphere_m = 44330.77, kAtmosphereExponent = 0.190263;
+
 HeightSample height_of_pressure(Timestamp t, double pressure_pa, double variance_pa2) {
-  constexpr double kSeaLevel_pa = 101325.0, kScale_m = 44330.77, kExponent = 0.190263;
   if (!(pressure_pa > 2e4 && pressure_pa < 1.2e5)) throw Damage("not an air pressure in Pa");
-  const double part = std::pow(pressure_pa / kSeaLevel_pa, kExponent);
-  const double m_per_pa = kScale_m * kExponent * part / pressure_pa;
-  return {t, kScale_m * (1.0 - part), variance_pa2 > 0.0 ? m_per_pa * std::sqrt(variance_pa2) : 0.0};
+  const double part = std::pow(pressure_pa / kSeaLevel_pa, kAtmosphereExponent);
+  const double m_per_pa = kAtmosphere_m * kAtmosphereExponent * part / pressure_pa;
+  return {t, kAtmosphere_m * (1.0 - part), variance_pa2 > 0.0 ? m_per_pa * std::sqrt(variance_pa2) : 0.0};
 }
 
 /// The linear velocity after the header, and the diagonal of its covariance, where 0 means unknown.
@@ -255,6 +256,13 @@ ExternalSample read_external(std::string_view type, WireReader message) {
   }
   if (!is_plausible(sample)) throw Damage("not finite, or more than such a sensor measures");
   return sample;
+}
+
+AirPressure pressure_of_height(const HeightSample& height) {
+  const double part = 1.0 - height.height_m / kAtmosphere_m;
+  const double pressure_pa = kSeaLevel_pa * std::pow(part, 1.0 / kAtmosphereExponent);
+  const double sigma_pa = height.sigma_m * pressure_pa / (kAtmosphere_m * kAtmosphereExponent * part);
+  return {pressure_pa, sigma_pa * sigma_pa};
 }
 
 StampedPose read_pose_stamped(WireReader message) {

@@ -86,6 +86,12 @@ GrayImage read_compressed_image(WireReader message);
 /// twist.
 ExternalSample read_external(std::string_view type, WireReader message);
 
+/// The reverse of the standard atmosphere. variance_pa2: 0 where the height has no sigma.
+struct AirPressure {
+  double pressure_pa, variance_pa2;
+};
+AirPressure pressure_of_height(const HeightSample& height);
+
 StampedPose read_pose_stamped(WireReader message);
 /// The pose of TransformStamped and Odometry, which name its frame.
 struct NamedPose {

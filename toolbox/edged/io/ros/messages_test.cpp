@@ -71,9 +71,13 @@ void Messages::expect_packets_read(std::string_view encoding, const Encode& enco
   EXPECT_TRUE(read_all(*open({topic}).dataset).events == events);
 }
 
-TEST_P(Messages, PacketsOfEvt3GiveEveryEvent) {
-  EvtEncoder encoder(EvtFormat::Evt3);
-  expect_packets_read("evt3", [&](const std::vector<Event>& events) { return encoder.encode(events); });
+TEST_P(Messages, PacketsOfPropheseesEncodingsGiveEveryEvent) {
+  for (const auto& [encoding, format] :
+       {std::pair("evt3", EvtFormat::Evt3), std::pair("evt21", EvtFormat::Evt21), std::pair("evt2", EvtFormat::Evt2)}) {
+    SCOPED_TRACE(encoding);
+    EvtEncoder encoder(format);
+    expect_packets_read(encoding, [&](const std::vector<Event>& events) { return encoder.encode(events); });
+  }
 }
 
 TEST_P(Messages, PacketsOfMonoGiveEveryEvent) {

@@ -4,6 +4,7 @@
 #include "edged/io/ros/wire_writer.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "edged/camera/lens_table.hpp"
@@ -72,6 +73,19 @@ std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sen
   return out.message();
 }
 
+std::string event_packet_message(Wire wire, const EventPacket& packet, std::string_view camera) {
+  WireWriter out(wire);
+  out.header(packet.stamp, camera);
+  out.number(packet.height);
+  out.number(packet.width);
+  out.number(packet.sequence);
+  out.number(packet.time_base);
+  out.text(packet.encoding);
+  out.number(std::uint8_t{0});  // little-endian
+  out.bytes(packet.events);
+  return out.message();
+}
+
 std::string image_message(Wire wire, const Frame& frame) {
   const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
   WireWriter out(wire);
@@ -95,6 +109,28 @@ std::string imu_message(Wire wire, const ImuSample& sample) {
   out.numbers(kZeros<9>);
   out.numbers({sample.accel_B.data(), 3});
   out.numbers(kZeros<9>);
+  return out.message();
+}
+
+std::string external_message(Wire wire, const ExternalSample& sample) {
+  WireWriter out(wire);
+  if (const auto* height = std::get_if<HeightSample>(&sample)) {
+    const AirPressure pressure = pressure_of_height(*height);
+    out.header(height->t, "body");
+    out.numbers(std::array{pressure.pressure_pa, pressure.variance_pa2});
+    return out.message();
+  }
+  constexpr double kNotMeasured = 1e6;  // a variance [m^2/s^2], by the convention of drivers
+  const auto& velocity = std::get<VelocitySample>(sample);
+  std::array<double, 36> covariance{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double sigma = velocity.sigma[static_cast<Eigen::Index>(axis)];
+    covariance[7 * axis] = std::isfinite(sigma) ? sigma * sigma : kNotMeasured;
+  }
+  out.header(velocity.t, "body");
+  out.numbers({velocity.v_S.data(), 3});
+  out.numbers(kZeros<3>);
+  out.numbers(covariance);
   return out.message();
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "edged/io/ros/message_source.hpp"
+#include "edged/io/ros/messages.hpp"
 #include "edged/measurement.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
@@ -44,10 +45,15 @@ Timestamp latest_stamp(Wire wire);
 /// dvs_msgs/EventArray, prophesee_event_msgs/EventArray and dv_ros_msgs/EventArray; events must not be empty, and the
 /// stamp is that of the first event.
 std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sensor);
+/// event_camera_msgs/EventPacket of a camera.
+std::string event_packet_message(Wire wire, const EventPacket& packet, std::string_view camera);
 /// sensor_msgs/Image of 8 bit.
 std::string image_message(Wire wire, const Frame& frame);
 /// sensor_msgs/Imu.
 std::string imu_message(Wire wire, const ImuSample& sample);
+/// The message that read_external() reads back: sensor_msgs/FluidPressure for a height,
+/// geometry_msgs/TwistWithCovarianceStamped for a velocity.
+std::string external_message(Wire wire, const ExternalSample& sample);
 /// geometry_msgs/TransformStamped from frame `child` to "world".
 std::string transform_message(Wire wire, const StampedPose& pose, std::string_view child);
 /// sensor_msgs/CameraInfo.

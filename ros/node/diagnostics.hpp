@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The diagnostics of the node: status, reason, and counters of measurements.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "edged/odometry.hpp"
+#include "node/backlog.hpp"
+#include "node/sensor_input.hpp"
+
+namespace edged::node {
+
+struct NodeHealth {
+  std::optional<TrackingStatus> status;         ///< of the newest step
+  std::string reason;                           ///< what initialization waits for, or what ended the last estimate
+  std::map<std::string, InputCounters> inputs;  ///< by topic
+  OdometryCounters odometry;
+  BacklogCounters left_out;
+  std::size_t wrong_clocks = 0;  ///< topics whose stamps run at another speed
+  std::size_t newly_lost = 0;    ///< of lost_measurements, since the last report
+  std::optional<Duration> age;   ///< from the newest step to the newest measurement
+};
+
+/// Measurements that are in no packet: unreadable, invalid, late, dropped, without room.
+std::size_t lost_measurements(const NodeHealth& health);
+
+/// As a DiagnosticStatus has it.
+struct Diagnosis {
+  enum class Level : std::uint8_t { Ok = 0, Warning = 1, Error = 2 };
+  Level level = Level::Ok;
+  std::string message;
+  std::vector<std::pair<std::string, std::string>> values;
+};
+
+/// A warning unless the status is Good, nothing was newly lost and nothing is wrong with a topic.
+Diagnosis diagnose(const NodeHealth& health);
+
+}  // namespace edged::node

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The results of the odometry as serialised messages of ROS 1 or ROS 2.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "edged/io/ros/message_source.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
+#include "node/diagnostics.hpp"
+#include "node/node_config.hpp"
+
+namespace edged::node {
+
+// Stamps that ROS cannot hold become its first or last one.
+
+/// A state as it is published.
+struct Estimate {
+  NavState state;
+  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();  ///< [rad/s], measured at that time
+  std::optional<StateCovariance> covariance = {};
+};
+
+/// nav_msgs/Odometry: the pose of the body in the world, and its velocities in the body's axes. The covariance of the
+/// pose is about the axes of the world, as ROS wants it; zeros are unknown.
+std::string odometry_message(Wire wire, const Estimate& estimate, const FrameNames& frames);
+/// geometry_msgs/PoseWithCovarianceStamped: the same pose and covariance.
+std::string pose_message(Wire wire, const Estimate& estimate, const FrameNames& frames);
+/// nav_msgs/Path.
+std::string path_message(Wire wire, Timestamp t, const std::deque<StampedPose>& poses, const FrameNames& frames);
+
+/// tf2_msgs/TFMessage: from the world to the body.
+std::string body_transform_message(Wire wire, const NavState& state, const FrameNames& frames);
+/// tf2_msgs/TFMessage: from the body to each camera as calibrated so far.
+std::string camera_transforms_message(Wire wire, Timestamp t, const Rig& rig, const FrameNames& frames);
+
+/// sensor_msgs/PointCloud2: points with x, y, z in the world, and the id of the feature (its lower 32 bits).
+std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> landmarks, const FrameNames& frames);
+
+/// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
+std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);
+
+/// diagnostic_msgs/DiagnosticArray with one status. hardware: the rig's name.
+std::string diagnostics_message(Wire wire, Timestamp t, const std::string& hardware, const Diagnosis& diagnosis);
+
+}  // namespace edged::node

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "node/node_config.hpp"
+
+#include "edged/core/check.hpp"
+#include "edged/io/calibration.hpp"
+
+namespace edged::node {
+
+void NodeConfig::visit_node(ConfigFields& fields) {
+  fields.add("rig", rig, {"", 0, 0, "name of a rig that ships, or a calibration file"});
+  fields.choice("mode", mode, {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}},
+                {"", 0, 0, "which cameras beside the IMU"});
+  fields.add("world_frame", frames.world, {"", 0, 0, "name of the world in tf and headers"});
+  fields.add("body_frame", frames.body,
+             {"", 0, 0, "name of the body, which is the IMU; cameras have those of the rig"});
+  fields.add("publish_tf", publish_tf, {"", 0, 0, "send transforms of body and cameras"});
+  fields.add("delays.events_s", delays.events_s, {"s", 0, 10, "events may lag this far behind the other sensors"});
+  fields.add("delays.frames_s", delays.frames_s, {"s", 0, 10, "as delays.events_s"});
+  fields.add("delays.imu_s", delays.imu_s, {"s", 0, 10, "as delays.events_s"});
+  fields.add("delays.external_s", delays.external_s,
+             {"s", 0, 10, "height and velocity samples may lag this far behind the other sensors"});
+  fields.add("max_age_s", max_age_s,
+             {"s", 0.05, 3600, "when the odometry lags so far behind, events are left out; frames at twice that"});
+  fields.add("path_step_s", path_step_s, {"s", 0.001, 3600, "between poses of the path"});
+}
+
+Calibration load_node_rig(const NodeConfig& config) {
+  Calibration calibration = load_rig(config.rig);
+  if (!calibration.has_extrinsics)
+    throw InputError::format("rig {} lacks the pose of the camera to the IMU; `edged calib --target` finds it",
+                             config.rig);
+  return calibration;
+}
+
+}  // namespace edged::node

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The configuration of the node.
+#pragma once
+
+#include <string>
+
+#include "edged/io/sensor_head.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/sequencer.hpp"
+
+namespace edged::node {
+
+/// Names of the frames in tf.
+struct FrameNames {
+  std::string world = "odom";  ///< W
+  std::string body = "body";   ///< B, the IMU
+};
+
+struct NodeConfig {
+  std::string rig;
+  Mode mode = Mode::Fused;
+  FrameNames frames;
+  bool publish_tf = true;
+  SensorDelays delays;
+  double max_age_s = 0.25;
+  double path_step_s = 0.1;
+  OdometryConfig options;
+
+  /// All but `options`, which have another place in ROS 1 than in ROS 2.
+  void visit_node(ConfigFields& fields);
+};
+
+/// The calibration of config.rig. Throws InputError if it lacks the poses of the cameras.
+Calibration load_node_rig(const NodeConfig& config);
+
+}  // namespace edged::node

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Serialised messages of one topic into measurements, by the decoders that read bags.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "edged/io/ros/sensor_messages.hpp"
+#include "edged/io/topic_choice.hpp"
+#include "edged/measurement.hpp"
+#include "node/transport.hpp"
+
+namespace edged::node {
+
+/// The counters of one topic.
+struct InputCounters {
+  bool optional = false;  ///< a sensor that no mode needs
+  std::size_t messages = 0;
+  std::size_t events = 0;         ///< in them
+  std::size_t unreadable = 0;     ///< dropped messages: damaged, or of a wrong type
+  std::size_t missed = 0;         ///< messages that never came: gaps in their numbers
+  std::size_t lost = 0;           ///< messages that the transport knows to be lost
+  std::size_t time_back = 0;      ///< steps of the time back within a message
+  std::size_t time_ahead = 0;     ///< jumps of the time ahead within a message
+  Duration stamp_jitter{0};       ///< largest deviation of a packet's stamp from the clock of the sensor
+  std::string trouble;            ///< with the last unreadable one
+  std::string transport_trouble;  ///< why nothing can come
+};
+
+class SensorInput {
+ public:
+  /// camera: whose events or frames come; of no meaning for the other sensors.
+  SensorInput(Wire wire, Role role, std::string camera) : wire_(wire), role_(role), camera_(std::move(camera)) {
+    counters_.optional = external_sensor_of(role) != nullptr;
+  }
+
+  /// The measurements of the message; nothing, and counted, if it is unreadable. One thread at a time.
+  std::optional<Measurement> read(const WireMessage& message);
+  /// From any thread.
+  InputCounters counters() const;
+
+ private:
+  Measurement decode(const WireMessage& message);
+  EventBatch decode_events(const WireMessage& message);
+  void note_packet(const EventPacket& packet, const std::vector<Event>& events);
+  void note_number(std::uint64_t number);
+
+  const Wire wire_;
+  const Role role_;
+  const std::string camera_;
+  EventMessageDecoder decoder_;
+  std::optional<std::uint64_t> last_number_;
+  mutable std::mutex mutex_;  // of what is below
+  InputCounters counters_;
+};
+
+}  // namespace edged::node

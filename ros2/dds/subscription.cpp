@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/subscription.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "dds/names.hpp"
+#include "edged/core/check.hpp"
+
+namespace edged::ros2 {
+
+Subscription::Subscription(const Participant& participant, Setup setup)
+    : participant_(participant),
+      setup_(std::move(setup)),
+      publishers_(dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+                  "discovery"),
+      stop_(dds_create_guardcondition(participant.handle()), "guard condition"),
+      waitset_(dds_create_waitset(participant.handle()), "waitset") {
+  wake_for(publishers_.handle());
+  dds_waitset_attach(waitset_.handle(), stop_.handle(), 0);
+  thread_ = std::jthread([this](const std::stop_token& stopped) {
+    while (!stopped.stop_requested()) run();
+  });
+}
+
+void Subscription::stop() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  dds_set_guardcondition(stop_.handle(), true);
+  thread_.join();
+}
+
+/// As long as it holds messages.
+void Subscription::wake_for(dds_entity_t reader) {
+  const dds_entity_t condition = dds_create_readcondition(reader, DDS_ANY_STATE);  // deleted with the reader
+  dds_waitset_attach(waitset_.handle(), condition, 0);
+}
+
+void Subscription::run() {
+  dds_waitset_wait(waitset_.handle(), nullptr, 0, DDS_INFINITY);
+  discover();
+  receive_some();
+}
+
+/// Reads what is new of the list of publishers.
+void Subscription::discover() {
+  constexpr std::size_t kAtOnce = 16;
+  std::array<void*, kAtOnce> samples{};
+  std::array<dds_sample_info_t, kAtOnce> infos;
+  const dds_return_t count = dds_take(publishers_.handle(), samples.data(), infos.data(), kAtOnce, kAtOnce);
+  for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
+    const auto& publisher = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
+    if (!infos[i].valid_data || infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE ||
+        publisher.topic_name != dds_topic(setup_.topic))
+      continue;
+    note_publisher(publisher.type_name);
+  }
+  if (count > 0) dds_return_loan(publishers_.handle(), samples.data(), count);
+}
+
+void Subscription::note_publisher(const std::string& dds_type) {
+  const std::string type = ros_type(dds_type);
+  if (readers_.contains(type)) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!setup_.accepts(type)) {
+      wrong_type_ = type.empty() ? dds_type : type;
+      return;
+    }
+    try {
+      wake_for(readers_.try_emplace(type, participant_, setup_.topic, type, setup_.qos).first->second.handle());
+    } catch (const InputError& error) {
+      failure_ = error.what();
+      return;
+    }
+  }
+  setup_.on_reader();
+}
+
+/// A few messages of each reader; the waitset wakes for the rest.
+void Subscription::receive_some() {
+  for (auto& [type, reader] : readers_) {  // which only this thread changes
+    for (const auto& message : reader.take()) setup_.receive(type, message->cdr());
+  }
+}
+
+std::size_t Subscription::lost() const {
+  const std::lock_guard lock(mutex_);
+  std::size_t lost = 0;
+  for (const auto& [type, reader] : readers_) lost += reader.lost();
+  return lost;
+}
+
+std::string Subscription::trouble() const {
+  const std::lock_guard lock(mutex_);
+  if (!failure_.empty()) return failure_;
+  for (const auto& [type, reader] : readers_) {
+    const std::string policy = reader.refused_policy();
+    if (policy == "reliability")
+      return "a publisher is best effort, and reliable=true asks for more: leave it at false";
+    if (!policy.empty())
+      return fmt::format("a publisher's QoS does not fit ({}): let it offer the default of ROS 2", policy);
+  }
+  if (readers_.empty() && !wrong_type_.empty())
+    return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong_type_);
+  return "";
+}
+
+std::vector<Guid> Subscription::reader_guids() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Guid> guids;
+  for (const auto& [type, reader] : readers_) guids.push_back(reader.guid());
+  return guids;
+}
+
+}  // namespace edged::ros2

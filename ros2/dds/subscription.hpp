@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// One topic of ROS 2, of whatever type its publisher has.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "dds/participant.hpp"
+
+namespace edged::ros2 {
+
+/// In DDS a reader has a type. Discovery tells those of the publishers; a reader is made for each that is accepted.
+/// Messages arrive in a thread of this object, from the constructor to stop().
+class Subscription {
+ public:
+  struct Setup {
+    std::string topic;
+    Qos qos = {};
+    std::function<bool(const std::string& type)> accepts = {};  ///< "sensor_msgs/Imu"
+    std::function<void(const std::string& type, ByteSpan cdr)> receive = {};
+    std::function<void()> on_reader = [] {};  ///< there is a new one
+  };
+  Subscription(const Participant& participant, Setup setup);
+  ~Subscription() { stop(); }
+  Subscription(const Subscription&) = delete;
+  Subscription& operator=(const Subscription&) = delete;
+
+  void stop();
+
+  // From any thread:
+  const std::string& topic() const { return setup_.topic; }
+  std::size_t lost() const;
+  /// Why nothing can come, with the remedy; "" if nothing speaks against it.
+  std::string trouble() const;
+  std::vector<Guid> reader_guids() const;
+
+ private:
+  void run();
+  void discover();
+  void note_publisher(const std::string& dds_type);
+  void wake_for(dds_entity_t reader);
+  void receive_some();
+
+  const Participant& participant_;
+  const Setup setup_;
+  Entity publishers_, stop_, waitset_;
+  mutable std::mutex mutex_;               // of what is below
+  std::map<std::string, Reader> readers_;  // by type
+  std::string wrong_type_;                 // of a publisher
+  std::string failure_;                    // of the making of a reader
+  std::jthread thread_;
+};
+
+}  // namespace edged::ros2

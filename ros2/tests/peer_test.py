@@ -1,0 +1,225 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 Edged USLAM developers
+# SPDX-License-Identifier: Apache-2.0
+"""`edged ros2` beside a driver and a subscriber on Fast DDS (peer.cpp), over the loopback interface: what arrives, how
+near it is to the offline result, late and killed peers, several nodes and domains, loss, QoS that does not fit.
+
+Wants $EDGED and $EDGED_ROS2_PEER.
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+EDGED, PEER = os.environ["EDGED"], os.environ["EDGED_ROS2_PEER"]
+SECONDS = 4
+
+
+def edged(*args):
+    done = subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, check=False)
+    assert done.returncode in (0, 5), done.stderr
+    return done.stdout
+
+
+def ate_m(truth, trajectory):
+    return json.loads(edged("eval", truth, trajectory, "--json"))["ate_rmse_m"]
+
+
+def poses(file):
+    """{stamp in whole microseconds: numbers}"""
+    rows = [line.split() for line in pathlib.Path(file).read_text().splitlines() if not line.startswith("#")]
+    return {round(1e6 * float(row[0])): [float(x) for x in row[1:8]] for row in rows}
+
+
+def largest_difference(a, b):
+    """Of positions [m] and quaternions, which may have either sign."""
+    return max(max(abs(x - y) for x, y in zip(p, q)) for t, p in a.items() if t in b for q in [closest(p, b[t])])
+
+
+def closest(pose, other):
+    same = sum(x * y for x, y in zip(pose[3:], other[3:])) > 0
+    return other if same else other[:3] + [-x for x in other[3:]]
+
+
+class Node:
+    """`edged ros2`; nothing is shed while a loaded machine is slow."""
+
+    def __init__(self, test, *args, domain=None, name="edged"):
+        env = dict(os.environ, ROS_DOMAIN_ID=str(domain or test.domain))
+        self.error = open(test.folder / f"{name}.err", "w+")
+        self.process = subprocess.Popen(
+            [EDGED, "ros2", "--rig", test.recording / "calibration.yaml", "--node", name, "--set", "max_age_s=3600",
+             *map(str, args)], stdout=subprocess.PIPE, stderr=self.error, text=True, env=env)
+        test.addCleanup(self.kill)
+        deadline = time.monotonic() + 20
+        while "velocity from" not in self.log():
+            test.assertIsNone(self.process.poll(), self.log())
+            test.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+
+    def log(self):
+        with open(self.error.name) as file:
+            return file.read()
+
+    def kill(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+        self.error.close()
+
+    def end(self):
+        """Ctrl-C: {counter: value}."""
+        self.process.send_signal(signal.SIGINT)
+        out, _ = self.process.communicate(timeout=60)
+        assert self.process.returncode == 0, self.log()
+        self.status = out.splitlines()[0]
+        return dict(line.strip().rsplit(": ", 1) for line in out.splitlines()[1:])
+
+
+class PeerOnFastDds(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory(prefix="edged_ros2_")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.base = pathlib.Path(temporary.name)
+        cls.recording = cls.base / "flight"
+        edged("simulate", "--preset", "room", "--duration", SECONDS, "--out", cls.recording, "--quiet")
+        edged("run", cls.recording, "--frame", "body", "--quiet", "--out", cls.base / "offline")
+        cls.offline = cls.base / "offline" / "trajectory.tum"
+        cls.truth = cls.recording / "groundtruth.txt"
+        cls.numbers = iter(range(100))
+
+    def setUp(self):
+        number = next(self.numbers)
+        self.domain = 1 + (os.getpid() + number) % 100
+        self.folder = self.base / str(number)
+        self.folder.mkdir()
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        os.environ["ROS_DOMAIN_ID"] = str(self.domain)
+
+    def start_peer(self, recording, name, **options):
+        return subprocess.Popen([PEER, str(recording), str(self.folder / name),
+                                 *(f"{key}={value}" for key, value in options.items())])
+
+    def peer(self, recording, name, **options):
+        self.assertEqual(self.start_peer(recording, name, **options).wait(timeout=60), 0)
+        return json.loads((self.folder / f"{name}.json").read_text())
+
+    def test_all_arrives_and_all_that_is_published_can_be_read(self):
+        node = Node(self)
+        seen = self.peer(self.recording, "peer")
+        counters = node.end()
+        self.assertEqual(counters.get("/events messages missed"), None)
+        self.assertEqual(counters["/imu messages"], str(1000 * SECONDS + 1))
+        ours, offline = poses(self.folder / "peer.tum"), poses(self.offline)
+        self.assertGreaterEqual(len(ours), len(offline) - 2)  # the last ones come after Ctrl-C
+        difference = largest_difference(ours, offline)
+        online_ate, offline_ate = ate_m(self.truth, self.folder / "peer.tum"), ate_m(self.truth, self.offline)
+        print(f"{len(ours)} poses, {difference:.1e} from those offline; ATE {online_ate:.5f} m, offline {offline_ate:.5f} m")
+        self.assertLess(difference, 1e-6)  # the digits of the file
+        self.assertLess(online_ate, 1.1 * offline_ate)
+        self.check_fields(seen)
+
+    def check_fields(self, seen):
+        for topic, what in seen.items():
+            self.assertGreater(what["count"], 0, topic)
+            self.assertTrue(what["last"]["complete"], topic)
+        last = {topic: what["last"] for topic, what in seen.items()}
+        odometry = last["~/odometry"]
+        self.assertEqual((odometry["frame"], odometry["child"]), ("odom", "body"))
+        self.assertGreater(odometry["pose_covariance"][0], 0)
+        self.assertAlmostEqual(sum(x * x for x in odometry["pose"][3:]), 1, 9)
+        self.assertEqual(last["~/pose"]["pose"], odometry["pose"])
+        self.assertEqual(last["~/pose"]["pose_covariance"], odometry["pose_covariance"])
+        self.assertEqual(seen["~/pose"]["count"], seen["~/odometry"]["count"])
+        self.assertGreater(seen["~/prediction"]["count"], 10 * seen["~/odometry"]["count"])
+        self.assertGreater(len(last["~/path"]["poses"]), 5 * SECONDS)
+        cloud = last["~/landmarks"]
+        self.assertEqual([field["name"] for field in cloud["fields"]], ["x", "y", "z", "id"])
+        self.assertEqual(cloud["bytes"], cloud["width"] * cloud["point_step"])
+        for camera in ("events", "frames"):
+            image = last[f"~/tracks/{camera}"]
+            self.assertEqual(image["bytes"], 3 * image["width"] * image["height"])
+            self.assertEqual((image["encoding"], image["frame"]), ("bgr8", camera))
+        self.assertEqual([t["child"] for t in last["/tf"]["transforms"]], ["body"])
+        self.assertEqual(last["/tf"]["transforms"][0]["pose"], odometry["pose"])
+        self.assertEqual({t["child"] for t in last["/tf_static"]["transforms"]}, {"events", "frames"})
+        diagnostics = last["/diagnostics"]
+        self.assertEqual(diagnostics["name"], "edged: odometry")
+        self.assertTrue(diagnostics["message"].startswith("Good"), diagnostics["message"])
+        self.assertEqual(diagnostics["values"]["/imu messages"], str(1000 * SECONDS + 1))
+
+    def test_a_late_joiner_and_a_second_node_get_the_same_and_another_domain_nothing(self):
+        nodes = [Node(self), Node(self, name="second")]
+        other_domain = Node(self, domain=self.domain % 100 + 101, name="other")
+        first = self.start_peer(self.recording, "peer")
+        time.sleep(SECONDS / 2)
+        late = self.start_peer("none", "late", listen=3, node="second")
+        self.assertEqual(first.wait(timeout=60), 0)
+        self.assertEqual(late.wait(timeout=60), 0)
+        for node in nodes:
+            self.assertNotIn("/events messages missed", node.end())
+        self.assertNotIn("/events messages", other_domain.end())
+        all_poses, late_poses = poses(self.folder / "peer.tum"), poses(self.folder / "late.tum")
+        self.assertGreater(len(late_poses), 10)
+        self.assertLess(len(late_poses), len(all_poses))
+        self.assertLess(largest_difference(late_poses, all_poses), 1e-12)
+        seen = json.loads((self.folder / "late.json").read_text())
+        self.assertGreater(seen["/tf_static"]["count"], 0)
+
+    def test_a_driver_that_is_killed_and_started_again_is_survived(self):
+        node = Node(self)
+        killed = self.start_peer(self.recording, "killed")
+        time.sleep(SECONDS / 2 + 0.5)
+        killed.kill()
+        killed.wait()
+        seen = self.peer(self.recording, "peer", **{"from": SECONDS / 2 + 1})
+        counters = node.end()
+        self.assertGreater(int(counters["/imu messages"]), 300 * SECONDS)
+        self.assertGreater(seen["/diagnostics"]["count"], 0)
+
+    def test_a_loss_of_1_percent_is_counted_and_the_error_stays(self):
+        node = Node(self)
+        self.peer(self.recording, "peer", skip=100)
+        counters = node.end()
+        self.assertGreater(int(counters["/events messages missed"]), 5 * SECONDS)
+        self.assertIn("/events: numbers are missing", node.log())
+        self.assertEqual(node.log().count("/events: numbers are missing"), 1)
+        self.assertLess(ate_m(self.truth, self.folder / "peer.tum"), 2 * ate_m(self.truth, self.offline))
+
+    def test_a_recording_is_played_at_twice_its_speed_without_a_loss(self):
+        flight = self.folder / "sensors"
+        edged("simulate", "--duration", 2, "--set", "height.rate_hz=25", "--set", "velocity.rate_hz=25", "--out", flight,
+              "--quiet")
+        node = Node(self, "--set", "delays.external_s=0.2")
+        done = subprocess.run([EDGED, "play", flight, "--ros2", "--wait", "--rate", "2", "--quiet"], capture_output=True,
+                              text=True, check=True, timeout=60)
+        time.sleep(1)
+        counters = node.end()
+        self.assertEqual(done.stdout.split()[1], counters["/events events"])
+        self.assertNotIn("dropped", done.stdout)
+        self.assertEqual(counters["/imu messages"], "2001")
+        self.assertGreater(int(counters["/height messages"]), 40)
+        self.assertGreater(int(counters["/velocity messages"]), 40)
+
+    def test_reliable_drivers_are_read_and_a_qos_that_does_not_fit_is_named(self):
+        node = Node(self)
+        self.peer(self.recording, "peer", reliable=1, interfaces=2)
+        self.assertEqual(node.end()["/imu messages"], str(1000 * SECONDS + 1))
+        asking = Node(self, "--set", "reliable=true", name="asking")
+        deaf = self.start_peer(self.recording, "deaf")
+        deadline = time.monotonic() + 15
+        while "/imu: a publisher is best effort" not in asking.log():
+            self.assertLess(time.monotonic(), deadline, asking.log())
+            time.sleep(0.1)
+        deaf.kill()
+        deaf.wait()
+        self.assertIn("/imu: a publisher is best effort", asking.log())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
