@@ -158,6 +158,27 @@ std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera) {
   return out.message();
 }
 
+std::string vehicle_odometry_message(const VehicleOdometry& odometry) {
+  WireWriter out(Wire::Cdr);
+  const auto numbers = [&out](const auto& values) {
+    for (const float value : values) out.number(value);
+  };
+  out.number(odometry.timestamp);
+  out.number(odometry.timestamp_sample);
+  out.number(odometry.pose_frame);
+  numbers(odometry.position);
+  numbers(odometry.q);
+  out.number(odometry.velocity_frame);
+  numbers(odometry.velocity);
+  numbers(odometry.angular_velocity);
+  numbers(odometry.position_variance);
+  numbers(odometry.orientation_variance);
+  numbers(odometry.velocity_variance);
+  out.number(odometry.reset_counter);
+  out.number(odometry.quality);
+  return out.message();
+}
+
 std::string diagnostics_message(Wire wire, Timestamp t, const std::string& hardware, const Diagnosis& diagnosis) {
   WireWriter out(wire);
   write_header(out, wire, t, "");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/autopilot/vehicle_odometry.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
@@ -44,6 +45,9 @@ std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> 
 
 /// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);
+
+/// px4_msgs/VehicleOdometry of ROS 2.
+std::string vehicle_odometry_message(const VehicleOdometry& odometry);
 
 /// diagnostic_msgs/DiagnosticArray with one status. hardware: the rig's name.
 std::string diagnostics_message(Wire wire, Timestamp t, const std::string& hardware, const Diagnosis& diagnosis);

@@ -49,7 +49,8 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
       rig_name_(calibration.rig.name),
       odometry_(calibration.rig, calibration.imu, config.mode, config.options, {config.delays, Inference::OwnThread}),
       backlog_(config.max_age_s),
-      outputs_(transport, config) {
+      outputs_(transport, config),
+      autopilot_(transport, config) {
   // The first of a kind has a short name for its topic, another has its own.
   const Rig used = used_cameras(calibration.rig, config.mode, config.options.cameras);
   for (const RigCamera& camera : used.cameras) {
@@ -106,8 +107,10 @@ void Node::predict(const ImuSample& sample) {
                     "sensors have followed",
                     to_seconds(back)));
   // A late sample is ignored.
-  if (const auto state = odometry_.newest_state(); state && state->t == sample.t)
-    outputs_.publish_prediction({*state, sample.gyro_B, covariance});
+  const std::optional<NavState> state = odometry_.newest_state();
+  if (!state || state->t != sample.t) return;
+  autopilot_.send(*state, sample);
+  outputs_.publish_prediction({*state, sample.gyro_B, covariance});
 }
 
 Eigen::Vector3d Node::gyro_at(Timestamp t) {
@@ -140,6 +143,7 @@ bool Node::make_step() {
     return false;
   }
   backlog_.note_step(step->t);
+  autopilot_.note(*step);
   report(*step);
   {
     const std::lock_guard lock(mutex_);

@@ -12,6 +12,7 @@
 
 #include "edged/io/sensor_head.hpp"
 #include "edged/odometry.hpp"
+#include "node/autopilot_outputs.hpp"
 #include "node/backlog.hpp"
 #include "node/clock_check.hpp"
 #include "node/outputs.hpp"
@@ -49,6 +50,7 @@ class Node {
   Odometry odometry_;
   Backlog backlog_;
   Outputs outputs_;
+  AutopilotOutputs autopilot_;
   std::optional<ClockCheck> clocks_;
   std::optional<TrackingStatus> status_;
   std::string reason_;

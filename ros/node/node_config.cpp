@@ -23,6 +23,11 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("max_age_s", max_age_s,
              {"s", 0.05, 3600, "when the odometry lags so far behind, events are left out; frames at twice that"});
   fields.add("path_step_s", path_step_s, {"s", 0.001, 3600, "between poses of the path"});
+  fields.add("mavlink", mavlink,
+             {"", 0, 0, "send the state to an autopilot: udp:HOST:PORT, udpin:HOST:PORT or serial:DEVICE:BAUD"});
+  fields.add("publish_px4", publish_px4,
+             {"", 0, 0, "ROS 2: px4_msgs/VehicleOdometry on /fmu/in/vehicle_visual_odometry"});
+  fields.group("autopilot", autopilot);
 }
 
 Calibration load_node_rig(const NodeConfig& config) {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "edged/autopilot/autopilot_config.hpp"
 #include "edged/io/sensor_head.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/sequencer.hpp"
@@ -25,6 +26,9 @@ struct NodeConfig {
   SensorDelays delays;
   double max_age_s = 0.25;
   double path_step_s = 0.1;
+  std::string mavlink;       ///< URL of an autopilot, as of `edged run --mavlink`; "" without one
+  bool publish_px4 = false;  ///< ROS 2: px4_msgs/VehicleOdometry
+  AutopilotConfig autopilot;
   OdometryConfig options;
 
   /// All but `options`, which have another place in ROS 1 than in ROS 2.

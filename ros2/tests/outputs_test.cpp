@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 
 #include "dds_test_support.hpp"
-#include "edged/io/ros/wire_writer.hpp"
 #include "node/messages.hpp"
 
 namespace edged::ros2 {
@@ -160,17 +159,11 @@ TEST_F(Ros2Outputs, Diagnostics) {
   EXPECT_STREQ(status.values._buffer[1].value, "4");
 }
 
-TEST_F(Ros2Outputs, AnyFurtherMessageOfFixedFields) {
+TEST_F(Ros2Outputs, OdometryOfPx4) {
   TypedPeer<px4_msgs_msg_dds__VehicleOdometry_> peer("/out", px4_msgs_msg_dds__VehicleOdometry__desc);
-  WireWriter out(Wire::Cdr);
-  for (const std::uint64_t t : {1U, 2U}) out.number(t);
-  out.number(std::uint8_t{3});
-  for (int i = 0; i < 7; ++i) out.number(static_cast<float>(i));
-  out.number(std::uint8_t{4});
-  for (int i = 7; i < 22; ++i) out.number(static_cast<float>(i));
-  out.number(std::uint8_t{5});
-  out.number(std::int8_t{6});
-  const auto* odometry = passed(peer, "px4_msgs/VehicleOdometry", out.message());
+  const VehicleOdometry sent{
+      1, 2, 3, {0, 1, 2}, {3, 4, 5, 6}, 4, {7, 8, 9}, {10, 11, 12}, {13, 14, 15}, {16, 17, 18}, {19, 20, 21}, 5, 6};
+  const auto* odometry = passed(peer, "px4_msgs/VehicleOdometry", node::vehicle_odometry_message(sent));
   ASSERT_TRUE(odometry);
   EXPECT_EQ(odometry->timestamp_sample, 2U);
   EXPECT_EQ(odometry->pose_frame, 3);
