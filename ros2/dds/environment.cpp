@@ -18,7 +18,10 @@ namespace {
 
 constexpr std::uint32_t kMostDomains = 232;       // beyond it the ports of RTPS end
 constexpr std::int64_t kReceiveBuffer = 4 << 20;  // [bytes]: 64 kB messages at 100 MB/s (docs/decisions/042)
-constexpr const char* kSocketBuffer = "<Internal><SocketReceiveBufferSize max=\"8 MiB\"/></Internal>";
+// A writer is deleted at once, though a subscriber that was killed has not confirmed its last messages.
+constexpr const char* kInternal =
+    "<Internal><SocketReceiveBufferSize max=\"8 MiB\"/>"
+    "<WriterLingerDuration>100 ms</WriterLingerDuration></Internal>";
 
 std::uint32_t domain_of(const std::string& text) {
   std::uint32_t domain = 0;
@@ -92,7 +95,7 @@ std::string cyclone_config(const Discovery& discovery) {
   const bool localhost = discovery.range == DiscoveryRange::Localhost, off = discovery.range == DiscoveryRange::Off;
   std::vector<std::string> peers = off ? std::vector<std::string>() : discovery.peers;
   if (localhost) peers.insert(peers.begin(), "localhost");
-  std::string parts = kSocketBuffer;
+  std::string parts = kInternal;
   if (localhost || off) {
     const std::string interfaces = localhost ? local_interfaces(discovery.network) : "";
     parts += "<General>" + interfaces + "<AllowMulticast>false</AllowMulticast></General>";
