@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/run_source.hpp"
 
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/core/check.hpp"
 
 namespace edged {
 namespace {
@@ -45,13 +51,25 @@ std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info)
 
 Source open_run_source(SourceOptions& options) {
   if (!options.cameras.empty() || is_live(options) || simulator_config(options)) return open_source(options);
-  SourceOptions all = options;
-  all.all_cameras = true;
-  Source source = open_source(all);
-  options.cameras = stereo_cameras(source.calibration.rig, source.dataset->info());
-  const std::size_t recorded = recorded_cameras(source.dataset->info()).size();
-  const bool several = !source.dataset->info().more_cameras.empty();
-  return several && options.cameras.size() < recorded ? open_source(options) : std::move(source);
+  SourceOptions every = options;
+  every.all_cameras = true;
+  std::optional<Recording> recording;
+  try {
+    recording = open_uncalibrated(every);
+  } catch (const InputError& e) {
+    Source one = open_source(options);  // throws where it is the recording that is wrong
+    spdlog::warn(fmt::format("{}; one camera of each kind is used", e.what()));
+    return one;
+  }
+  const DatasetInfo& info = recording->dataset->info();
+  if (recording->calibration) options.cameras = stereo_cameras(recording->calibration->rig, info);
+  if (!options.cameras.empty())
+    spdlog::info(fmt::format("cameras {}: views overlap; --set cameras=first uses one of each kind",
+                             fmt::join(options.cameras, ", ")));
+  if (info.more_cameras.empty() || options.cameras.size() == recorded_cameras(info).size())
+    return calibrated(options, std::move(*recording));
+  recording.reset();
+  return open_source(options);
 }
 
 }  // namespace edged

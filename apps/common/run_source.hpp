@@ -15,7 +15,8 @@ namespace edged {
 std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info);
 
 /// Opens the recording with the cameras that options.cameras names, else with those of stereo_cameras(), which it puts
-/// there. Throws as open_source().
+/// there; of a live source, of the simulator, and where not all cameras can be read, with the first of each kind.
+/// Throws as open_source().
 Source open_run_source(SourceOptions& options);
 
 }  // namespace edged

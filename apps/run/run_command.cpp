@@ -27,9 +27,10 @@ namespace {
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   RunConfig config = load_config(options.config);
-  options.source.cameras = camera_names(config.odometry.cameras);
-  Source source = open_run_source(options.source);
-  config.odometry.cameras = fmt::format("{}", fmt::join(options.source.cameras, ","));
+  const bool by_default = config.odometry.cameras.empty() && config.odometry.stereo.enabled;
+  if (config.odometry.cameras != kFirstCameras) options.source.cameras = camera_names(config.odometry.cameras);
+  Source source = by_default ? open_run_source(options.source) : open_source(options.source);
+  if (by_default) config.odometry.cameras = fmt::format("{}", fmt::join(options.source.cameras, ","));
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode, options.source.cameras);
   for (const Modality modality : {Modality::Events, Modality::Frames})

@@ -74,7 +74,10 @@ void judge_rig(const Rig& given, const Rig& found, const CalibrationConfig& conf
   constexpr double kSigmas = 3.0;  // of the prior: two cameras whose views overlap estimate these far better
   for (const RigCamera& camera : found.cameras) {
     const RigCamera& first = *found.find(camera.modality);
-    if (&camera == &first) continue;
+    const bool is_told = std::any_of(found.cameras.data(), &camera, [&](const RigCamera& before) {
+      return is_same_lens(given.camera(before.name), given.camera(camera.name));
+    });
+    if (&camera == &first || is_told) continue;
     const SE3 before = given.camera(first.name).T_B_C.inverse() * given.camera(camera.name).T_B_C;
     const SE3 now = first.T_B_C.inverse() * camera.T_B_C;
     const double turned_deg = kDegreesPerRadian * so3::log((before.inverse() * now).rotation()).norm();

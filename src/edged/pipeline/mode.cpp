@@ -36,7 +36,7 @@ std::vector<std::string> camera_names(const std::string& list) {
 }
 
 Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted) {
-  const std::vector<std::string> names = camera_names(wanted);
+  const std::vector<std::string> names = camera_names(wanted == kFirstCameras ? "" : wanted);
   for (const std::string& name : names) {
     if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
       throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));

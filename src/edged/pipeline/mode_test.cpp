@@ -52,6 +52,7 @@ std::string used(Mode mode, const std::string& wanted) {
 TEST(UsedCameras, AreTheFirstOfEachKindUnlessNamed) {
   EXPECT_EQ(used(Mode::Fused, ""), "dvs0 cam0 ");
   EXPECT_EQ(used(Mode::Frames, ""), "cam0 ");
+  EXPECT_EQ(used(Mode::Fused, "first"), "dvs0 cam0 ");
   EXPECT_EQ(used(Mode::Fused, "cam1, cam0,dvs1"), "dvs1 cam0 cam1 ");
   EXPECT_EQ(used(Mode::Events, "cam1,dvs1,dvs0"), "dvs0 dvs1 ");
 }

@@ -89,9 +89,10 @@ void OdometryConfig::visit(ConfigFields& fields) {
 }
 
 void OdometryConfig::declare(ConfigFields& fields) {
-  fields.add("cameras", cameras,
-             {.effect = "Names of the cameras to use, separated by commas. Empty: the first event camera and the first "
-                        "frame camera; of a recording, `edged run` adds a second one of a kind whose view overlaps."});
+  fields.add(
+      "cameras", cameras,
+      {.effect = "Names of the cameras to use, separated by commas; `first`: the first event camera and the first "
+                 "frame camera. Empty: the same, but `edged run` adds a second one of a kind whose view overlaps."});
   fields.group("packets", packets);
   fields.group("event_frame", event_frame);
   fields.group("enhance", enhance);

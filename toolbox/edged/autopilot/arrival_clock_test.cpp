@@ -36,5 +36,14 @@ TEST(ArrivalClock, AStampThatGoesBackBeginsANewTime) {
   EXPECT_EQ(clock.at(stamp_ms(100)), kUnixNow + milliseconds(5));
 }
 
+TEST(ArrivalClock, OneSampleOutOfOrderOrDamagedChangesNothing) {
+  ArrivalClock clock;
+  clock.arrived(stamp_ms(5000), kUnixNow);
+  clock.arrived(stamp_ms(4999), kUnixNow + milliseconds(50));
+  clock.arrived(Timestamp::max(), kUnixNow + milliseconds(50));
+  clock.arrived(stamp_ms(5010), kUnixNow + milliseconds(60));
+  EXPECT_EQ(clock.at(stamp_ms(5010)), kUnixNow + milliseconds(10));
+}
+
 }  // namespace
 }  // namespace edged

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <netdb.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -35,6 +36,7 @@ constexpr std::array<Baud, 9> kBauds = {{{"57600", B57600},
                                          {"3000000", B3000000}}};
 
 constexpr std::size_t kLargestRead = 2048;
+constexpr int kMostWaiting = 600;  // bytes: two messages of odometry
 
 InputError no_url(const std::string& url) {
   return InputError::format(
@@ -73,9 +75,12 @@ void MavlinkPort::open_udp(const std::string& host, const std::string& port, boo
   if (const int error = getaddrinfo(host.c_str(), port.c_str(), &wanted, &list); error != 0)
     throw InputError::format("{}: {}: give the address and the port of the autopilot", url_, gai_strerror(error));
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, &freeaddrinfo);
-  handle_ = ::socket(list->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const addrinfo* chosen = list;  // of a name like localhost the address that autopilots and their simulators use
+  for (const addrinfo* each = list; each; each = each->ai_next)
+    if (each->ai_family == AF_INET && chosen->ai_family != AF_INET) chosen = each;
+  handle_ = ::socket(chosen->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const auto join = listen ? ::bind : ::connect;
-  if (handle_ < 0 || join(handle_, list->ai_addr, list->ai_addrlen) != 0)
+  if (handle_ < 0 || join(handle_, chosen->ai_addr, chosen->ai_addrlen) != 0)
     throw InputError::format(
         "{}: {}: {}", url_, std::strerror(errno),
         listen ? "does another program listen on this port?" : "is there a route to this address?");
@@ -108,6 +113,12 @@ bool MavlinkPort::fail(std::string reason) {
   return false;
 }
 
+/// That the device has taken but not sent: later poses would be old when they arrive.
+int MavlinkPort::waiting_bytes() const {
+  int waiting = 0;
+  return ioctl(handle_, TIOCOUTQ, &waiting) == 0 ? waiting : 0;
+}
+
 /// Whether the device has taken the rest of the frame before.
 bool MavlinkPort::send_rest() {
   if (rest_.empty()) return true;
@@ -118,7 +129,8 @@ bool MavlinkPort::send_rest() {
 
 bool MavlinkPort::send(std::span<const std::uint8_t> frame) {
   if (listens_ && peer_size_ == 0) return fail("no autopilot has sent anything to this port");
-  if (serial_ && !send_rest()) return fail("the serial line is too slow, or the autopilot does not read");
+  if (serial_ && (!send_rest() || waiting_bytes() > kMostWaiting))
+    return fail("the serial line is too slow, or the autopilot does not read: lower autopilot.rate_hz");
   const auto* peer = listens_ ? reinterpret_cast<const sockaddr*>(&peer_) : nullptr;
   const ssize_t sent = serial_ ? ::write(handle_, frame.data(), frame.size())
                                : ::sendto(handle_, frame.data(), frame.size(), MSG_NOSIGNAL, peer, peer_size_);

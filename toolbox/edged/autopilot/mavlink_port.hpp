@@ -38,6 +38,7 @@ class MavlinkPort {
   void open_udp(const std::string& host, const std::string& port, bool listen);
   void open_serial(const std::string& device, const std::string& baud);
   bool fail(std::string reason);
+  int waiting_bytes() const;
   bool send_rest();
 
   std::string url_;

@@ -84,6 +84,7 @@ std::optional<VehicleOdometry> VehicleTracker::at(const NavState& state, const V
     const double tilt = sigmas(R_W_B.toRotationMatrix(), covariance->rotation).head<2>().norm();
     position = sigmas(kFlip.toRotationMatrix(), covariance->position) +
                ahead_s * sigmas(kFlip.toRotationMatrix(), covariance->velocity);
+    position.array() += 0.5 * ahead_s * ahead_s * kGravity_W.norm() * tilt;
     rotation = sigmas(R_V_B_.toRotationMatrix(), covariance->rotation);
     velocity = sigmas(R_V_W.toRotationMatrix(), covariance->velocity).array() + ahead_s * kGravity_W.norm() * tilt;
   }

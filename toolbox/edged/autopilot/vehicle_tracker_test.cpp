@@ -114,7 +114,11 @@ TEST_F(VehicleTrackerTest, VariancesGrowFromTheStepToTheState) {
   NavState later = step.state;
   later.t += std::chrono::milliseconds(500);
   const VehicleOdometry odometry = tracker.at(later, Vector3d::Zero()).value();
-  EXPECT_THAT(odometry.position_variance, near({1.05F * 1.05F, 2.1F * 2.1F, 3.15F * 3.15F}));
+  // By the velocity, and by gravity along the tilt of hypot(0.01, 0.02) rad.
+  const auto by_tilt = static_cast<float>(0.5 * 0.25 * 9.81 * std::hypot(0.01, 0.02));
+  const auto square = [](float sigma) { return sigma * sigma; };
+  EXPECT_THAT(odometry.position_variance,
+              near({square(1.05F + by_tilt), square(2.1F + by_tilt), square(3.15F + by_tilt)}));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(odometry.velocity_variance[i], now.velocity_variance[i]);
   EXPECT_EQ(odometry.orientation_variance, now.orientation_variance);
 }

@@ -3,7 +3,6 @@
 #include "edged/eval/time_offset.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +13,7 @@ namespace {
 
 constexpr double kMost_s = 0.5, kCoarse_s = 0.02;  // within a step, motion is nearly steady
 constexpr std::size_t kMostPoses = 2000;
+constexpr double kTold = 0.3;  // of the error of the whole: with less a piece tells nothing of an offset
 
 /// The ATE with that offset, infinite where too few of the poses that have a truth without it still do.
 class Errors {
@@ -78,13 +78,20 @@ bool TimeOffset::matters() const {
 TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
   TimeOffset all = fit(truth, estimate, max_gap);
   if (!all.matters()) return all;
-  std::array<double, 3> offsets_s{};
-  for (std::size_t i = 0; i < offsets_s.size(); ++i) {
-    const auto from = estimate.begin() + static_cast<std::ptrdiff_t>(i * estimate.size() / offsets_s.size());
-    const auto to = estimate.begin() + static_cast<std::ptrdiff_t>((i + 1) * estimate.size() / offsets_s.size());
-    offsets_s[i] = fit(truth, {from, to}, max_gap).offset_s;
+  constexpr std::size_t kPieces = 3;
+  double least_s = kMost_s, most_s = -kMost_s;
+  for (std::size_t i = 0; i < kPieces; ++i) {
+    const auto from = estimate.begin() + static_cast<std::ptrdiff_t>(i * estimate.size() / kPieces);
+    const auto to = estimate.begin() + static_cast<std::ptrdiff_t>((i + 1) * estimate.size() / kPieces);
+    const Trajectory piece(from, to);
+    const Errors error(truth, piece, max_gap);
+    const double most_m = std::max(error(0.0), error(all.offset_s));
+    if (!std::isfinite(most_m) || most_m < kTold * all.ate_given_m) continue;  // without ground truth, or at rest
+    const double offset_s = fit(truth, piece, max_gap).offset_s;
+    least_s = std::min(least_s, offset_s);
+    most_s = std::max(most_s, offset_s);
   }
-  all.spread_s = std::ranges::max(offsets_s) - std::ranges::min(offsets_s);
+  all.spread_s = std::max(0.0, most_s - least_s);
   return all;
 }
 

@@ -11,7 +11,7 @@ struct TimeOffset {
   double offset_s = 0.0;     ///< that fits best: t_truth = t_estimate + offset
   double ate_rmse_m = 0.0;   ///< with it, after SE(3) alignment
   double ate_given_m = 0.0;  ///< without it
-  double spread_s = 0.0;     ///< largest difference of the offsets of three equal pieces
+  double spread_s = 0.0;     ///< largest difference of the offsets of three equal pieces that move
 
   /// Whether the stamps are what is wrong: by milliseconds any estimate fits better somewhere else, and by more where
   /// it drifts; then pieces of it differ.

@@ -31,6 +31,15 @@ TEST(TimeOffset, OfAPartIsAnErrorOfTheEstimate) {
   EXPECT_FALSE(found.matters());
 }
 
+TEST(TimeOffset, IsFoundWhereAThirdHasNoGroundTruth) {
+  const Trajectory estimate = winding_motion(20.0, 50.0);
+  Trajectory truth = winding_motion(22.0, 50.0);
+  const Timestamp begin = truth.front().t;
+  std::erase_if(truth, [&](const StampedPose& pose) { return std::abs(to_seconds(pose.t - begin) - 10.0) < 4.0; });
+  for (StampedPose& pose : truth) pose.t += duration_from_seconds(0.05);
+  EXPECT_TRUE(fit_time_offset(truth, estimate).matters());
+}
+
 TEST(TimeOffset, OfATruthOnTheSameClockDoesNotMatter) {
   const Trajectory motion = winding_motion(20.0, 50.0);
   EXPECT_NEAR(fit_time_offset(motion, motion).offset_s, 0.0, 1e-3);

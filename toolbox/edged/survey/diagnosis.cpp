@@ -116,13 +116,15 @@ void judge_further_cameras(const Survey& s, Findings& out) {
 void judge_shift(const CameraCheck& check, Findings& out) {
   // In low light, events are delayed by milliseconds, which is no error of the clock.
   constexpr double kDetermined_ms = 2.5;
-  // Of an offset that is less certain. Moving objects and moving light shift it by up to 9 sigmas where events see
-  // little else: what they do to the turns of one second is alike.
+  // Of events, where the offset is less certain: moving objects and moving light cause errors that are correlated over
+  // a second, up to 9 sigmas.
   constexpr double kSigmasOfVague = 10.0;
   const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
   const double sigma = 1e3 * found.time_sigma_s;
+  const bool is_vague = check.camera.modality == Modality::Events && sigma > kDetermined_ms;
+  const double sigmas = is_vague ? kSigmasOfVague : kSigmas;
   const std::string text =
       fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
                   check.camera.name, shift, sigma, given);
@@ -130,7 +132,7 @@ void judge_shift(const CameraCheck& check, Findings& out) {
     out.warn(fmt::format("camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms by its turning",
                          check.camera.name, 1e3 * to_seconds(kMostShift), given),
              "check the clocks of camera and IMU");
-  else if (std::abs(shift - given) > std::max(least_ms, (sigma > kDetermined_ms ? kSigmasOfVague : kSigmas) * sigma))
+  else if (std::abs(shift - given) > std::max(least_ms, sigmas * sigma))
     out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
   else if (sigma > kDetermined_ms)
     out.note(fmt::format("camera {}: its time offset cannot be determined by its turning (+- {:.1f} ms)",

@@ -61,11 +61,15 @@ void TextDataset::name_cameras() {
   info.has_frames = !frames_.empty();
   if (!layout_.events.empty()) info.event_camera = layout_.events.front().camera;
   if (!layout_.frames.empty()) info.frame_camera = layout_.frames.front().camera;
+  const auto is_further = [](const auto& streams, const std::string& camera, const std::string& first) {
+    return camera != first && std::ranges::any_of(streams, [&](const auto& stream) { return stream.camera == camera; });
+  };
   for (const EventFile& e : layout_.events)
-    if (e.camera != info.event_camera)
+    if (is_further(events_, e.camera, info.event_camera))
       info.more_cameras.push_back({e.camera, Modality::Events, e.file.name(), {e.width, e.height}});
   for (const FrameFile& f : layout_.frames)
-    if (f.camera != info.frame_camera) info.more_cameras.push_back({f.camera, Modality::Frames, f.lines.file.name()});
+    if (is_further(frames_, f.camera, info.frame_camera))
+      info.more_cameras.push_back({f.camera, Modality::Frames, f.lines.file.name()});
 }
 
 void TextDataset::find_ends() {
