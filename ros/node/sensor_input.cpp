@@ -19,6 +19,10 @@ bool is_packet(std::string_view type) { return type == "event_camera_msgs/EventP
 
 }  // namespace
 
+std::string sensor_text(Role role, const std::string& camera) {
+  return fmt::format("{}{}{}", kRoleNames[static_cast<std::size_t>(role)], camera.empty() ? "" : " of ", camera);
+}
+
 std::optional<Measurement> SensorInput::read(const WireMessage& message) {
   std::optional<Measurement> measurement;
   std::string trouble;

@@ -31,6 +31,9 @@ struct InputCounters {
   std::string transport_trouble;  ///< why nothing can come
 };
 
+/// "imu", or "events of davis".
+std::string sensor_text(Role role, const std::string& camera);
+
 class SensorInput {
  public:
   /// camera: whose events or frames come; of no meaning for the other sensors.
@@ -40,6 +43,7 @@ class SensorInput {
 
   /// The measurements of the message; nothing, and counted, if it is unreadable. One thread at a time.
   std::optional<Measurement> read(const WireMessage& message);
+  std::string sensor() const { return sensor_text(role_, camera_); }
   /// From any thread.
   InputCounters counters() const;
 

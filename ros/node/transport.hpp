@@ -57,10 +57,11 @@ class Transport {
   /// With namespace and remapping.
   virtual std::string full_name(const std::string& topic) const = 0;
   /// Messages of the topic, a full name, arrive one by one, in order, but those of other topics in other threads; from
-  /// start() to stop(). Any type is accepted that the role can have.
+  /// start() to the end of stop(), which delivers what has arrived. Any type is accepted that the role can have.
+  /// `receive` does not throw.
   virtual void subscribe(const std::string& topic, Role role, Receive receive) = 0;
   virtual void start() = 0;
-  virtual void stop() = 0;
+  virtual void stop() = 0;  ///< also if start() has failed or was not called; again without effect
   /// False once ROS itself shuts the node down.
   virtual bool ok() const = 0;
   /// Of subscribed topics, by full name.

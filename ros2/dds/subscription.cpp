@@ -20,9 +20,7 @@ Subscription::Subscription(const Participant& participant, Setup setup)
       waitset_(dds_create_waitset(participant.handle()), "waitset") {
   wake_for(publishers_.handle());
   dds_waitset_attach(waitset_.handle(), stop_.handle(), 0);
-  thread_ = std::jthread([this](const std::stop_token& stopped) {
-    while (!stopped.stop_requested()) run();
-  });
+  thread_ = std::jthread([this](const std::stop_token& stopped) { run(stopped); });
 }
 
 void Subscription::stop() {
@@ -38,10 +36,18 @@ void Subscription::wake_for(dds_entity_t reader) {
   dds_waitset_attach(waitset_.handle(), condition, 0);
 }
 
-void Subscription::run() {
-  dds_waitset_wait(waitset_.handle(), nullptr, 0, DDS_INFINITY);
-  discover();
-  receive_some();
+void Subscription::run(const std::stop_token& stopped) {
+  try {
+    while (!stopped.stop_requested()) {
+      dds_waitset_wait(waitset_.handle(), nullptr, 0, DDS_INFINITY);
+      discover();
+      receive_some();
+    }
+    drain();
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    failure_ = error.what();
+  }
 }
 
 /// Reads what is new of the list of publishers.
@@ -83,6 +89,18 @@ void Subscription::note_publisher(const std::string& dds_type) {
 void Subscription::receive_some() {
   for (auto& [type, reader] : readers_) {  // which only this thread changes
     for (const auto& message : reader.take()) setup_.receive(type, message->cdr());
+  }
+}
+
+/// What has arrived, and no more than fits a reader: publishers do not stop.
+void Subscription::drain() {
+  for (auto& [type, reader] : readers_) {
+    std::size_t left = setup_.qos.depth;
+    for (auto messages = reader.take(); !messages.empty(); messages = reader.take()) {
+      for (const auto& message : messages) setup_.receive(type, message->cdr());
+      if (messages.size() >= left) break;
+      left -= messages.size();
+    }
   }
 }
 

@@ -14,7 +14,7 @@
 namespace edged::ros2 {
 
 /// In DDS a reader has a type. Discovery tells those of the publishers; a reader is made for each that is accepted.
-/// Messages arrive in a thread of this object, from the constructor to stop().
+/// Messages arrive in a thread of this object, from the constructor to the end of stop().
 class Subscription {
  public:
   struct Setup {
@@ -29,6 +29,7 @@ class Subscription {
   Subscription(const Subscription&) = delete;
   Subscription& operator=(const Subscription&) = delete;
 
+  /// What has arrived is received yet.
   void stop();
 
   // From any thread:
@@ -39,11 +40,12 @@ class Subscription {
   std::vector<Guid> reader_guids() const;
 
  private:
-  void run();
+  void run(const std::stop_token& stopped);
   void discover();
   void note_publisher(const std::string& dds_type);
   void wake_for(dds_entity_t reader);
   void receive_some();
+  void drain();
 
   const Participant& participant_;
   const Setup setup_;
@@ -51,7 +53,7 @@ class Subscription {
   mutable std::mutex mutex_;               // of what is below
   std::map<std::string, Reader> readers_;  // by type
   std::string wrong_type_;                 // of a publisher
-  std::string failure_;                    // of the making of a reader
+  std::string failure_;                    // of the thread, or of the making of a reader
   std::jthread thread_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <map>
 #include <mutex>
 
@@ -244,6 +245,23 @@ TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
   for (int i = 0; i < 10; ++i) writer.write(std::string("\0\1\0\0abcd", 8));
   EXPECT_EQ(reader.take().size(), 4U);
   EXPECT_EQ(reader.lost(), 6U);
+}
+
+TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
+  const Participant participant(test_discovery());
+  const Writer writer(participant, "/waiting", "sensor_msgs/Imu", {.depth = 100});
+  std::atomic<int> received = 0;
+  Subscription::Setup setup{"/waiting", {.depth = 100}};
+  setup.accepts = [](const std::string&) { return true; };
+  setup.receive = [&](const std::string&, ByteSpan) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++received;
+  };
+  Subscription subscription(participant, std::move(setup));
+  ASSERT_TRUE(eventually([&] { return writer.readers() == 1; }));
+  for (int i = 0; i < 90; ++i) EXPECT_TRUE(writer.write(std::string("\0\1\0\0abcd", 8)));
+  subscription.stop();
+  EXPECT_EQ(received, 90);
 }
 
 TEST(Ros2Endpoints, SimulatedTimeIsThatOfTheClock) {
