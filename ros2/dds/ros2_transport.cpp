@@ -14,7 +14,6 @@ namespace {
 
 // Messages that may wait for the decoder. Drivers send event packets and IMU samples a thousand times a second.
 constexpr std::size_t kSamples = 1000, kFrames = 60;
-constexpr Duration kLongestBlock = std::chrono::milliseconds(2);  // of the odometry, by a slow subscriber
 
 class DdsPublisher final : public node::Publisher {
  public:
@@ -59,8 +58,7 @@ Timestamp Ros2Transport::now() const {
 
 std::unique_ptr<node::Publisher> Ros2Transport::advertise(const node::Advertised& topic) {
   const std::string name = full_name(topic.name);
-  const Qos qos{
-      .reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth, .longest_block = kLongestBlock};
+  const Qos qos{.reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth};
   auto writer = std::make_shared<const Writer>(participant_, name, topic.type, qos);
   writers_[name] = writer;
   return std::make_unique<DdsPublisher>(std::move(writer));
@@ -100,8 +98,6 @@ void Ros2Transport::update_graph() {
 
 std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   for (const auto& [topic, writer] : writers_) {
-    if (writer->dropped() > 0 && said_.insert(topic + " slow").second)
-      spdlog::warn(fmt::format("{}: messages are dropped, as a reliable subscriber does not keep up", topic));
     const std::string policy = writer->refused_policy();
     if (!policy.empty() && said_.insert(topic).second)
       spdlog::warn(
@@ -111,7 +107,7 @@ std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   }
   std::map<std::string, node::TopicTroubles> troubles;
   for (const Subscription& subscription : subscriptions_)
-    troubles[subscription.topic()] = {subscription.lost(), subscription.trouble()};
+    troubles[subscription.topic()] = {subscription.lost(), subscription.refused(), subscription.trouble()};
   return troubles;
 }
 

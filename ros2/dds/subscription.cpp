@@ -104,12 +104,16 @@ void Subscription::drain() {
   }
 }
 
-std::size_t Subscription::lost() const {
+std::size_t Subscription::sum(std::size_t (Reader::*count)() const) const {
   const std::lock_guard lock(mutex_);
-  std::size_t lost = 0;
-  for (const auto& [type, reader] : readers_) lost += reader.lost();
-  return lost;
+  std::size_t sum = 0;
+  for (const auto& [type, reader] : readers_) sum += (reader.*count)();
+  return sum;
 }
+
+std::size_t Subscription::lost() const { return sum(&Reader::lost); }
+
+std::size_t Subscription::refused() const { return sum(&Reader::refused); }
 
 std::string Subscription::trouble() const {
   const std::lock_guard lock(mutex_);

@@ -35,6 +35,7 @@ class Subscription {
   // From any thread:
   const std::string& topic() const { return setup_.topic; }
   std::size_t lost() const;
+  std::size_t refused() const;
   /// Why nothing can come, with the remedy; "" if nothing speaks against it.
   std::string trouble() const;
   std::vector<Guid> reader_guids() const;
@@ -44,6 +45,7 @@ class Subscription {
   void discover();
   void note_publisher(const std::string& dds_type);
   void wake_for(dds_entity_t reader);
+  std::size_t sum(std::size_t (Reader::*count)() const) const;
   void receive_some();
   void drain();
 

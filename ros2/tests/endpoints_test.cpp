@@ -244,7 +244,8 @@ TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
   ASSERT_TRUE(eventually([&] { return writer.readers() == 1; }));
   for (int i = 0; i < 10; ++i) writer.write(std::string("\0\1\0\0abcd", 8));
   EXPECT_EQ(reader.take().size(), 4U);
-  EXPECT_EQ(reader.lost(), 6U);
+  EXPECT_EQ(reader.refused(), 6U);
+  EXPECT_EQ(reader.lost(), 0U);
 }
 
 TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
@@ -262,6 +263,36 @@ TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
   for (int i = 0; i < 90; ++i) EXPECT_TRUE(writer.write(std::string("\0\1\0\0abcd", 8)));
   subscription.stop();
   EXPECT_EQ(received, 90);
+}
+
+/// The same domain by other entities: what passes between them goes over the network.
+Discovery test_discovery_of_another_process() {
+  Discovery discovery = test_discovery();
+  discovery.cyclone_uri = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><Discovery><ExternalDomainId>{}</ExternalDomainId></Discovery></Domain>"
+      "</CycloneDDS>",
+      discovery.domain);
+  discovery.domain += 100;
+  return discovery;
+}
+
+/// Returns how many messages were dropped of 200 that a reliable reader of another process does not take.
+int dropped_for_a_slow_reader(Duration longest_block) {
+  const Participant participant(test_discovery()), other(test_discovery_of_another_process());
+  const Writer writer(participant, "/slow", "sensor_msgs/Imu", {.depth = 10, .longest_block = longest_block});
+  const Reader reader(other, "/slow", "sensor_msgs/Imu", {.depth = 4});
+  EXPECT_TRUE(eventually([&] { return writer.readers() == 1 && reader.writers() == 1; }));
+  std::string message(100'000, 'x');
+  message.replace(0, 4, std::string("\0\1\0\0", 4));
+  int dropped = 0;
+  for (int i = 0; i < 200 && dropped < 3; ++i) dropped += writer.write(message) ? 0 : 1;
+  EXPECT_TRUE(eventually([&] { return !reader.take().empty(); }));
+  return dropped;
+}
+
+TEST(Ros2Endpoints, AWriterThatWaitsForASlowReaderKnowsWhatItDrops) {
+  EXPECT_EQ(dropped_for_a_slow_reader(std::chrono::milliseconds(50)), 3);
+  EXPECT_EQ(dropped_for_a_slow_reader(Duration(0)), 0);
 }
 
 TEST(Ros2Endpoints, SimulatedTimeIsThatOfTheClock) {
