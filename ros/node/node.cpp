@@ -39,9 +39,13 @@ std::vector<std::string> troubles_of(const std::string& topic, const InputCounte
   std::vector<std::string> all;
   if (!input.transport_trouble.empty()) all.push_back(topic + ": " + input.transport_trouble);
   if (!input.trouble.empty()) all.push_back(fmt::format("{}: unreadable messages: {}", topic, input.trouble));
-  if (input.missed > 0)
+  if (input.missed > input.lost + input.refused)
     all.push_back(topic +
-                  ": numbers are missing, so messages were lost before they came here (counted in /diagnostics)");
+                  ": numbers are missing, or stamps of the IMU, so messages were lost before they came here (counted "
+                  "in /diagnostics): raise net.core.rmem_max, or lower the rate");
+  if (input.refused > 0)
+    all.push_back(topic +
+                  ": messages were refused, as this computer is too slow: lower the rate, or use fewer cameras");
   if (input.lost > 0)
     all.push_back(
         topic +
@@ -207,6 +211,7 @@ NodeHealth Node::health() {
   for (const auto& [topic, troubles] : transport_.troubles()) {
     InputCounters& input = health.inputs[topic];
     input.lost = troubles.lost;
+    input.refused = troubles.refused;
     input.transport_trouble = troubles.trouble;
   }
   const std::size_t lost = lost_measurements(health);

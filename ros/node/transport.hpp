@@ -41,8 +41,9 @@ class Publisher {
 
 /// What went wrong with a topic on its way.
 struct TopicTroubles {
-  std::size_t lost = 0;  ///< messages that the transport knows to be lost
-  std::string trouble;   ///< why nothing can come, with the remedy; "" otherwise
+  std::size_t lost = 0;     ///< messages that the transport knows to be lost on the way
+  std::size_t refused = 0;  ///< messages that came when as many as may waited
+  std::string trouble;      ///< why nothing can come, with the remedy; "" otherwise
 };
 
 class Transport {
