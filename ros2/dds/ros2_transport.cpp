@@ -37,7 +37,7 @@ Ros2Transport::Ros2Transport(const TransportSetup& setup)
                     "`sudo sysctl -w net.core.rmem_max=8388608`",
                     *bytes / 1024));
   if (!setup.use_sim_time) return;
-  Subscription::Setup clock{"/clock", {.reliable = false}};
+  Subscription::Setup clock{names_.full_name("/clock"), {.reliable = false}};
   clock.accepts = [](const std::string& type) { return type == "rosgraph_msgs/Clock"; };
   clock.receive = [this](const std::string&, ByteSpan cdr) { note_clock(cdr); };
   clock_.emplace(participant_, std::move(clock));
@@ -46,6 +46,7 @@ Ros2Transport::Ros2Transport(const TransportSetup& setup)
 void Ros2Transport::note_clock(ByteSpan cdr) {
   try {
     clock_ns_ = to_ns(WireReader(Wire::Cdr, cdr).time());
+    clock_runs_ = true;
   } catch (const Damage&) {  // the next one will do
   }
 }
@@ -84,6 +85,7 @@ void Ros2Transport::start() {
 
 void Ros2Transport::stop() {
   for (Subscription& subscription : subscriptions_) subscription.stop();
+  if (clock_) clock_->stop();
 }
 
 void Ros2Transport::update_graph() {
@@ -108,6 +110,11 @@ std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   std::map<std::string, node::TopicTroubles> troubles;
   for (const Subscription& subscription : subscriptions_)
     troubles[subscription.topic()] = {subscription.lost(), subscription.refused(), subscription.trouble()};
+  if (clock_ && !clock_runs_) {
+    const std::string trouble = clock_->trouble();
+    troubles[clock_->topic()].trouble =
+        trouble.empty() ? "nothing has come: start the simulator, or leave use_sim_time out" : trouble;
+  }
   return troubles;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "dds/names.hpp"
@@ -58,23 +59,26 @@ void Subscription::discover() {
   const dds_return_t count = dds_take(publishers_.handle(), samples.data(), infos.data(), kAtOnce, kAtOnce);
   for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
     const auto& publisher = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-    if (!infos[i].valid_data || infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE ||
-        publisher.topic_name != dds_topic(setup_.topic))
-      continue;
-    note_publisher(publisher.type_name);
+    if (infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE) {
+      forget_publisher(infos[i].instance_handle);
+    } else if (infos[i].valid_data && publisher.topic_name == dds_topic(setup_.topic)) {
+      note_publisher(infos[i].instance_handle, publisher.type_name);
+    }
   }
   if (count > 0) dds_return_loan(publishers_.handle(), samples.data(), count);
 }
 
-void Subscription::note_publisher(const std::string& dds_type) {
+void Subscription::forget_publisher(dds_instance_handle_t publisher) {
+  const std::lock_guard lock(mutex_);
+  present_.erase(publisher);
+}
+
+void Subscription::note_publisher(dds_instance_handle_t publisher, const std::string& dds_type) {
   const std::string type = ros_type(dds_type);
-  if (readers_.contains(type)) return;
   {
     const std::lock_guard lock(mutex_);
-    if (!setup_.accepts(type)) {
-      wrong_type_ = type.empty() ? dds_type : type;
-      return;
-    }
+    present_[publisher] = type.empty() ? dds_type : type;
+    if (readers_.contains(type) || !setup_.accepts(type)) return;
     try {
       wake_for(readers_.try_emplace(type, participant_, setup_.topic, type, setup_.qos).first->second.handle());
     } catch (const InputError& error) {
@@ -118,15 +122,21 @@ std::size_t Subscription::refused() const { return sum(&Reader::refused); }
 std::string Subscription::trouble() const {
   const std::lock_guard lock(mutex_);
   if (!failure_.empty()) return failure_;
+  const auto wrong = std::ranges::find_if(present_, [this](const auto& one) { return !setup_.accepts(one.second); });
+  std::size_t accepted = 0;
   for (const auto& [type, reader] : readers_) {
-    const std::string policy = reader.refused_policy();
+    const auto present = static_cast<std::size_t>(
+        std::ranges::count_if(present_, [&type](const auto& one) { return one.second == type; }));
+    accepted += present;
+    // DDS counts those that have left, too.
+    const std::string policy = present > reader.writers() ? reader.refused_policy() : "";
     if (policy == "reliability")
       return "a publisher is best effort, and reliable=true asks for more: leave it at false";
     if (!policy.empty())
       return fmt::format("a publisher's QoS does not fit ({}): let it offer the default of ROS 2", policy);
   }
-  if (readers_.empty() && !wrong_type_.empty())
-    return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong_type_);
+  if (accepted == 0 && wrong != present_.end())
+    return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong->second);
   return "";
 }
 

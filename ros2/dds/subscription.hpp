@@ -43,7 +43,8 @@ class Subscription {
  private:
   void run(const std::stop_token& stopped);
   void discover();
-  void note_publisher(const std::string& dds_type);
+  void note_publisher(dds_instance_handle_t publisher, const std::string& dds_type);
+  void forget_publisher(dds_instance_handle_t publisher);
   void wake_for(dds_entity_t reader);
   std::size_t sum(std::size_t (Reader::*count)() const) const;
   void receive_some();
@@ -52,10 +53,10 @@ class Subscription {
   const Participant& participant_;
   const Setup setup_;
   Entity publishers_, stop_, waitset_;
-  mutable std::mutex mutex_;               // of what is below
-  std::map<std::string, Reader> readers_;  // by type
-  std::string wrong_type_;                 // of a publisher
-  std::string failure_;                    // of the thread, or of the making of a reader
+  mutable std::mutex mutex_;                              // of what is below
+  std::map<std::string, Reader> readers_;                 // by type
+  std::map<dds_instance_handle_t, std::string> present_;  // publishers that there are now: their types
+  std::string failure_;                                   // of the thread, or of the making of a reader
   std::jthread thread_;
 };
 

@@ -217,10 +217,12 @@ TEST(Ros2Endpoints, AWrongTypeIsNamedWithTheRemedy) {
   Ros2Transport transport(setup_of());
   transport.subscribe("/imu", Role::Imu, [](const node::WireMessage&) {});
   transport.start();
-  TypedPeer<sensor_msgs_msg_dds__Range_> peer("/imu", sensor_msgs_msg_dds__Range__desc);
-  peer.write();
+  auto peer = std::make_unique<TypedPeer<sensor_msgs_msg_dds__Range_>>("/imu", sensor_msgs_msg_dds__Range__desc);
+  peer->write();
   EXPECT_TRUE(eventually([&] { return !transport.troubles().at("/imu").trouble.empty(); }));
   EXPECT_THAT(transport.troubles().at("/imu").trouble, HasSubstr("sends sensor_msgs/Range"));
+  peer.reset();
+  EXPECT_TRUE(eventually([&] { return transport.troubles().at("/imu").trouble.empty(); }));
 }
 
 TEST(Ros2Endpoints, APublisherOfBestEffortIsNamedToAReliableReader) {
@@ -231,10 +233,12 @@ TEST(Ros2Endpoints, APublisherOfBestEffortIsNamedToAReliableReader) {
   transport.start();
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-  TypedPeer<sensor_msgs_msg_dds__Imu_> peer("/imu", sensor_msgs_msg_dds__Imu__desc, qos);
-  peer.write();
+  auto peer = std::make_unique<TypedPeer<sensor_msgs_msg_dds__Imu_>>("/imu", sensor_msgs_msg_dds__Imu__desc, qos);
+  peer->write();
   EXPECT_TRUE(eventually([&] { return !transport.troubles().at("/imu").trouble.empty(); }));
   EXPECT_THAT(transport.troubles().at("/imu").trouble, HasSubstr("best effort"));
+  peer.reset();
+  EXPECT_TRUE(eventually([&] { return transport.troubles().at("/imu").trouble.empty(); }));
 }
 
 TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
@@ -298,14 +302,20 @@ TEST(Ros2Endpoints, AWriterThatWaitsForASlowReaderKnowsWhatItDrops) {
 TEST(Ros2Endpoints, SimulatedTimeIsThatOfTheClock) {
   TransportSetup setup = setup_of();
   setup.use_sim_time = true;
-  const Ros2Transport transport(setup);
+  setup.names.emplace("/", "edged", std::vector<std::string>{"/clock:=/sim/clock"});
+  Ros2Transport transport(setup);
   EXPECT_EQ(transport.now(), Timestamp());
-  TypedPeer<rosgraph_msgs_msg_dds__Clock_> peer("/clock", rosgraph_msgs_msg_dds__Clock__desc);
+  EXPECT_THAT(transport.troubles().at("/sim/clock").trouble, HasSubstr("start the simulator"));
+  TypedPeer<rosgraph_msgs_msg_dds__Clock_> peer("/sim/clock", rosgraph_msgs_msg_dds__Clock__desc);
   peer.write();
   EXPECT_TRUE(eventually([&] {
     peer.send({{5, 250'000'000}});
     return transport.now() == kTime;
   }));
+  EXPECT_TRUE(transport.troubles().empty());
+  transport.stop();
+  peer.send({{6, 0}});
+  EXPECT_EQ(transport.now(), kTime);
 }
 
 }  // namespace
