@@ -62,8 +62,11 @@ int run_play(const PlayOptions& options) {
     const ros2::PlayCounters counters = player.play(*recording.dataset, stop, [&](Timestamp t) {
       if (status.due()) status.show(progress_text(t, recording.dataset->info(), "played"));
     });
-    recording.dataset.reset();
     status.clear();
+    if (counters.messages == 0 && !stop())
+      throw InputError::format("{}: no measurement is in it, so there is nothing to play",
+                               recording.dataset->info().name);
+    recording.dataset.reset();
     print_counters(counters);
   } while (options.loop && !stop());
   return kExitOk;

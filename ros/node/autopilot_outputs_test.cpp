@@ -5,39 +5,10 @@
 #include <gmock/gmock.h>
 
 #include "edged/core/check.hpp"
+#include "node/node_test_support.hpp"
 
 namespace edged::node {
 namespace {
-
-/// Keeps what is published.
-class KeptTransport : public Transport {
- public:
-  explicit KeptTransport(Wire wire) : wire_(wire) {}
-
-  Wire wire() const override { return wire_; }
-  Timestamp now() const override { return {}; }
-  std::unique_ptr<Publisher> advertise(const Advertised& topic) override {
-    topics.push_back(topic.name + " " + topic.type);
-    return std::make_unique<Kept>(messages);
-  }
-  std::string full_name(const std::string& topic) const override { return topic; }
-  void subscribe(const std::string&, Role, Receive) override {}
-  void start() override {}
-  void stop() override {}
-  bool ok() const override { return true; }
-  std::map<std::string, TopicTroubles> troubles() const override { return {}; }
-
-  std::vector<std::string> topics, messages;
-
- private:
-  struct Kept : Publisher {
-    explicit Kept(std::vector<std::string>& to) : messages(to) {}
-    bool wanted() const override { return true; }
-    void publish(const std::string& message) override { messages.push_back(message); }
-    std::vector<std::string>& messages;
-  };
-  Wire wire_;
-};
 
 NodeConfig with_px4() {
   NodeConfig config;

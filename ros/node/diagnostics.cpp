@@ -15,7 +15,8 @@ std::string summary(const NodeHealth& health) {
   std::string text = health.status ? to_string(*health.status) : "no packet yet";
   if (!health.reason.empty()) text += ": " + health.reason;
   for (const auto& [topic, input] : health.inputs) {
-    if (input.messages == 0 && !input.optional) text += fmt::format("; nothing has come on {}", topic);
+    if (input.messages == 0 && !input.optional && input.transport_trouble.empty())
+      text += fmt::format("; nothing has come on {}", topic);
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
     if (!input.transport_trouble.empty()) text += fmt::format("; {}: {}", topic, input.transport_trouble);
   }
@@ -43,6 +44,7 @@ void add_input(Values& values, const std::string& topic, const InputCounters& in
   add_count(values, topic + " messages unreadable", input.unreadable);
   add_count(values, topic + " messages missed", input.missed);
   add_count(values, topic + " messages lost by the transport", input.lost);
+  add_count(values, topic + " messages refused, too slow", input.refused);
   if (input.events == 0) return;
   add_count(values, topic + " steps of time back in a message", input.time_back);
   add_count(values, topic + " jumps of time ahead in a message", input.time_ahead);
@@ -59,7 +61,8 @@ std::size_t lost_measurements(const NodeHealth& health) {
                      intake.events_outside + intake.frames_unfit + intake.no_room + packets.packets_overflow +
                      packets.events_late + packets.frames_late + packets.imu_not_finite + packets.imu_late +
                      health.left_out.events + health.left_out.frames;
-  for (const auto& [topic, input] : health.inputs) lost += input.unreadable + input.missed + input.lost;
+  for (const auto& [topic, input] : health.inputs)  // what the transport lost is missing among the numbers, too
+    lost += input.unreadable + std::max(input.missed, input.lost + input.refused);
   return lost;
 }
 

@@ -49,16 +49,19 @@ TEST(Diagnostics, ATopicThatCannotComeIsNamedWithTheReason) {
 
 TEST(Diagnostics, EveryLossIsCountedAndShown) {
   NodeHealth health = good();
-  health.inputs["/imu"].missed = 1;
+  health.inputs["/events"].missed = 1;
   health.inputs["/imu"].unreadable = 2;
+  health.inputs["/imu"].missed = 66;
   health.inputs["/imu"].lost = 64;
+  health.inputs["/imu"].refused = 3;
   health.left_out = {4, 8};
   health.odometry.intake.events_outside = 16;
   health.odometry.packets.frames_late = 32;
-  EXPECT_EQ(lost_measurements(health), 127U);
+  EXPECT_EQ(lost_measurements(health), 130U);
   const Diagnosis status = diagnose(health);
   EXPECT_EQ(value_of(status, "/imu messages"), "3");
-  EXPECT_EQ(value_of(status, "/imu messages missed"), "1");
+  EXPECT_EQ(value_of(status, "/events messages missed"), "1");
+  EXPECT_EQ(value_of(status, "/imu messages refused, too slow"), "3");
   EXPECT_EQ(value_of(status, "/imu messages unreadable"), "2");
   EXPECT_EQ(value_of(status, "/imu messages lost by the transport"), "64");
   EXPECT_EQ(value_of(status, "events left out, too slow"), "4");

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <utility>
 
+#include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/pipeline/mode.hpp"
 
@@ -21,14 +22,30 @@ constexpr auto kLongestWait = std::chrono::milliseconds(50);
 constexpr auto kDiagnosticsPeriod = std::chrono::seconds(1);
 constexpr Duration kMostJitter = std::chrono::milliseconds(5);
 
+/// Stops the transport, whose threads call the node, however the scope is left.
+class TransportStop {
+ public:
+  explicit TransportStop(Transport& transport) : transport_(transport) {}
+  ~TransportStop() { transport_.stop(); }
+  TransportStop(const TransportStop&) = delete;
+  TransportStop& operator=(const TransportStop&) = delete;
+
+ private:
+  Transport& transport_;
+};
+
 /// What is wrong with a topic, each with its remedy; a text that does not change while it stays wrong.
 std::vector<std::string> troubles_of(const std::string& topic, const InputCounters& input) {
   std::vector<std::string> all;
   if (!input.transport_trouble.empty()) all.push_back(topic + ": " + input.transport_trouble);
   if (!input.trouble.empty()) all.push_back(fmt::format("{}: unreadable messages: {}", topic, input.trouble));
-  if (input.missed > 0)
+  if (input.missed > input.lost + input.refused)
     all.push_back(topic +
-                  ": numbers are missing, so messages were lost before they came here (counted in /diagnostics)");
+                  ": numbers are missing, or stamps of the IMU, so messages were lost before they came here (counted "
+                  "in /diagnostics): raise net.core.rmem_max, or lower the rate");
+  if (input.refused > 0)
+    all.push_back(topic +
+                  ": messages were refused, as this computer is too slow: lower the rate, or use fewer cameras");
   if (input.lost > 0)
     all.push_back(
         topic +
@@ -66,11 +83,30 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
 
 void Node::subscribe(const std::string& topic, Role role, const std::string& camera) {
   const std::string name = transport_.full_name(topic);
-  SensorInput& input = inputs_.try_emplace(name, transport_.wire(), role, camera).first->second;
+  const auto [entry, is_new] = inputs_.try_emplace(name, transport_.wire(), role, camera);
+  SensorInput& input = entry->second;
+  if (!is_new)
+    throw InputError::format("{} is to be both {} and {}: remap one of them", name, input.sensor(),
+                             sensor_text(role, camera));
   if (!clocks_) clocks_.emplace(name);  // the first camera's
-  transport_.subscribe(name, role,
-                       [this, name, &input](const WireMessage& message) { on_message(name, input, message); });
-  spdlog::info(fmt::format("{} from {}", kRoleNames[static_cast<std::size_t>(role)], name));
+  transport_.subscribe(name, role, [this, name, &input](const WireMessage& message) {
+    try {
+      on_message(name, input, message);
+    } catch (...) {  // which would end the process from a thread of the transport
+      fail(std::current_exception());
+    }
+  });
+  spdlog::info(fmt::format("{} from {}", input.sensor(), name));
+}
+
+void Node::fail(std::exception_ptr failure) {
+  const std::lock_guard lock(mutex_);
+  if (!failure_) failure_ = std::move(failure);
+}
+
+bool Node::failed() {
+  const std::lock_guard lock(mutex_);
+  return failure_ != nullptr;
 }
 
 void Node::on_message(const std::string& topic, SensorInput& input, const WireMessage& message) {
@@ -121,18 +157,23 @@ Eigen::Vector3d Node::gyro_at(Timestamp t) {
 }
 
 Diagnosis Node::run(const std::function<bool()>& stop) {
+  receive(stop);
+  if (failure_) std::rethrow_exception(failure_);
+  odometry_.finish();
+  while (make_step()) continue;
+  return publish_diagnostics();
+}
+
+void Node::receive(const std::function<bool()>& stop) {
+  const TransportStop stopped_at_end(transport_);
   transport_.start();
   SteadyClock::time_point next_diagnostics;
-  while (transport_.ok() && !stop()) {
+  while (transport_.ok() && !failed() && !stop()) {
     if (!make_step()) wait();
     if (SteadyClock::now() < next_diagnostics) continue;
     publish_diagnostics();
     next_diagnostics = SteadyClock::now() + kDiagnosticsPeriod;
   }
-  transport_.stop();
-  odometry_.finish();
-  while (make_step()) continue;
-  return publish_diagnostics();
 }
 
 /// Whether there was work.
@@ -170,6 +211,7 @@ NodeHealth Node::health() {
   for (const auto& [topic, troubles] : transport_.troubles()) {
     InputCounters& input = health.inputs[topic];
     input.lost = troubles.lost;
+    input.refused = troubles.refused;
     input.transport_trouble = troubles.trouble;
   }
   const std::size_t lost = lost_measurements(health);

@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -24,16 +25,20 @@ namespace edged::node {
 /// the rest.
 class Node {
  public:
-  /// Subscribes and advertises. Throws InputError when the rig lacks a camera that the mode needs.
+  /// Subscribes and advertises. Throws InputError when the rig lacks a camera that the mode needs, or two sensors have
+  /// one topic.
   Node(const NodeConfig& config, const Calibration& calibration, Transport& transport);
 
   /// Until `stop` returns true or ROS shuts down; measurements until then are processed. Returns the counters at the
-  /// end.
+  /// end. Throws what goes wrong here or in a thread of the transport, which has been stopped then.
   Diagnosis run(const std::function<bool()>& stop);
 
  private:
   void subscribe(const std::string& topic, Role role, const std::string& camera);
+  void receive(const std::function<bool()>& stop);
   void on_message(const std::string& topic, SensorInput& input, const WireMessage& message);
+  void fail(std::exception_ptr failure);
+  bool failed();
   void predict(const ImuSample& sample);
   bool make_step();
   void report(const Step& step);
@@ -60,6 +65,7 @@ class Node {
   std::mutex mutex_;  // of what is below
   std::condition_variable added_;
   bool something_new_ = false;
+  std::exception_ptr failure_;  // the first one of a thread of the transport
   std::deque<ImuSample> recent_imu_;
   std::optional<StateCovariance> covariance_;
 

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/messages.hpp"
@@ -13,11 +15,30 @@ namespace edged::node {
 namespace {
 
 constexpr Duration kJumpAhead = std::chrono::seconds(1);
-constexpr std::uint64_t kMostMissed = 1'000'000;  // a larger gap is a new way of counting
+constexpr std::uint64_t kMostMissed = 1'000'000;                        // a larger gap is a new way of counting
+constexpr Duration kShortestInterval = std::chrono::microseconds(100);  // no IMU is faster
+constexpr std::size_t kIntervals = 100;                                 // that tell the rate of an IMU
+constexpr double kGap = 1.8;  // intervals between two stamps with a missing one between them
+constexpr Duration kLongestGap = std::chrono::seconds(1);  // a longer one is a driver that was stopped
 
 bool is_packet(std::string_view type) { return type == "event_camera_msgs/EventPacket"; }
 
+/// Their median; nothing if they are those of arrival, when several samples come at once.
+std::optional<Duration> usual_interval(const std::deque<Duration>& intervals) {
+  std::vector<Duration> sorted(intervals.begin(), intervals.end());
+  std::ranges::sort(sorted);
+  const Duration median = sorted[sorted.size() / 2];
+  const double shortest = to_seconds(sorted[sorted.size() / 10]) / to_seconds(median),
+               longest = to_seconds(sorted[sorted.size() * 3 / 4]) / to_seconds(median);
+  const bool regular = median > kShortestInterval && shortest > 0.5 && longest < kGap;
+  return regular ? std::optional(median) : std::nullopt;
+}
+
 }  // namespace
+
+std::string sensor_text(Role role, const std::string& camera) {
+  return fmt::format("{}{}{}", kRoleNames[static_cast<std::size_t>(role)], camera.empty() ? "" : " of ", camera);
+}
 
 std::optional<Measurement> SensorInput::read(const WireMessage& message) {
   std::optional<Measurement> measurement;
@@ -54,8 +75,11 @@ Measurement SensorInput::decode(const WireMessage& message) {
       GrayImage gray = read_frame(message.type, reader);
       return Frame{gray.t, camera_, std::move(gray.image)};
     }
-    case Role::Imu:
-      return read_imu(reader);
+    case Role::Imu: {
+      const ImuSample sample = read_imu(reader);
+      if (wire_ == Wire::Cdr) note_interval(sample.t);
+      return sample;
+    }
     default:
       return read_external(message.type, reader);
   }
@@ -90,6 +114,23 @@ void SensorInput::note_number(std::uint64_t number) {
     counters_.missed += gap > kMostMissed ? 1 : gap;
   }
   last_number_ = number;
+}
+
+/// Samples of ROS 2 have no number, but a rate.
+void SensorInput::note_interval(Timestamp stamp) {
+  const Duration interval = last_stamp_ ? stamp - *last_stamp_ : Duration(0);
+  last_stamp_ = stamp;
+  if (interval <= Duration(0) || interval > kLongestGap) return;
+  if (intervals_.size() == kIntervals) {
+    const std::optional<Duration> usual = usual_interval(intervals_);
+    const double ratio = usual ? to_seconds(interval) / to_seconds(*usual) : 0.0;
+    if (ratio > kGap) {
+      const std::lock_guard lock(mutex_);
+      counters_.missed += static_cast<std::size_t>(std::lround(ratio)) - 1;
+    }
+    intervals_.pop_front();
+  }
+  intervals_.push_back(interval);
 }
 
 InputCounters SensorInput::counters() const {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -22,14 +23,18 @@ struct InputCounters {
   std::size_t messages = 0;
   std::size_t events = 0;         ///< in them
   std::size_t unreadable = 0;     ///< dropped messages: damaged, or of a wrong type
-  std::size_t missed = 0;         ///< messages that never came: gaps in their numbers
-  std::size_t lost = 0;           ///< messages that the transport knows to be lost
+  std::size_t missed = 0;         ///< messages that never came: gaps in their numbers, or in the stamps of the IMU
+  std::size_t lost = 0;           ///< messages that the transport knows to be lost on the way
+  std::size_t refused = 0;        ///< messages that came when as many as may waited
   std::size_t time_back = 0;      ///< steps of the time back within a message
   std::size_t time_ahead = 0;     ///< jumps of the time ahead within a message
   Duration stamp_jitter{0};       ///< largest deviation of a packet's stamp from the clock of the sensor
   std::string trouble;            ///< with the last unreadable one
   std::string transport_trouble;  ///< why nothing can come
 };
+
+/// "imu", or "events of davis".
+std::string sensor_text(Role role, const std::string& camera);
 
 class SensorInput {
  public:
@@ -40,6 +45,7 @@ class SensorInput {
 
   /// The measurements of the message; nothing, and counted, if it is unreadable. One thread at a time.
   std::optional<Measurement> read(const WireMessage& message);
+  std::string sensor() const { return sensor_text(role_, camera_); }
   /// From any thread.
   InputCounters counters() const;
 
@@ -48,13 +54,16 @@ class SensorInput {
   EventBatch decode_events(const WireMessage& message);
   void note_packet(const EventPacket& packet, const std::vector<Event>& events);
   void note_number(std::uint64_t number);
+  void note_interval(Timestamp stamp);
 
   const Wire wire_;
   const Role role_;
   const std::string camera_;
   EventMessageDecoder decoder_;
   std::optional<std::uint64_t> last_number_;
-  mutable std::mutex mutex_;  // of what is below
+  std::optional<Timestamp> last_stamp_;  ///< of the IMU, as is:
+  std::deque<Duration> intervals_;       ///< the last ones between its stamps
+  mutable std::mutex mutex_;             // of what is below
   InputCounters counters_;
 };
 

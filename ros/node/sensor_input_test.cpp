@@ -112,6 +112,32 @@ TEST(SensorInput, OfRos2GapsInTheNumbersOfPacketsAreMissedMessages) {
   EXPECT_EQ(input.counters().missed, 4U);
 }
 
+/// Samples of an IMU of ROS 2 at these intervals. Returns how many seem to be missed.
+std::size_t missed_of(const std::vector<int>& intervals_us) {
+  SensorInput input(Wire::Cdr, Role::Imu, "");
+  Timestamp t = kStart;
+  for (const int interval : intervals_us) {
+    t += std::chrono::microseconds(interval);
+    const std::string message = imu_message(Wire::Cdr, {t, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    EXPECT_TRUE(input.read({"sensor_msgs/Imu", "", as_bytes(message)}));
+  }
+  return input.counters().missed;
+}
+
+TEST(SensorInput, OfRos2GapsInTheStampsOfTheImuAreMissedMessages) {
+  std::vector<int> intervals(150, 1000);
+  for (std::size_t i = 0; i < intervals.size(); i += 2) intervals[i] = 1100;
+  EXPECT_EQ(missed_of(intervals), 0U);
+  intervals[120] = 2000;       // one is lost
+  intervals[130] = 5000;       // four
+  intervals[140] = 3'000'000;  // the driver was away
+  intervals[145] = -8000;
+  EXPECT_EQ(missed_of(intervals), 5U);
+  std::vector<int> bursts(300, 10);
+  for (std::size_t i = 0; i < bursts.size(); i += 4) bursts[i] = 4000;
+  EXPECT_EQ(missed_of(bursts), 0U);
+}
+
 TEST(SensorInput, TimeThatJumpsWithinAPacketIsCountedAndTheEventsAreKept) {
   SensorInput input(Wire::Cdr, Role::Events, "dvs");
   const auto measurement = read_packet(input, 0, {0, 1, 3000, 2990, 2991});

@@ -41,8 +41,9 @@ class Publisher {
 
 /// What went wrong with a topic on its way.
 struct TopicTroubles {
-  std::size_t lost = 0;  ///< messages that the transport knows to be lost
-  std::string trouble;   ///< why nothing can come, with the remedy; "" otherwise
+  std::size_t lost = 0;     ///< messages that the transport knows to be lost on the way
+  std::size_t refused = 0;  ///< messages that came when as many as may waited
+  std::string trouble;      ///< why nothing can come, with the remedy; "" otherwise
 };
 
 class Transport {
@@ -57,10 +58,11 @@ class Transport {
   /// With namespace and remapping.
   virtual std::string full_name(const std::string& topic) const = 0;
   /// Messages of the topic, a full name, arrive one by one, in order, but those of other topics in other threads; from
-  /// start() to stop(). Any type is accepted that the role can have.
+  /// start() to the end of stop(), which delivers what has arrived. Any type is accepted that the role can have.
+  /// `receive` does not throw.
   virtual void subscribe(const std::string& topic, Role role, Receive receive) = 0;
   virtual void start() = 0;
-  virtual void stop() = 0;
+  virtual void stop() = 0;  ///< also if start() has failed or was not called; again without effect
   /// False once ROS itself shuts the node down.
   virtual bool ok() const = 0;
   /// Of subscribed topics, by full name.

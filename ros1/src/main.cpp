@@ -18,7 +18,7 @@
 namespace edged::ros1 {
 namespace {
 
-constexpr int kBadInput = 3;  // as of the program `edged`
+constexpr int kBug = 1, kBadInput = 3;  // as of the program `edged`
 
 volatile std::sig_atomic_t caught_signal = 0;
 extern "C" void remember_signal(int signal) { caught_signal = signal; }
@@ -69,6 +69,9 @@ int main(int argc, char** argv) {
   } catch (const edged::InputError& e) {
     ROS_FATAL("%s", e.what());
     result = edged::ros1::kBadInput;
+  } catch (const std::exception& e) {
+    ROS_FATAL("internal error: %s", e.what());
+    result = edged::ros1::kBug;
   }
   ros::shutdown();
   return result;

@@ -4,6 +4,7 @@
 
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
 #include <charconv>
@@ -85,6 +86,11 @@ Discovery discovery_of(const Environment& environment) {
     discovery.range = DiscoveryRange::Localhost;
     discovery.peers.clear();
   }
+  const bool takes_peers = discovery.range == DiscoveryRange::Subnet || discovery.range == DiscoveryRange::Localhost;
+  if (!takes_peers && !discovery.peers.empty()) {
+    spdlog::warn("ROS_STATIC_PEERS is ignored, as ROS_AUTOMATIC_DISCOVERY_RANGE is OFF or SYSTEM_DEFAULT");
+    discovery.peers.clear();
+  }
   discovery.network = has_network();
   discovery.cyclone_uri = environment("CYCLONEDDS_URI").value_or("");
   return discovery;
@@ -93,7 +99,7 @@ Discovery discovery_of(const Environment& environment) {
 /// Peers that are asked one by one must have ports that can be known: participants number themselves then.
 std::string cyclone_config(const Discovery& discovery) {
   const bool localhost = discovery.range == DiscoveryRange::Localhost, off = discovery.range == DiscoveryRange::Off;
-  std::vector<std::string> peers = off ? std::vector<std::string>() : discovery.peers;
+  std::vector<std::string> peers = discovery.peers;
   if (localhost) peers.insert(peers.begin(), "localhost");
   std::string parts = kInternal;
   if (localhost || off) {

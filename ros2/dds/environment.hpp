@@ -26,8 +26,9 @@ struct Discovery {
 using Environment = std::function<std::optional<std::string>(const char*)>;
 std::optional<std::string> variable(const char* name);  ///< of this process
 
-/// ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY (of Humble; where it is 1 it
-/// wins) and CYCLONEDDS_URI. Throws InputError that names a variable with a value that ROS 2 does not know.
+/// ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS (ignored with a warning where the range is Off or
+/// SystemDefault), ROS_LOCALHOST_ONLY (of Humble; where it is 1 it wins) and CYCLONEDDS_URI. Throws InputError that
+/// names a variable with a value that ROS 2 does not know.
 Discovery discovery_of(const Environment& environment = variable);
 
 /// For dds_create_domain.

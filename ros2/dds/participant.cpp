@@ -84,7 +84,9 @@ Writer::Writer(const Participant& participant, const std::string& topic, std::st
   std::tie(topic_, type_) = make_topic(participant, topic, type);
   const QosHandle wanted = endpoint_qos(qos, type);
   const auto depth = static_cast<std::int32_t>(qos.depth);
-  dds_qset_history(wanted.get(), DDS_HISTORY_KEEP_LAST, depth);
+  // Cyclone never waits for the readers of a writer that keeps the last messages.
+  const bool keeps_all = qos.reliable && qos.longest_block > Duration(0);
+  dds_qset_history(wanted.get(), keeps_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST, depth);
   dds_qset_durability_service(wanted.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
@@ -92,9 +94,7 @@ Writer::Writer(const Participant& participant, const std::string& topic, std::st
 }
 
 bool Writer::write(std::string_view cdr) const {
-  const bool written = dds_writecdr(writer_.handle(), make_raw_message(type_, cdr)) == DDS_RETCODE_OK;
-  if (!written) ++*dropped_;
-  return written;
+  return dds_writecdr(writer_.handle(), make_raw_message(type_, cdr)) == DDS_RETCODE_OK;
 }
 
 std::size_t Writer::readers() const {
@@ -141,11 +141,15 @@ std::size_t Reader::writers() const {
 }
 
 std::size_t Reader::lost() const {
-  dds_sample_lost_status_t lost = {};
-  dds_sample_rejected_status_t rejected = {};
-  dds_get_sample_lost_status(reader_.handle(), &lost);
-  dds_get_sample_rejected_status(reader_.handle(), &rejected);
-  return std::size_t{lost.total_count} + rejected.total_count;
+  dds_sample_lost_status_t status = {};
+  dds_get_sample_lost_status(reader_.handle(), &status);
+  return status.total_count;
+}
+
+std::size_t Reader::refused() const {
+  dds_sample_rejected_status_t status = {};
+  dds_get_sample_rejected_status(reader_.handle(), &status);
+  return status.total_count;
 }
 
 std::string Reader::refused_policy() const {

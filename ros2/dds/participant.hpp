@@ -5,7 +5,6 @@
 
 #include <dds/dds.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -45,7 +44,9 @@ struct Qos {
   bool reliable = true;
   bool latched = false;    ///< transient local: a late reader gets the last `depth` messages
   std::size_t depth = 10;  ///< of a reader: messages beyond it are refused and counted, none is overwritten
-  Duration longest_block = std::chrono::milliseconds(20);  ///< of a writer whose reliable readers do not keep up
+  /// Of a reliable writer: it waits this long for readers that do not keep up before it drops a message; 0: it
+  /// overwrites the oldest one beyond `depth`, uncounted.
+  Duration longest_block{0};
 
   friend bool operator==(const Qos&, const Qos&) = default;
 };
@@ -70,9 +71,8 @@ class Writer {
  public:
   Writer(const Participant& participant, const std::string& topic, std::string_view type, const Qos& qos);
 
-  /// False when it had to be dropped: reliable readers do not keep up. From any thread.
+  /// False when it had to be dropped: reliable readers did not keep up for `longest_block`. From any thread.
   bool write(std::string_view cdr) const;
-  std::size_t dropped() const { return *dropped_; }
   std::size_t readers() const;
   /// The policy that a reader asks for and that is not offered; "" if there is none.
   std::string refused_policy() const;
@@ -83,7 +83,6 @@ class Writer {
 
  private:
   const ddsi_sertype* type_ = nullptr;  // belongs to the topic
-  std::unique_ptr<std::atomic<std::size_t>> dropped_ = std::make_unique<std::atomic<std::size_t>>(0);
   Entity topic_, writer_;
 };
 
@@ -94,8 +93,10 @@ class Reader {
   /// The oldest messages, a few at a time; none if there are none.
   std::vector<std::unique_ptr<RawMessage>> take() const;
   std::size_t writers() const;
-  /// Messages that the network lost, or that came when `depth` others waited.
+  /// Messages that the network lost; of a best-effort reader DDS does not know them.
   std::size_t lost() const;
+  /// Messages that came when `depth` others waited.
+  std::size_t refused() const;
   /// The policy that a writer does not offer, so that its messages do not come; "" if there is none.
   std::string refused_policy() const;
   Guid guid() const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
@@ -17,6 +18,7 @@ namespace edged::ros2 {
 namespace {
 
 constexpr Duration kPacketTime = std::chrono::milliseconds(1), kClockPeriod = std::chrono::milliseconds(10);
+constexpr Duration kLongestFlush = std::chrono::seconds(2);
 constexpr std::size_t kPacketEvents = 16'384, kDepth = 1000;
 constexpr const char* kClock = "/clock";
 // By external sensor.
@@ -86,17 +88,29 @@ PlayCounters Player::play(Dataset& dataset, const std::function<bool()>& stop,
     if (!measurement) break;
     const std::optional<Timestamp> t = last_stamp(*measurement);
     if (!t) continue;
-    if (*t < Timestamp() || *t > latest_stamp(Wire::Cdr))
-      throw InputError::format("{}: ROS messages cannot hold the stamp {} s; shift the recording's clock",
-                               recording_.info.name, format_seconds(*t));
+    check_stamp(*first_stamp(*measurement));
+    check_stamp(*t);
     if (!first) first = *t;
     pace.wait_for(*first + duration_from_seconds(to_seconds(*t - *first) / setup_.rate), stop);
-    send(*measurement);
+    send(*measurement, stop);
     send_clock(*t);
     progress(*t);
   }
-  for (const auto& [topic, writer] : writers_) writer.flush(std::chrono::seconds(2));
+  if (!stop()) flush();
   return counters_;
+}
+
+void Player::check_stamp(Timestamp t) const {
+  if (t < Timestamp() || t > latest_stamp(Wire::Cdr))
+    throw InputError::format("{}: ROS messages cannot hold the stamp {} s; shift the recording's clock",
+                             recording_.info.name, format_seconds(t));
+}
+
+/// Until reliable subscribers have all, but not longer than they may take together.
+void Player::flush() const {
+  const auto end = std::chrono::steady_clock::now() + kLongestFlush;
+  for (const auto& [topic, writer] : writers_)
+    writer.flush(std::max(Duration(0), Duration(end - std::chrono::steady_clock::now())));
 }
 
 void Player::send(const std::string& topic, const std::string& message) {
@@ -106,9 +120,9 @@ void Player::send(const std::string& topic, const std::string& message) {
   if (!writer->second.write(message)) ++counters_.dropped;
 }
 
-void Player::send(const Measurement& measurement) {
+void Player::send(const Measurement& measurement, const std::function<bool()>& stop) {
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
-    send(*batch);
+    send(*batch, stop);
   } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
     const std::size_t place = recording_.place_of(frame->camera, Modality::Frames);
     send(camera_topic(place, Modality::Frames), image_message(Wire::Cdr, *frame));
@@ -120,18 +134,18 @@ void Player::send(const Measurement& measurement) {
   }
 }
 
-/// In packets like those of a driver.
-void Player::send(const EventBatch& batch) {
+/// In packets like those of a driver; each may wait for a slow subscriber.
+void Player::send(const EventBatch& batch, const std::function<bool()>& stop) {
   const std::string topic = camera_topic(recording_.place_of(batch.camera, Modality::Events), Modality::Events);
   EventStream& stream = streams_[topic];
-  for (std::span<const Event> rest = batch.events; !rest.empty();) {
+  for (std::span<const Event> rest = batch.events; !rest.empty() && !stop();) {
     const auto late =
         std::ranges::find_if(rest, [&](const Event& event) { return event.t - rest.front().t >= kPacketTime; });
     const std::size_t count = std::min<std::size_t>(static_cast<std::size_t>(late - rest.begin()), kPacketEvents);
     send_packet(stream, topic, batch.camera, rest.first(count));
     rest = rest.subspan(count);
+    counters_.events += count;
   }
-  counters_.events += batch.events.size();
 }
 
 void Player::send_packet(EventStream& stream, const std::string& topic, const std::string& camera,

@@ -54,11 +54,13 @@ class Player {
 
   void add_topic(const std::string& topic, std::string_view type);
   void send(const std::string& topic, const std::string& message);
-  void send(const Measurement& measurement);
-  void send(const EventBatch& batch);
+  void send(const Measurement& measurement, const std::function<bool()>& stop);
+  void send(const EventBatch& batch, const std::function<bool()>& stop);
   void send_packet(EventStream& stream, const std::string& topic, const std::string& camera,
                    std::span<const Event> events);
   void send_clock(Timestamp t);
+  void check_stamp(Timestamp t) const;
+  void flush() const;
   std::string camera_topic(std::size_t place, Modality modality) const;
 
   const PlaySetup setup_;

@@ -14,7 +14,6 @@ namespace {
 
 // Messages that may wait for the decoder. Drivers send event packets and IMU samples a thousand times a second.
 constexpr std::size_t kSamples = 1000, kFrames = 60;
-constexpr Duration kLongestBlock = std::chrono::milliseconds(2);  // of the odometry, by a slow subscriber
 
 class DdsPublisher final : public node::Publisher {
  public:
@@ -38,7 +37,7 @@ Ros2Transport::Ros2Transport(const TransportSetup& setup)
                     "`sudo sysctl -w net.core.rmem_max=8388608`",
                     *bytes / 1024));
   if (!setup.use_sim_time) return;
-  Subscription::Setup clock{"/clock", {.reliable = false}};
+  Subscription::Setup clock{names_.full_name("/clock"), {.reliable = false}};
   clock.accepts = [](const std::string& type) { return type == "rosgraph_msgs/Clock"; };
   clock.receive = [this](const std::string&, ByteSpan cdr) { note_clock(cdr); };
   clock_.emplace(participant_, std::move(clock));
@@ -47,6 +46,7 @@ Ros2Transport::Ros2Transport(const TransportSetup& setup)
 void Ros2Transport::note_clock(ByteSpan cdr) {
   try {
     clock_ns_ = to_ns(WireReader(Wire::Cdr, cdr).time());
+    clock_runs_ = true;
   } catch (const Damage&) {  // the next one will do
   }
 }
@@ -59,8 +59,7 @@ Timestamp Ros2Transport::now() const {
 
 std::unique_ptr<node::Publisher> Ros2Transport::advertise(const node::Advertised& topic) {
   const std::string name = full_name(topic.name);
-  const Qos qos{
-      .reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth, .longest_block = kLongestBlock};
+  const Qos qos{.reliable = topic.reliable, .latched = topic.latched, .depth = topic.depth};
   auto writer = std::make_shared<const Writer>(participant_, name, topic.type, qos);
   writers_[name] = writer;
   return std::make_unique<DdsPublisher>(std::move(writer));
@@ -86,6 +85,7 @@ void Ros2Transport::start() {
 
 void Ros2Transport::stop() {
   for (Subscription& subscription : subscriptions_) subscription.stop();
+  if (clock_) clock_->stop();
 }
 
 void Ros2Transport::update_graph() {
@@ -100,8 +100,6 @@ void Ros2Transport::update_graph() {
 
 std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   for (const auto& [topic, writer] : writers_) {
-    if (writer->dropped() > 0 && said_.insert(topic + " slow").second)
-      spdlog::warn(fmt::format("{}: messages are dropped, as a reliable subscriber does not keep up", topic));
     const std::string policy = writer->refused_policy();
     if (!policy.empty() && said_.insert(topic).second)
       spdlog::warn(
@@ -111,7 +109,12 @@ std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   }
   std::map<std::string, node::TopicTroubles> troubles;
   for (const Subscription& subscription : subscriptions_)
-    troubles[subscription.topic()] = {subscription.lost(), subscription.trouble()};
+    troubles[subscription.topic()] = {subscription.lost(), subscription.refused(), subscription.trouble()};
+  if (clock_ && !clock_runs_) {
+    const std::string trouble = clock_->trouble();
+    troubles[clock_->topic()].trouble =
+        trouble.empty() ? "nothing has come: start the simulator, or leave use_sim_time out" : trouble;
+  }
   return troubles;
 }
 

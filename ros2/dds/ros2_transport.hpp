@@ -56,8 +56,9 @@ class Ros2Transport final : public node::Transport {
   std::vector<Subscription::Setup> wanted_;                       ///< until start()
   mutable std::mutex mutex_;                                      // of the list, not of what is in it
   std::list<Subscription> subscriptions_;
-  std::optional<Subscription> clock_;
+  std::atomic<bool> clock_runs_ = false;  ///< a message has come
   std::atomic<std::int64_t> clock_ns_ = 0;
+  std::optional<Subscription> clock_;   // whose thread sets both
   mutable std::set<std::string> said_;  ///< what is wrong with subscribers
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "dds/names.hpp"
@@ -20,9 +21,7 @@ Subscription::Subscription(const Participant& participant, Setup setup)
       waitset_(dds_create_waitset(participant.handle()), "waitset") {
   wake_for(publishers_.handle());
   dds_waitset_attach(waitset_.handle(), stop_.handle(), 0);
-  thread_ = std::jthread([this](const std::stop_token& stopped) {
-    while (!stopped.stop_requested()) run();
-  });
+  thread_ = std::jthread([this](const std::stop_token& stopped) { run(stopped); });
 }
 
 void Subscription::stop() {
@@ -38,10 +37,18 @@ void Subscription::wake_for(dds_entity_t reader) {
   dds_waitset_attach(waitset_.handle(), condition, 0);
 }
 
-void Subscription::run() {
-  dds_waitset_wait(waitset_.handle(), nullptr, 0, DDS_INFINITY);
-  discover();
-  receive_some();
+void Subscription::run(const std::stop_token& stopped) {
+  try {
+    while (!stopped.stop_requested()) {
+      dds_waitset_wait(waitset_.handle(), nullptr, 0, DDS_INFINITY);
+      discover();
+      receive_some();
+    }
+    drain();
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    failure_ = error.what();
+  }
 }
 
 /// Reads what is new of the list of publishers.
@@ -52,23 +59,26 @@ void Subscription::discover() {
   const dds_return_t count = dds_take(publishers_.handle(), samples.data(), infos.data(), kAtOnce, kAtOnce);
   for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
     const auto& publisher = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-    if (!infos[i].valid_data || infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE ||
-        publisher.topic_name != dds_topic(setup_.topic))
-      continue;
-    note_publisher(publisher.type_name);
+    if (infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE) {
+      forget_publisher(infos[i].instance_handle);
+    } else if (infos[i].valid_data && publisher.topic_name == dds_topic(setup_.topic)) {
+      note_publisher(infos[i].instance_handle, publisher.type_name);
+    }
   }
   if (count > 0) dds_return_loan(publishers_.handle(), samples.data(), count);
 }
 
-void Subscription::note_publisher(const std::string& dds_type) {
+void Subscription::forget_publisher(dds_instance_handle_t publisher) {
+  const std::lock_guard lock(mutex_);
+  present_.erase(publisher);
+}
+
+void Subscription::note_publisher(dds_instance_handle_t publisher, const std::string& dds_type) {
   const std::string type = ros_type(dds_type);
-  if (readers_.contains(type)) return;
   {
     const std::lock_guard lock(mutex_);
-    if (!setup_.accepts(type)) {
-      wrong_type_ = type.empty() ? dds_type : type;
-      return;
-    }
+    present_[publisher] = type.empty() ? dds_type : type;
+    if (readers_.contains(type) || !setup_.accepts(type)) return;
     try {
       wake_for(readers_.try_emplace(type, participant_, setup_.topic, type, setup_.qos).first->second.handle());
     } catch (const InputError& error) {
@@ -86,25 +96,47 @@ void Subscription::receive_some() {
   }
 }
 
-std::size_t Subscription::lost() const {
-  const std::lock_guard lock(mutex_);
-  std::size_t lost = 0;
-  for (const auto& [type, reader] : readers_) lost += reader.lost();
-  return lost;
+/// What has arrived, and no more than fits a reader: publishers do not stop.
+void Subscription::drain() {
+  for (auto& [type, reader] : readers_) {
+    std::size_t left = setup_.qos.depth;
+    for (auto messages = reader.take(); !messages.empty(); messages = reader.take()) {
+      for (const auto& message : messages) setup_.receive(type, message->cdr());
+      if (messages.size() >= left) break;
+      left -= messages.size();
+    }
+  }
 }
+
+std::size_t Subscription::sum(std::size_t (Reader::*count)() const) const {
+  const std::lock_guard lock(mutex_);
+  std::size_t sum = 0;
+  for (const auto& [type, reader] : readers_) sum += (reader.*count)();
+  return sum;
+}
+
+std::size_t Subscription::lost() const { return sum(&Reader::lost); }
+
+std::size_t Subscription::refused() const { return sum(&Reader::refused); }
 
 std::string Subscription::trouble() const {
   const std::lock_guard lock(mutex_);
   if (!failure_.empty()) return failure_;
+  const auto wrong = std::ranges::find_if(present_, [this](const auto& one) { return !setup_.accepts(one.second); });
+  std::size_t accepted = 0;
   for (const auto& [type, reader] : readers_) {
-    const std::string policy = reader.refused_policy();
+    const auto present = static_cast<std::size_t>(
+        std::ranges::count_if(present_, [&type](const auto& one) { return one.second == type; }));
+    accepted += present;
+    // DDS counts those that have left, too.
+    const std::string policy = present > reader.writers() ? reader.refused_policy() : "";
     if (policy == "reliability")
       return "a publisher is best effort, and reliable=true asks for more: leave it at false";
     if (!policy.empty())
       return fmt::format("a publisher's QoS does not fit ({}): let it offer the default of ROS 2", policy);
   }
-  if (readers_.empty() && !wrong_type_.empty())
-    return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong_type_);
+  if (accepted == 0 && wrong != present_.end())
+    return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong->second);
   return "";
 }
 

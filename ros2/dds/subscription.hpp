@@ -14,7 +14,7 @@
 namespace edged::ros2 {
 
 /// In DDS a reader has a type. Discovery tells those of the publishers; a reader is made for each that is accepted.
-/// Messages arrive in a thread of this object, from the constructor to stop().
+/// Messages arrive in a thread of this object, from the constructor to the end of stop().
 class Subscription {
  public:
   struct Setup {
@@ -29,29 +29,34 @@ class Subscription {
   Subscription(const Subscription&) = delete;
   Subscription& operator=(const Subscription&) = delete;
 
+  /// What has arrived is received yet.
   void stop();
 
   // From any thread:
   const std::string& topic() const { return setup_.topic; }
   std::size_t lost() const;
+  std::size_t refused() const;
   /// Why nothing can come, with the remedy; "" if nothing speaks against it.
   std::string trouble() const;
   std::vector<Guid> reader_guids() const;
 
  private:
-  void run();
+  void run(const std::stop_token& stopped);
   void discover();
-  void note_publisher(const std::string& dds_type);
+  void note_publisher(dds_instance_handle_t publisher, const std::string& dds_type);
+  void forget_publisher(dds_instance_handle_t publisher);
   void wake_for(dds_entity_t reader);
+  std::size_t sum(std::size_t (Reader::*count)() const) const;
   void receive_some();
+  void drain();
 
   const Participant& participant_;
   const Setup setup_;
   Entity publishers_, stop_, waitset_;
-  mutable std::mutex mutex_;               // of what is below
-  std::map<std::string, Reader> readers_;  // by type
-  std::string wrong_type_;                 // of a publisher
-  std::string failure_;                    // of the making of a reader
+  mutable std::mutex mutex_;                              // of what is below
+  std::map<std::string, Reader> readers_;                 // by type
+  std::map<dds_instance_handle_t, std::string> present_;  // publishers that there are now: their types
+  std::string failure_;                                   // of the thread, or of the making of a reader
   std::jthread thread_;
 };
 

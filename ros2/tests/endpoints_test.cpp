@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <map>
 #include <mutex>
 
@@ -216,10 +217,12 @@ TEST(Ros2Endpoints, AWrongTypeIsNamedWithTheRemedy) {
   Ros2Transport transport(setup_of());
   transport.subscribe("/imu", Role::Imu, [](const node::WireMessage&) {});
   transport.start();
-  TypedPeer<sensor_msgs_msg_dds__Range_> peer("/imu", sensor_msgs_msg_dds__Range__desc);
-  peer.write();
+  auto peer = std::make_unique<TypedPeer<sensor_msgs_msg_dds__Range_>>("/imu", sensor_msgs_msg_dds__Range__desc);
+  peer->write();
   EXPECT_TRUE(eventually([&] { return !transport.troubles().at("/imu").trouble.empty(); }));
   EXPECT_THAT(transport.troubles().at("/imu").trouble, HasSubstr("sends sensor_msgs/Range"));
+  peer.reset();
+  EXPECT_TRUE(eventually([&] { return transport.troubles().at("/imu").trouble.empty(); }));
 }
 
 TEST(Ros2Endpoints, APublisherOfBestEffortIsNamedToAReliableReader) {
@@ -230,10 +233,12 @@ TEST(Ros2Endpoints, APublisherOfBestEffortIsNamedToAReliableReader) {
   transport.start();
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-  TypedPeer<sensor_msgs_msg_dds__Imu_> peer("/imu", sensor_msgs_msg_dds__Imu__desc, qos);
-  peer.write();
+  auto peer = std::make_unique<TypedPeer<sensor_msgs_msg_dds__Imu_>>("/imu", sensor_msgs_msg_dds__Imu__desc, qos);
+  peer->write();
   EXPECT_TRUE(eventually([&] { return !transport.troubles().at("/imu").trouble.empty(); }));
   EXPECT_THAT(transport.troubles().at("/imu").trouble, HasSubstr("best effort"));
+  peer.reset();
+  EXPECT_TRUE(eventually([&] { return transport.troubles().at("/imu").trouble.empty(); }));
 }
 
 TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
@@ -243,20 +248,74 @@ TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
   ASSERT_TRUE(eventually([&] { return writer.readers() == 1; }));
   for (int i = 0; i < 10; ++i) writer.write(std::string("\0\1\0\0abcd", 8));
   EXPECT_EQ(reader.take().size(), 4U);
-  EXPECT_EQ(reader.lost(), 6U);
+  EXPECT_EQ(reader.refused(), 6U);
+  EXPECT_EQ(reader.lost(), 0U);
+}
+
+TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
+  const Participant participant(test_discovery());
+  const Writer writer(participant, "/waiting", "sensor_msgs/Imu", {.depth = 100});
+  std::atomic<int> received = 0;
+  Subscription::Setup setup{"/waiting", {.depth = 100}};
+  setup.accepts = [](const std::string&) { return true; };
+  setup.receive = [&](const std::string&, ByteSpan) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++received;
+  };
+  Subscription subscription(participant, std::move(setup));
+  ASSERT_TRUE(eventually([&] { return writer.readers() == 1; }));
+  for (int i = 0; i < 90; ++i) EXPECT_TRUE(writer.write(std::string("\0\1\0\0abcd", 8)));
+  subscription.stop();
+  EXPECT_EQ(received, 90);
+}
+
+/// The same domain by other entities: what passes between them goes over the network.
+Discovery test_discovery_of_another_process() {
+  Discovery discovery = test_discovery();
+  discovery.cyclone_uri = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><Discovery><ExternalDomainId>{}</ExternalDomainId></Discovery></Domain>"
+      "</CycloneDDS>",
+      discovery.domain);
+  discovery.domain += 100;
+  return discovery;
+}
+
+/// Returns how many messages were dropped of 200 that a reliable reader of another process does not take.
+int dropped_for_a_slow_reader(Duration longest_block) {
+  const Participant participant(test_discovery()), other(test_discovery_of_another_process());
+  const Writer writer(participant, "/slow", "sensor_msgs/Imu", {.depth = 10, .longest_block = longest_block});
+  const Reader reader(other, "/slow", "sensor_msgs/Imu", {.depth = 4});
+  EXPECT_TRUE(eventually([&] { return writer.readers() == 1 && reader.writers() == 1; }));
+  std::string message(100'000, 'x');
+  message.replace(0, 4, std::string("\0\1\0\0", 4));
+  int dropped = 0;
+  for (int i = 0; i < 200 && dropped < 3; ++i) dropped += writer.write(message) ? 0 : 1;
+  EXPECT_TRUE(eventually([&] { return !reader.take().empty(); }));
+  return dropped;
+}
+
+TEST(Ros2Endpoints, AWriterThatWaitsForASlowReaderKnowsWhatItDrops) {
+  EXPECT_EQ(dropped_for_a_slow_reader(std::chrono::milliseconds(50)), 3);
+  EXPECT_EQ(dropped_for_a_slow_reader(Duration(0)), 0);
 }
 
 TEST(Ros2Endpoints, SimulatedTimeIsThatOfTheClock) {
   TransportSetup setup = setup_of();
   setup.use_sim_time = true;
-  const Ros2Transport transport(setup);
+  setup.names.emplace("/", "edged", std::vector<std::string>{"/clock:=/sim/clock"});
+  Ros2Transport transport(setup);
   EXPECT_EQ(transport.now(), Timestamp());
-  TypedPeer<rosgraph_msgs_msg_dds__Clock_> peer("/clock", rosgraph_msgs_msg_dds__Clock__desc);
+  EXPECT_THAT(transport.troubles().at("/sim/clock").trouble, HasSubstr("start the simulator"));
+  TypedPeer<rosgraph_msgs_msg_dds__Clock_> peer("/sim/clock", rosgraph_msgs_msg_dds__Clock__desc);
   peer.write();
   EXPECT_TRUE(eventually([&] {
     peer.send({{5, 250'000'000}});
     return transport.now() == kTime;
   }));
+  EXPECT_TRUE(transport.troubles().empty());
+  transport.stop();
+  peer.send({{6, 0}});
+  EXPECT_EQ(transport.now(), kTime);
 }
 
 }  // namespace

@@ -44,10 +44,12 @@ TEST(Ros2Environment, PeersAreAskedBesideTheSubnetAndNotWithoutDiscovery) {
   EXPECT_EQ(discovery.domain, 42U);
   EXPECT_THAT(discovery.peers, ElementsAre("10.0.0.1", "robot.local"));
   EXPECT_THAT(cyclone_config(discovery), HasSubstr("<Peer address=\"10.0.0.1\"/><Peer address=\"robot.local\"/>"));
-  const std::string off =
-      cyclone_config(discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}, {"ROS_STATIC_PEERS", "10.0.0.1"}}));
-  EXPECT_THAT(off, HasSubstr("<AllowMulticast>false</AllowMulticast>"));
-  EXPECT_THAT(off, Not(HasSubstr("Peer ")));
+  const auto without_peers = [](const char* range) {
+    return cyclone_config(discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", range}, {"ROS_STATIC_PEERS", "10.0.0.1"}}));
+  };
+  EXPECT_THAT(without_peers("OFF"), HasSubstr("<AllowMulticast>false</AllowMulticast>"));
+  EXPECT_THAT(without_peers("OFF"), Not(HasSubstr("Peer ")));
+  EXPECT_THAT(without_peers("SYSTEM_DEFAULT"), Not(HasSubstr("Peer ")));
 }
 
 TEST(Ros2Environment, TheUsersOwnConfigurationComesLast) {

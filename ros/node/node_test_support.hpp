@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// For tests: a transport that sends nothing anywhere.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "node/transport.hpp"
+
+namespace edged::node {
+
+/// Keeps what is published.
+class KeptTransport : public Transport {
+ public:
+  explicit KeptTransport(Wire wire) : wire_(wire) {}
+
+  Wire wire() const override { return wire_; }
+  Timestamp now() const override { return {}; }
+  std::unique_ptr<Publisher> advertise(const Advertised& topic) override {
+    topics.push_back(topic.name + " " + topic.type);
+    return std::make_unique<Kept>(messages);
+  }
+  std::string full_name(const std::string& topic) const override {
+    const auto found = remapped.find(topic);
+    return found == remapped.end() ? topic : found->second;
+  }
+  void subscribe(const std::string&, Role, Receive) override {}
+  void start() override { runs = true; }
+  void stop() override { runs = false; }
+  bool ok() const override { return true; }
+  std::map<std::string, TopicTroubles> troubles() const override { return {}; }
+
+  std::vector<std::string> topics, messages;
+  std::map<std::string, std::string> remapped;
+  bool runs = false;
+
+ private:
+  struct Kept : Publisher {
+    explicit Kept(std::vector<std::string>& to) : messages(to) {}
+    bool wanted() const override { return true; }
+    void publish(const std::string& message) override { messages.push_back(message); }
+    std::vector<std::string>& messages;
+  };
+  Wire wire_;
+};
+
+}  // namespace edged::node
