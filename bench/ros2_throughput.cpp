@@ -100,7 +100,7 @@ int receive(int seconds, bool decode, int sender) {
   const double used_s = processor_s() - before_s, took_s = std::chrono::duration<double>(Clock::now() - begin).count();
   std::printf("received %llu of %d packets%s, %zu refused or known to be lost; processor %.2f s/s\n",
               static_cast<unsigned long long>(packets.load()), 1000 * seconds, decode ? " and decoded them" : "",
-              subscription.lost(), used_s / (took_s - 1.0));
+              subscription.lost() + subscription.refused(), used_s / (took_s - 1.0));
   return 0;
 }
 

@@ -79,7 +79,8 @@ def flags_of(command):
 @functools.lru_cache(None)
 def options_of(command):
     """Keys that --set takes."""
-    text = edged("simulate", "--list").stdout if command == "simulate" else edged("config", "--yaml").stdout
+    listing = {"simulate": ("simulate", "--list"), "ros2": ("ros2", "--print-config")}
+    text = edged(*listing.get(command, ("config", "--yaml"))).stdout
     keys, groups = set(), []
     for line in text.splitlines():
         found = re.match(r"( *)([\w.]+):", line)
