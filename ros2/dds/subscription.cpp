@@ -126,7 +126,7 @@ std::string Subscription::trouble() const {
   std::size_t accepted = 0;
   for (const auto& [type, reader] : readers_) {
     const auto present = static_cast<std::size_t>(
-        std::ranges::count_if(present_, [&type](const auto& one) { return one.second == type; }));
+        std::ranges::count_if(present_, [&name = type](const auto& one) { return one.second == name; }));
     accepted += present;
     // DDS counts those that have left, too.
     const std::string policy = present > reader.writers() ? reader.refused_policy() : "";
