@@ -140,7 +140,7 @@ class Verdict(WithFlight):
         self.assertEqual(metrics["verdict"], "never good: cameras start at 5.0 s")
         self.assertEqual(metrics["next"], f"edged run {recording} --from 4.9 --duration 2")
         checked = edged("doctor", recording, "--duration", 2, "--quiet")
-        self.assertIn("cameras start at 5.0 s\n           -> use --start 4.9\n1 errors", checked.stdout)
+        self.assertIn("cameras start at 5.0 s\n           -> use --start 4.9\n1 error, ", checked.stdout)
 
     def test_frames_that_never_come_are_missed(self):
         result, metrics = self.run_it(self.changed("images.txt", lambda text: text.replace("frame_", "gone_")), "fused")

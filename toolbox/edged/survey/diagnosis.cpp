@@ -186,8 +186,8 @@ void judge_rotation(const CameraCheck& check, Findings& out) {
   constexpr double kWrong_deg = 8.0;  // the online calibration corrects smaller errors, with a loss of accuracy
   constexpr double kDetermined_deg = 1.5;
   // A moving lamp that lights a part of the view gives turns of its own, 117 deg off at a sigma of 15 deg; cameras that
-  // are mounted wrong have at most 6 deg.
-  constexpr double kVague_deg = 10.0;
+  // are mounted wrong and IMUs with negated axes have at most 11 deg.
+  constexpr double kVague_deg = 12.0;
   const GyroAgreement& found = *check.agreement;
   const std::string name = "camera " + check.camera.name;
   const auto axis = unknown_axis(found);
