@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "node/autopilot_outputs.hpp"
 
-#include <chrono>
-
 #include "edged/core/check.hpp"
 #include "node/messages.hpp"
 
 namespace edged::node {
 
-AutopilotOutputs::AutopilotOutputs(Transport& transport, const NodeConfig& config)
-    : rate_(config.autopilot.rate_hz), tracker_(config.autopilot.R_V_B()) {
+AutopilotOutputs::AutopilotOutputs(Transport& transport, const NodeConfig& config) : stream_(config.autopilot) {
   if (!config.mavlink.empty()) mavlink_ = std::make_unique<MavlinkOutput>(config.mavlink, config.autopilot);
   if (!config.publish_px4) return;
   if (transport.wire() != Wire::Cdr) throw InputError("publish_px4: PX4 has topics of ROS 2 only: use mavlink");
@@ -20,7 +17,7 @@ AutopilotOutputs::AutopilotOutputs(Transport& transport, const NodeConfig& confi
 void AutopilotOutputs::note(const Step& step) {
   if (mavlink_) mavlink_->note(step);
   const std::lock_guard lock(mutex_);
-  tracker_.note(step);
+  stream_.note(step);
 }
 
 void AutopilotOutputs::send(const NavState& state, const ImuSample& sample) {
@@ -32,11 +29,9 @@ void AutopilotOutputs::send(const NavState& state, const ImuSample& sample) {
   std::optional<VehicleOdometry> odometry;
   {
     const std::lock_guard lock(mutex_);
-    odometry = tracker_.at(state, sample.gyro_B);
+    odometry = stream_.next(state, sample.gyro_B, now);
   }
-  if (!odometry || !rate_.is_due(state.t)) return;
-  odometry->timestamp = odometry->timestamp_sample = static_cast<std::uint64_t>(now / std::chrono::microseconds(1));
-  px4_->publish(vehicle_odometry_message(*odometry));
+  if (odometry) px4_->publish(vehicle_odometry_message(*odometry));
 }
 
 }  // namespace edged::node

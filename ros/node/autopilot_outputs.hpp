@@ -9,8 +9,7 @@
 
 #include "edged/autopilot/arrival_clock.hpp"
 #include "edged/autopilot/mavlink_output.hpp"
-#include "edged/autopilot/rate_limit.hpp"
-#include "edged/autopilot/vehicle_tracker.hpp"
+#include "edged/autopilot/vehicle_stream.hpp"
 #include "node/node_config.hpp"
 #include "node/transport.hpp"
 
@@ -32,10 +31,9 @@ class AutopilotOutputs {
   std::unique_ptr<MavlinkOutput> mavlink_;
   std::unique_ptr<Publisher> px4_;
   ArrivalClock clock_;
-  RateLimit rate_;
 
-  std::mutex mutex_;  // of the tracker
-  VehicleTracker tracker_;
+  std::mutex mutex_;  // of what PX4 gets
+  VehicleStream stream_;
 };
 
 }  // namespace edged::node

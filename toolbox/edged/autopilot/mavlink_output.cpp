@@ -21,23 +21,20 @@ MavlinkOutput::MavlinkOutput(const std::string& url, const AutopilotConfig& conf
     : url_(url),
       port_(url),
       encoder_({static_cast<std::uint8_t>(config.system_id), static_cast<std::uint8_t>(config.component_id)}),
-      tracker_(config.R_V_B()),
-      rate_(config.rate_hz),
+      stream_(config),
       thread_([this](const std::stop_token& stop) { serve(stop); }) {}
 
 Duration MavlinkOutput::unix_now() { return std::chrono::system_clock::now().time_since_epoch(); }
 
 void MavlinkOutput::note(const Step& step) {
   const std::lock_guard lock(mutex_);
-  tracker_.note(step);
+  stream_.note(step);
 }
 
 bool MavlinkOutput::send(const NavState& state, const Eigen::Vector3d& gyro_B, Duration unix_time) {
   const std::lock_guard lock(mutex_);
-  std::optional<VehicleOdometry> odometry = tracker_.at(state, gyro_B);
-  if (!odometry || !rate_.is_due(state.t)) return false;
-  odometry->timestamp = odometry->timestamp_sample =
-      static_cast<std::uint64_t>(unix_time / std::chrono::microseconds(1));
+  const std::optional<VehicleOdometry> odometry = stream_.next(state, gyro_B, unix_time);
+  if (!odometry) return false;
   put(encoder_.odometry(*odometry), counters_.odometry);
   return true;
 }

@@ -12,8 +12,7 @@
 #include "edged/autopilot/autopilot_config.hpp"
 #include "edged/autopilot/mavlink.hpp"
 #include "edged/autopilot/mavlink_port.hpp"
-#include "edged/autopilot/rate_limit.hpp"
-#include "edged/autopilot/vehicle_tracker.hpp"
+#include "edged/autopilot/vehicle_stream.hpp"
 
 namespace edged {
 
@@ -52,8 +51,7 @@ class MavlinkOutput {
   mutable std::mutex mutex_;  ///< guards all below but the thread
   MavlinkPort port_;          ///< the thread waits and receives
   MavlinkEncoder encoder_;
-  VehicleTracker tracker_;
-  RateLimit rate_;
+  VehicleStream stream_;
   MavlinkCounters counters_;
 
   std::jthread thread_;  ///< last: it uses the others
