@@ -46,6 +46,7 @@ void add_input(Values& values, const std::string& topic, const InputCounters& in
   add_count(values, topic + " messages lost by the transport", input.lost);
   add_count(values, topic + " messages refused, too slow", input.refused);
   if (input.events == 0) return;
+  add_count(values, topic + " events left out, after missing messages", input.left_out);
   add_count(values, topic + " steps of time back in a message", input.time_back);
   add_count(values, topic + " jumps of time ahead in a message", input.time_ahead);
   values.emplace_back(topic + " stamps off the clock of the sensor [ms]",

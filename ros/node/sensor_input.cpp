@@ -57,6 +57,7 @@ std::optional<Measurement> SensorInput::read(const WireMessage& message) {
     counters_.trouble = std::move(trouble);
   } else if (const auto* batch = std::get_if<EventBatch>(&*measurement)) {
     counters_.events += batch->events.size();
+    counters_.left_out = decoder_.left_out();
   }
   return measurement;
 }

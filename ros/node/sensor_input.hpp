@@ -26,6 +26,7 @@ struct InputCounters {
   std::size_t missed = 0;         ///< messages that never came: gaps in their numbers, or in the stamps of the IMU
   std::size_t lost = 0;           ///< messages that the transport knows to be lost on the way
   std::size_t refused = 0;        ///< messages that came when as many as may waited
+  std::size_t left_out = 0;       ///< events without time or place, as the packet before them is missing
   std::size_t time_back = 0;      ///< steps of the time back within a message
   std::size_t time_ahead = 0;     ///< jumps of the time ahead within a message
   Duration stamp_jitter{0};       ///< largest deviation of a packet's stamp from the clock of the sensor

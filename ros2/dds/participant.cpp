@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/participant.hpp"
 
+#include <algorithm>
 #include <array>
-#include <limits>
 
 #include "dds/names.hpp"
 #include "edged/core/check.hpp"
@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kEnclave = "enclave=/;";
 constexpr std::size_t kTakenAtOnce = 16;
+constexpr std::size_t kMostWriters = 64;  // that a reader remembers
 
 using QosHandle = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
@@ -114,7 +115,7 @@ void Writer::flush(Duration longest) const { dds_wait_for_acks(writer_.handle(),
 Guid Writer::guid() const { return guid_of(handle()); }
 
 Reader::Reader(const Participant& participant, const std::string& topic, std::string_view type, const Qos& qos)
-    : topic_(make_topic(participant, topic, type).first) {
+    : reliable_(qos.reliable), topic_(make_topic(participant, topic, type).first) {
   const QosHandle wanted = endpoint_qos(qos, type);
   const auto depth = static_cast<std::int32_t>(qos.depth);
   dds_qset_history(wanted.get(), DDS_HISTORY_KEEP_ALL, 0);
@@ -122,16 +123,27 @@ Reader::Reader(const Participant& participant, const std::string& topic, std::st
   reader_ = Entity(dds_create_reader(participant.handle(), topic_.handle(), wanted.get(), nullptr), topic);
 }
 
-std::vector<std::unique_ptr<RawMessage>> Reader::take() const {
+std::vector<std::unique_ptr<RawMessage>> Reader::take() {
   std::array<ddsi_serdata*, kTakenAtOnce> taken;
   std::array<dds_sample_info_t, kTakenAtOnce> infos;
   const dds_return_t count = dds_takecdr(reader_.handle(), taken.data(), kTakenAtOnce, infos.data(), DDS_ANY_STATE);
   std::vector<std::unique_ptr<RawMessage>> messages;
   for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
     auto message = std::make_unique<RawMessage>(taken[i]);
-    if (infos[i].valid_data) messages.push_back(std::move(message));  // else a writer has left
+    if (!infos[i].valid_data) continue;  // a writer has left
+    note(message->origin());
+    messages.push_back(std::move(message));
   }
   return messages;
+}
+
+/// A writer that is new may have sent before.
+void Reader::note(const Origin& origin) {
+  if (origin.number == 0) return;
+  if (newest_.size() >= kMostWriters) newest_.clear();
+  const auto [entry, is_new] = newest_.try_emplace(origin.writer, origin.number);
+  if (!is_new && origin.number > entry->second) missing_ += origin.number - entry->second - 1;
+  entry->second = origin.number;
 }
 
 std::size_t Reader::writers() const {
@@ -141,6 +153,10 @@ std::size_t Reader::writers() const {
 }
 
 std::size_t Reader::lost() const {
+  if (!reliable_) {  // what was refused is missing, too
+    const std::size_t missing = missing_, refused = this->refused();
+    return missing - std::min(missing, refused);
+  }
   dds_sample_lost_status_t status = {};
   dds_get_sample_lost_status(reader_.handle(), &status);
   return status.total_count;

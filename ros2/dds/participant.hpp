@@ -5,8 +5,10 @@
 
 #include <dds/dds.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -86,14 +88,15 @@ class Writer {
   Entity topic_, writer_;
 };
 
+/// One thread takes; the rest may be called from any.
 class Reader {
  public:
   Reader(const Participant& participant, const std::string& topic, std::string_view type, const Qos& qos);
 
   /// The oldest messages, a few at a time; none if there are none.
-  std::vector<std::unique_ptr<RawMessage>> take() const;
+  std::vector<std::unique_ptr<RawMessage>> take();
   std::size_t writers() const;
-  /// Messages that the network lost; of a best-effort reader DDS does not know them.
+  /// Messages that the network lost. Of a best-effort reader DDS does not count them: their numbers are missing.
   std::size_t lost() const;
   /// Messages that came when `depth` others waited.
   std::size_t refused() const;
@@ -103,7 +106,12 @@ class Reader {
   dds_entity_t handle() const { return reader_.handle(); }
 
  private:
+  void note(const Origin& origin);
+
+  bool reliable_;
   Entity topic_, reader_;
+  std::map<std::array<std::uint8_t, 16>, std::uint64_t> newest_;  // number that was taken, by writer
+  std::atomic<std::size_t> missing_ = 0;                          // numbers
 };
 
 Guid guid_of(dds_entity_t entity);

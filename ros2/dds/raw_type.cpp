@@ -23,6 +23,7 @@ struct Serdata : ddsi_serdata {
     hash = of->serdata_basehash;  // one instance, as there is no key
   }
   std::string bytes;  ///< padded to kAlignment
+  Origin origin;
 };
 
 const Serdata& raw(const ddsi_serdata* message) { return *static_cast<const Serdata*>(message); }
@@ -38,10 +39,29 @@ Serdata* allocate(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t 
 
 void pad(std::string& bytes) { bytes.append((kAlignment - bytes.size() % kAlignment) % kAlignment, '\0'); }
 
+// RTPS 2.2, 8.3.3, 9.4.4 and 9.4.5.3 [bytes]: in the packet, and in the submessage DATA or DATA_FRAG.
+constexpr std::size_t kPrefix = 8, kPrefixSize = 12, kWriterId = 12, kWriterIdSize = 4, kNumber = 16;
+
+/// Of the submessage that the fragment is from. Cyclone has brought its number into the order of bytes of this machine.
+Origin origin_of(const nn_rdata& fragment) {
+  if (fragment.submsg_zoff == 0) return {};
+  const unsigned char* packet = NN_RMSG_PAYLOAD(fragment.rmsg);
+  const unsigned char* submessage = packet + NN_RDATA_SUBMSG_OFF(&fragment);
+  Origin origin;
+  std::memcpy(origin.writer.data(), packet + kPrefix, kPrefixSize);
+  std::memcpy(origin.writer.data() + kPrefixSize, submessage + kWriterId, kWriterIdSize);
+  std::uint32_t high = 0, low = 0;
+  std::memcpy(&high, submessage + kNumber, sizeof high);
+  std::memcpy(&low, submessage + kNumber + sizeof high, sizeof low);
+  origin.number = (std::uint64_t{high} << 32) | low;
+  return origin;
+}
+
 /// Fragments are in order; their ranges may overlap.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
                              std::size_t size) {
   Serdata* message = allocate(type, kind, size);
+  if (message && fragment) message->origin = origin_of(*fragment);
   for (; message && fragment; fragment = fragment->nextfrag) {
     const std::size_t done = message->bytes.size();
     if (fragment->maxp1 <= done) continue;
@@ -144,5 +164,7 @@ ddsi_serdata* make_raw_message(const ddsi_sertype* type, std::string_view cdr) {
 RawMessage::~RawMessage() { ddsi_serdata_unref(message_); }
 
 ByteSpan RawMessage::cdr() const { return as_bytes(raw(message_).bytes); }
+
+Origin RawMessage::origin() const { return raw(message_).origin; }
 
 }  // namespace edged::ros2

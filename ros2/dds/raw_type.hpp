@@ -5,6 +5,8 @@
 
 #include <dds/dds.h>
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,6 +24,12 @@ ddsi_sertype* make_raw_type(const std::string& name);
 /// cdr: with its header of four bytes. For dds_writecdr, which takes it.
 ddsi_serdata* make_raw_message(const ddsi_sertype* type, std::string_view cdr);
 
+/// Who sent a message, and as which of his: numbers rise by one.
+struct Origin {
+  std::array<std::uint8_t, 16> writer{};  ///< its guid
+  std::uint64_t number = 0;               ///< from 1; 0 of a message that came over no network
+};
+
 /// What a reader of a raw type took; the bytes live as long as it.
 class RawMessage {
  public:
@@ -31,6 +39,7 @@ class RawMessage {
   RawMessage& operator=(const RawMessage&) = delete;
 
   ByteSpan cdr() const;
+  Origin origin() const;
 
  private:
   ddsi_serdata* message_;

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -244,7 +245,7 @@ TEST(Ros2Endpoints, APublisherOfBestEffortIsNamedToAReliableReader) {
 TEST(Ros2Endpoints, AReaderThatIsFullCountsWhatItRefuses) {
   const Participant participant(test_discovery());
   const Writer writer(participant, "/full", "sensor_msgs/Imu", {.reliable = false, .depth = 100});
-  const Reader reader(participant, "/full", "sensor_msgs/Imu", {.reliable = false, .depth = 4});
+  Reader reader(participant, "/full", "sensor_msgs/Imu", {.reliable = false, .depth = 4});
   ASSERT_TRUE(eventually([&] { return writer.readers() == 1; }));
   for (int i = 0; i < 10; ++i) writer.write(std::string("\0\1\0\0abcd", 8));
   EXPECT_EQ(reader.take().size(), 4U);
@@ -269,13 +270,14 @@ TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
   EXPECT_EQ(received, 90);
 }
 
-/// The same domain by other entities: what passes between them goes over the network.
-Discovery test_discovery_of_another_process() {
+/// The same domain by other entities: what passes between them goes over the network, which loses so many of 1000
+/// packets that these entities send.
+Discovery test_discovery_of_another_process(int lost_per_mille = 0) {
   Discovery discovery = test_discovery();
   discovery.cyclone_uri = fmt::format(
-      "<CycloneDDS><Domain id=\"any\"><Discovery><ExternalDomainId>{}</ExternalDomainId></Discovery></Domain>"
-      "</CycloneDDS>",
-      discovery.domain);
+      "<CycloneDDS><Domain id=\"any\"><Discovery><ExternalDomainId>{}</ExternalDomainId></Discovery>"
+      "<Internal><Test><XmitLossiness>{}</XmitLossiness></Test></Internal></Domain></CycloneDDS>",
+      discovery.domain, lost_per_mille);
   discovery.domain += 100;
   return discovery;
 }
@@ -284,7 +286,7 @@ Discovery test_discovery_of_another_process() {
 int dropped_for_a_slow_reader(Duration longest_block) {
   const Participant participant(test_discovery()), other(test_discovery_of_another_process());
   const Writer writer(participant, "/slow", "sensor_msgs/Imu", {.depth = 10, .longest_block = longest_block});
-  const Reader reader(other, "/slow", "sensor_msgs/Imu", {.depth = 4});
+  Reader reader(other, "/slow", "sensor_msgs/Imu", {.depth = 4});
   EXPECT_TRUE(eventually([&] { return writer.readers() == 1 && reader.writers() == 1; }));
   std::string message(100'000, 'x');
   message.replace(0, 4, std::string("\0\1\0\0", 4));
@@ -297,6 +299,29 @@ int dropped_for_a_slow_reader(Duration longest_block) {
 TEST(Ros2Endpoints, AWriterThatWaitsForASlowReaderKnowsWhatItDrops) {
   EXPECT_EQ(dropped_for_a_slow_reader(std::chrono::milliseconds(50)), 3);
   EXPECT_EQ(dropped_for_a_slow_reader(Duration(0)), 0);
+}
+
+TEST(Ros2Endpoints, WhatTheNetworkLosesIsCountedForAReaderOfBestEffort) {
+  constexpr int kSent = 2000;
+  const Participant lossy(test_discovery_of_another_process(100)), participant(test_discovery());
+  const Writer writer(lossy, "/lossy", "sensor_msgs/Image", {.reliable = false, .depth = 100});
+  Reader reader(participant, "/lossy", "sensor_msgs/Image", {.reliable = false, .depth = kSent});
+  ASSERT_TRUE(eventually([&] { return writer.readers() == 1 && reader.writers() == 1; }));
+  std::vector<int> received;
+  for (int i = 0; i < kSent; ++i) {
+    std::string message("\0\1\0\0abcd", 8);
+    std::memcpy(message.data() + 4, &i, sizeof i);
+    message.resize(i % 2 == 0 ? 8 : 4000, 'x');  // whole and in fragments
+    writer.write(message);
+  }
+  const auto take = [&] {
+    for (const auto& message : reader.take())
+      std::memcpy(&received.emplace_back(), message->cdr().data() + 4, sizeof(int));
+    return received.size();
+  };
+  ASSERT_TRUE(eventually([&] { return take() > 0 && received.back() > kSent - 20; }));
+  EXPECT_EQ(reader.lost(), static_cast<std::size_t>(received.back() - received.front() + 1) - received.size());
+  EXPECT_GT(reader.lost(), std::size_t{50});
 }
 
 TEST(Ros2Endpoints, SimulatedTimeIsThatOfTheClock) {

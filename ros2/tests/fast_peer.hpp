@@ -5,7 +5,7 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -16,6 +16,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
+#include <chrono>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -141,11 +142,18 @@ class Collector final : public dds::DataReaderListener {
       if (!info.valid_data) continue;
       const std::lock_guard lock(mutex_);
       messages_.push_back(std::move(message));
+      arrivals_us_.push_back(
+          std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+              .count());
     }
   }
   std::vector<std::string> messages() const {
     const std::lock_guard lock(mutex_);
     return messages_;
+  }
+  std::vector<std::int64_t> arrivals_us() const {  ///< since 1970
+    const std::lock_guard lock(mutex_);
+    return arrivals_us_;
   }
   std::size_t count() const {
     const std::lock_guard lock(mutex_);
@@ -156,15 +164,18 @@ class Collector final : public dds::DataReaderListener {
   using ReturnCode_t = eprosima::fastrtps::types::ReturnCode_t;
   mutable std::mutex mutex_;
   std::vector<std::string> messages_;
+  std::vector<std::int64_t> arrivals_us_;
 };
 
 /// With unicast discovery on this machine: as ROS_LOCALHOST_ONLY of Humble has it (the loopback interface only) or as
-/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST (all interfaces).
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST (all interfaces). lost_percent: of the packets that it sends.
 class Participant {
  public:
-  explicit Participant(std::uint32_t domain, bool loopback_only = true) {
+  explicit Participant(std::uint32_t domain, bool loopback_only = true, std::uint8_t lost_percent = 0) {
     dds::DomainParticipantQos qos;
-    auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+    auto udp = std::make_shared<eprosima::fastdds::rtps::test_UDPv4TransportDescriptor>();
+    udp->dropDataMessagesPercentage = udp->dropDataFragMessagesPercentage = udp->dropHeartbeatMessagesPercentage =
+        lost_percent;
     if (loopback_only) udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->receiveBufferSize = udp->sendBufferSize = 4 << 20;
     qos.transport().use_builtin_transports = false;

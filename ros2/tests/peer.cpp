@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
 // Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] [rig=NAME] Writes OUT.tum (odometry) and OUT.json. listen: ends so long after the last pose.
+// [interfaces=2] [rig=NAME] [loss=PERCENT] Writes OUT.tum (odometry) and OUT.json. skip: packet numbers that are never
+// sent; loss: packets of the network that are; listen: ends so long after the last pose.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -106,6 +108,8 @@ class Driver {
   std::uint64_t sequence_ = 0;
 };
 
+constexpr const char* kToPx4 = "/fmu/in/vehicle_visual_odometry";
+
 struct Output {
   const char* topic;  ///< "~" stands for the node
   const char* type;
@@ -123,6 +127,7 @@ const Output kOutputs[] = {
     {"/tf", "tf2_msgs::msg::dds_::TFMessage_", {true, false, 1000}},
     {"/tf_static", "tf2_msgs::msg::dds_::TFMessage_", {true, true, 1}},
     {"/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", {true, false, 100}},
+    {kToPx4, "px4_msgs::msg::dds_::VehicleOdometry_", {false, false, 1000}},
 };
 
 /// Reads every field of the message; "complete" says whether nothing was left of it.
@@ -223,14 +228,35 @@ Json diagnostics_fields(const std::string& bytes) {
   return json;
 }
 
+Json floats(Decoder& in, int count) {
+  Json list = Json::array();
+  for (int i = 0; i < count; ++i) list.push_back(in.get<float>());
+  return list;
+}
+
+Json px4_fields(const std::string& bytes) {
+  Decoder in(bytes);
+  Json json = {{"timestamp", in.get<std::uint64_t>()}};
+  json["timestamp_sample"] = in.get<std::uint64_t>();
+  json["pose_frame"] = in.get<std::uint8_t>();
+  json["position"] = floats(in, 3);
+  json["q"] = floats(in, 4);
+  json["velocity_frame"] = in.get<std::uint8_t>();
+  for (const char* name :
+       {"velocity", "angular_velocity", "position_variance", "orientation_variance", "velocity_variance"})
+    json[name] = floats(in, 3);
+  json["reset_counter"] = in.get<std::uint8_t>();
+  json["quality"] = in.get<std::int8_t>();
+  json["complete"] = in.at_end();
+  return json;
+}
+
 Json fields_of(const std::string& type, const std::string& bytes) {
-  const std::map<std::string, Json (*)(const std::string&)> decoders = {{"Odometry", odometry_fields},
-                                                                        {"PoseWithCovarianceStamped", pose_fields},
-                                                                        {"Path", path_fields},
-                                                                        {"PointCloud2", cloud_fields},
-                                                                        {"Image", image_fields},
-                                                                        {"TFMessage", transforms_fields},
-                                                                        {"DiagnosticArray", diagnostics_fields}};
+  const std::map<std::string, Json (*)(const std::string&)> decoders = {
+      {"Odometry", odometry_fields},   {"PoseWithCovarianceStamped", pose_fields},
+      {"Path", path_fields},           {"PointCloud2", cloud_fields},
+      {"Image", image_fields},         {"TFMessage", transforms_fields},
+      {"VehicleOdometry", px4_fields}, {"DiagnosticArray", diagnostics_fields}};
   const std::size_t begin = type.rfind(':') + 1;
   return decoders.at(type.substr(begin, type.size() - begin - 1))(bytes);
 }
@@ -272,12 +298,26 @@ class Listener {
       json[output.topic] = {{"count", messages.size()}};
       if (!messages.empty()) json[output.topic]["last"] = fields_of(output.type, messages.back());
     }
+    add_delays(json[kToPx4]);
     std::ofstream(out + ".json") << json.dump(1) << "\n";
     write_tum(out + ".tum", collectors_["~/odometry"].messages());
     write_tum(out + ".prediction.tum", collectors_["~/prediction"].messages());
   }
 
  private:
+  /// From the time of the IMU sample, by the clock of this machine, until its state was here.
+  void add_delays(Json& px4) {
+    const std::vector<std::string> messages = collectors_[kToPx4].messages();
+    std::vector<double> delays_ms;
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      const auto sampled_us = px4_fields(messages[i])["timestamp_sample"].get<std::int64_t>();
+      delays_ms.push_back(1e-3 * static_cast<double>(collectors_[kToPx4].arrivals_us()[i] - sampled_us));
+    }
+    std::ranges::sort(delays_ms);
+    if (delays_ms.empty()) return;
+    px4["delay_ms"] = {delays_ms[delays_ms.size() / 2], delays_ms[delays_ms.size() * 99 / 100]};
+  }
+
   std::map<std::string, Collector> collectors_;
 };
 
@@ -311,7 +351,8 @@ void drive_recording(Driver& driver, const std::string& path, const Options& opt
 int run_peer(const std::string& recording, const std::string& out, const Options& options) {
   const char* domain = std::getenv("ROS_DOMAIN_ID");
   Participant participant(domain ? static_cast<std::uint32_t>(std::atoi(domain)) : 0,
-                          number_of(options, "interfaces", 1) < 2);
+                          number_of(options, "interfaces", 1) < 2,
+                          static_cast<std::uint8_t>(number_of(options, "loss", 0)));
   const auto node = options.find("node");
   Listener listener(participant, node == options.end() ? "edged" : node->second);
   std::optional<Driver> driver;

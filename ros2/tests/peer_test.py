@@ -110,7 +110,7 @@ class PeerOnFastDds(unittest.TestCase):
         return json.loads((self.folder / f"{name}.json").read_text())
 
     def test_all_arrives_and_all_that_is_published_can_be_read(self):
-        node = Node(self)
+        node = Node(self, "--set", "publish_px4=true")
         seen = self.peer(self.recording, "peer")
         counters = node.end()
         self.assertEqual(counters.get("/events messages missed"), None)
@@ -123,6 +123,7 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertLess(difference, 1e-6)  # the digits of the file
         self.assertLess(online_ate, 1.1 * offline_ate)
         self.check_fields(seen)
+        self.check_px4(seen["/fmu/in/vehicle_visual_odometry"], poses(self.folder / "peer.prediction.tum"))
 
     def check_fields(self, seen):
         for topic, what in seen.items():
@@ -152,6 +153,24 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertEqual(diagnostics["name"], "edged: odometry")
         self.assertTrue(diagnostics["message"].startswith("Good"), diagnostics["message"])
         self.assertEqual(diagnostics["values"]["/imu messages"], str(1000 * SECONDS + 1))
+
+    def check_px4(self, seen, predictions):
+        """The same states as ~/prediction, with z and y turned round."""
+        last = seen["last"]
+        print("px4: from the IMU sample to here, median and 99 %: {:.2f}, {:.2f} ms".format(*seen["delay_ms"]))
+        self.assertGreater(seen["count"], 20 * SECONDS)
+        self.assertEqual((last["pose_frame"], last["velocity_frame"]), (2, 3))  # FRD, BODY_FRD
+        self.assertGreaterEqual(last["timestamp"], last["timestamp_sample"])
+        self.assertLess(abs(last["timestamp_sample"] - 1e6 * time.time()), 60e6)
+        x, y, z = last["position"]
+        w, qx, qy, qz = last["q"]
+        pose = min(predictions.values(), key=lambda p: abs(p[0] - x) + abs(p[1] + y) + abs(p[2] + z))
+        for ours, theirs in zip([x, -y, -z, qx, -qy, -qz, w], closest([x, -y, -z, qx, -qy, -qz, w], pose)):
+            self.assertAlmostEqual(ours, theirs, delta=1e-5)
+        for name in ("position_variance", "orientation_variance", "velocity_variance"):
+            self.assertGreater(min(last[name]), 0, name)
+        self.assertEqual(last["reset_counter"], 0)
+        self.assertTrue(51 <= last["quality"] <= 100, last["quality"])
 
     def test_a_late_joiner_and_a_second_node_get_the_same_and_another_domain_nothing(self):
         nodes = [Node(self), Node(self, name="second")]
@@ -190,6 +209,37 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertIn("/events: numbers are missing", node.log())
         self.assertEqual(node.log().count("/events: numbers are missing"), 1)
         self.assertLess(ate_m(self.truth, self.folder / "peer.tum"), 2 * ate_m(self.truth, self.offline))
+
+    def test_packets_lost_by_the_network_are_counted_or_sent_again(self):
+        node, asking = Node(self), Node(self, "--set", "reliable=true", name="asking")
+        self.peer(self.recording, "peer", reliable=1, loss=1)
+        counters, all_counters = node.end(), asking.end()
+        sent = 1000 * SECONDS + 1
+        lost = {topic: int(counters.get(f"{topic} messages lost by the transport", 0))
+                for topic in ("/events", "/imu", "/image")}
+        print("lost:", lost)
+        self.assertAlmostEqual(int(counters["/imu messages"]) + lost["/imu"], sent, delta=3)  # not the first and last ones
+        self.assertTrue(0.003 * sent < lost["/imu"] < 0.03 * sent)
+        self.assertIn("/imu: messages were lost on the way", node.log())
+        self.assertLess(ate_m(self.truth, self.folder / "peer.tum"), 2 * ate_m(self.truth, self.offline))
+        self.assertEqual(all_counters["/imu messages"], str(sent))
+        self.assertNotIn("lost", asking.log())
+
+    def test_two_cameras_of_each_kind_give_the_poses_of_the_offline_run(self):
+        flight = self.folder / "stereo"
+        edged("simulate", "--preset", "room", "--duration", 2, "--baseline", "0.1", "--out", flight, "--quiet")
+        edged("run", flight, "--frame", "body", "--quiet", "--out", self.folder / "offline")
+        cameras = ("--set", "cameras=events,events2,frames,frames2")
+        self.recording, recording = flight, self.recording
+        node = Node(self, *cameras)
+        self.recording = recording
+        listener = self.start_peer("none", "peer", listen=4)
+        edged("play", flight, "--ros2", "--wait", "--quiet")
+        self.assertEqual(listener.wait(timeout=60), 0)
+        node.end()
+        ours, offline = poses(self.folder / "peer.tum"), poses(self.folder / "offline" / "trajectory.tum")
+        self.assertGreater(len(ours), len(offline) - 5)
+        self.assertLess(largest_difference(ours, offline), 1e-6)
 
     def test_a_recording_is_played_at_twice_its_speed_without_a_loss(self):
         flight = self.folder / "sensors"

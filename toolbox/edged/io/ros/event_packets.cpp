@@ -3,6 +3,8 @@
 // Decodes the encodings of event packets.
 #include "edged/io/ros/event_packets.hpp"
 
+#include <algorithm>
+
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -102,18 +104,36 @@ std::optional<EvtFormat> evt_format(std::string_view encoding) {
 
 }  // namespace
 
+Duration SensorClock::offset(Timestamp first, Timestamp last, Timestamp stamp) {
+  constexpr double kFastest = 5e-4, kTimeConstant_s = 5.0;
+  if (!offset_) {
+    offset_ = stamp - first;
+  } else if (first >= last_last_) {
+    const double passed_s = to_seconds(first - last_first_), off_s = to_seconds(stamp - first - *offset_);
+    const double wanted_s = off_s * std::min(passed_s / kTimeConstant_s, 1.0), most_s = kFastest * passed_s;
+    *offset_ += std::max(duration_from_seconds(std::clamp(wanted_s, -most_s, most_s)), last_last_ - first);
+  }
+  last_first_ = first;
+  last_last_ = last;
+  return *offset_;
+}
+
 EvtDecoder& EventPacketDecoder::evt(EvtFormat format) {
   constexpr int kMostSide = 1 << 11;  // of the coordinates of its words
   if (!evt_ || evt_->format != format) {
     evt_.emplace(Evt{format, EvtDecoder(format, kMostSide, kMostSide)});
-    sensor_to_stamps_.reset();
+    clock_.reset();
   }
   return evt_->decoder;
 }
 
+std::size_t EventPacketDecoder::left_out() const {
+  return evt_ ? evt_->decoder.counts().untimed + evt_->decoder.counts().outside : 0;
+}
+
 std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   if (sequence_ && packet.sequence != *sequence_ + 1) {
-    sensor_to_stamps_.reset();
+    clock_.reset();
     if (evt_) evt_->decoder.reset();
     column_ = 0;
   }
@@ -134,8 +154,8 @@ std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   // The stamp is that of the first event; the times of mono are relative to its time base.
   const Timestamp begin =
       packet.encoding == "mono" ? timestamp_from_ns(static_cast<std::int64_t>(packet.time_base)) : events.front().t;
-  if (!sensor_to_stamps_) sensor_to_stamps_ = packet.stamp - begin;
-  for (Event& event : events) event.t += *sensor_to_stamps_;
+  const Duration offset = clock_.offset(begin, events.back().t, packet.stamp);
+  for (Event& event : events) event.t += offset;
   return events;
 }
 

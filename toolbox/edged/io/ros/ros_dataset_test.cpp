@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <random>
 
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
@@ -103,6 +104,41 @@ TEST(RosDataset, PacketsOfACompressedDavisRecordingKeepToTheirTimeBases) {
   }
   EXPECT_EQ(messages, 100u);
   EXPECT_TRUE(repairs.counts().empty());
+}
+
+/// A sensor whose clock runs fast by 50 ppm, with packets of 1 ms that are stamped up to 3 ms late.
+TEST(SensorClock, FollowsADriftWithoutTheJitterOfTheStamps) {
+  SensorClock clock;
+  Duration largest_error{0}, largest_step{0};
+  Timestamp last_end;
+  Duration last_offset{0};
+  std::mt19937 random(1);
+  for (int i = 0; i < 600'000; ++i) {
+    const Timestamp begin = timestamp_from_ns(std::int64_t{i} * 1'000'050),
+                    end = begin + std::chrono::microseconds(999);
+    const Timestamp stamp =
+        timestamp_from_ns(std::int64_t{i} * 1'000'000 + static_cast<std::int64_t>(random() % 3'000'000));
+    const Duration offset = clock.offset(begin, end, stamp);
+    if (i > 60'000) {  // the start, of unknown delay, is forgotten
+      largest_error =
+          std::max(largest_error, std::chrono::abs(begin + offset - timestamp_from_ns(std::int64_t{i} * 1'000'000) -
+                                                   std::chrono::microseconds(1500)));
+      largest_step = std::max(largest_step, std::chrono::abs(offset - last_offset));
+    }
+    ASSERT_TRUE(i == 0 || begin + offset >= last_end) << i;
+    last_end = end + offset;
+    last_offset = offset;
+  }
+  EXPECT_LT(largest_error, std::chrono::microseconds(400));  // 30 ms without
+  EXPECT_LE(largest_step, std::chrono::nanoseconds(501));
+}
+
+TEST(SensorClock, ExactStampsChangeNothing) {
+  SensorClock clock;
+  for (int i = 0; i < 1000; ++i) {
+    const Timestamp begin = timestamp_from_ns(std::int64_t{i} * 1'000'000);
+    EXPECT_EQ(clock.offset(begin, begin, begin + std::chrono::seconds(7)), std::chrono::seconds(7));
+  }
 }
 
 /// The small recording with a barometer, a sonar and wheels: 40 messages each, the last of the sonar out of its range.

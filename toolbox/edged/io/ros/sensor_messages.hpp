@@ -13,6 +13,8 @@ class EventMessageDecoder {
  public:
   /// type: one with the role Events. Throws Damage.
   EventArray decode(std::string_view type, WireReader message);
+  /// Events of packets that could not be decoded, most of them after missing packets.
+  std::size_t left_out() const { return packets_.left_out(); }
 
  private:
   EventPacketDecoder packets_;
