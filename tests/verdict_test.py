@@ -156,6 +156,7 @@ class Verdict(WithFlight):
         self.assertEqual(metrics["next"], f"edged doctor {flight} --calib {flight / 'calibration.yaml'}")
         self.assertIn(metrics["next"], result.stdout)
         self.assertIn("never good: it waited for rest", result.stdout)
+        self.assertRegex(" ".join(result.stdout.split()), r"the attitude is in states.csv, tilt to \d+\.\d deg")
 
     def test_scale_at_the_start_and_ten_seconds_later(self):
         _, metrics = self.run_it(self.flight, "fused")

@@ -105,6 +105,21 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
   for (std::size_t i = 2; i < states.size(); ++i) EXPECT_EQ(columns(states[i]), columns(states[1])) << states[i];
 }
 
+TEST_F(RunFolder, HasTheAttitudeWhereThereIsNoPose) {
+  make_run_folder(folder);
+  Step step;
+  step.attitude = {so3::exp({0.1, 0.2, 0.3}), 1e-4 * Eigen::Matrix3d::Identity()};
+  {
+    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    writer.add(step);
+  }
+  const StatesTable states = read_states(folder);
+  EXPECT_TRUE(body_poses(states).empty());
+  EXPECT_TRUE(std::isnan(states.find("px_m")->at(0)));
+  EXPECT_EQ(states.find("qw")->at(0), step.attitude->R_W_B.w());
+  EXPECT_EQ(states.find("r_zz_rad2")->at(0), 1e-4);
+}
+
 TEST_F(RunFolder, GivesTheBodysPosesBack) {
   make_run_folder(folder);
   Trajectory written;

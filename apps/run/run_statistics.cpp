@@ -5,7 +5,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "edged/core/angles.hpp"
 #include "edged/core/measurement_stamps.hpp"
 
 namespace edged {
@@ -23,6 +25,12 @@ double process_cpu_s() {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return seconds(u.ru_utime) + seconds(u.ru_stime);
+}
+
+/// The larger one of roll's and pitch's.
+double tilt_sigma_deg_of(const Attitude& attitude) {
+  const Eigen::Matrix3d R = attitude.R_W_B.toRotationMatrix(), P_W = R * attitude.covariance * R.transpose();
+  return kDegreesPerRadian * std::sqrt(std::max(P_W(0, 0), P_W(1, 1)));
 }
 
 }  // namespace
@@ -55,6 +63,7 @@ void RunStatistics::add(const Step& step) {
   if (is_tracking(step.status)) accel_bias_ = step.state.bias_accel;
   if (!step.waiting_for.empty()) waiting_for_ = step.waiting_for;
   if (!step.lost_because.empty()) lost_because_ = step.lost_because;
+  tilt_sigma_deg_ = step.attitude ? std::optional(tilt_sigma_deg_of(*step.attitude)) : std::nullopt;
   const Timestamp begin = first_visual_.value_or(step.t);
   seconds_[static_cast<std::size_t>(step.status)] += std::max(0.0, to_seconds(step.t - last_packet_.value_or(begin)));
   last_packet_ = step.t;

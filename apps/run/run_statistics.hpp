@@ -48,6 +48,8 @@ class RunStatistics {
   /// What the last initialization waited for, and what ended the last estimate; may be empty.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
+  /// Of roll and pitch in the last packet, while Initializing; nothing without an attitude.
+  std::optional<double> tilt_sigma_deg() const { return tilt_sigma_deg_; }
   /// The last estimate [m/s^2].
   const Eigen::Vector3d& accel_bias() const { return accel_bias_; }
   /// ln s of Eq. 5 at the end; nothing without the depth factor.
@@ -63,6 +65,7 @@ class RunStatistics {
   TrackingStatus last_status_ = TrackingStatus::Initializing;
   std::optional<LogScale> ln_depth_scale_;
   std::string waiting_for_, lost_because_;
+  std::optional<double> tilt_sigma_deg_;
   Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
 };
 

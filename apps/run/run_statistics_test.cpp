@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/core/angles.hpp"
+#include "edged/se3.hpp"
+
 namespace edged {
 namespace {
 
@@ -63,6 +66,18 @@ TEST(RunStatistics, KeepWhatWasLastWaitedFor) {
   statistics.add(step_at(3, TrackingStatus::Lost));
   EXPECT_EQ(statistics.waiting_for(), "parallax 0.3 of 1.5 deg");
   EXPECT_EQ(statistics.lost_because(), "no 8 landmarks for 2.5 s");
+}
+
+TEST(RunStatistics, KnowTheTiltOfAnAttitudeWhateverItsHeading) {
+  RunStatistics statistics;
+  Step step = step_at(0, TrackingStatus::Initializing);
+  const Eigen::Quaterniond R_W_B = so3::exp({0.0, 1.5, 0.0});  // z of the world is near x of the body
+  const Eigen::Matrix3d R = R_W_B.toRotationMatrix();
+  step.attitude = {R_W_B, R.transpose() * Eigen::Vector3d(1e-4, 4e-4, 9.0).asDiagonal() * R};
+  statistics.add(step);
+  EXPECT_NEAR(statistics.tilt_sigma_deg().value(), kDegreesPerRadian * 0.02, 1e-9);
+  statistics.add(step_at(1, TrackingStatus::Good));
+  EXPECT_FALSE(statistics.tilt_sigma_deg());
 }
 
 TEST(ResourceMeter, SeesProcessorTimeAndMemory) {

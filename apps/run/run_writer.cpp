@@ -26,6 +26,10 @@ constexpr const char* kStatesHeader =
 
 void append(std::string& line, const Eigen::Vector3d& v) { line += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); }
 
+void append(std::string& line, const Eigen::Quaterniond& q) {
+  line += fmt::format(",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
+}
+
 /// The upper triangle, row by row.
 void append(std::string& line, const Eigen::Matrix3d& P) {
   for (int row = 0; row < 3; ++row) {
@@ -36,12 +40,17 @@ void append(std::string& line, const Eigen::Matrix3d& P) {
 std::string state_line(const Step& step) {
   std::string line = fmt::format("{},{}", to_ns(step.t), to_string(step.status));
   if (step.status == TrackingStatus::Initializing) {
-    line += std::string(16, ',');
+    line += ",,,";
+    if (step.attitude) {
+      append(line, step.attitude->R_W_B);
+    } else {
+      line += ",,,,";
+    }
+    line += std::string(9, ',');
   } else {
     const NavState& state = step.state;
-    const Eigen::Quaterniond& q = state.T_W_B.rotation();
     append(line, state.T_W_B.translation());
-    line += fmt::format(",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
+    append(line, state.T_W_B.rotation());
     append(line, state.v_W);
     append(line, state.bias_gyro);
     append(line, state.bias_accel);
@@ -60,6 +69,10 @@ std::string state_line(const Step& step) {
     append(line, step.covariance->position);
     append(line, step.covariance->rotation);
     append(line, step.covariance->velocity);
+  } else if (step.attitude) {
+    line += std::string(6, ',');
+    append(line, step.attitude->covariance);
+    line += std::string(6, ',');
   } else {
     line += std::string(18, ',');
   }

@@ -204,8 +204,12 @@ void judge_no_start(const RunStatistics& statistics, const SourceOptions& source
   const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
                           : verdict.waiting_for.empty() ? "no start was tried"
                                                         : "it waited for " + verdict.waiting_for;
+  const std::optional<double> tilt_deg = statistics.tilt_sigma_deg();
+  const std::string attitude =
+      tilt_deg ? fmt::format("; the attitude is in states.csv, tilt to {:.1f} deg, heading since the start", *tilt_deg)
+               : "";
   verdict.findings.push_back(
-      {Severity::Error, "never good: " + why, "check recording and calibration: " + verdict.next});
+      {Severity::Error, "never good: " + why + attitude, "check recording and calibration: " + verdict.next});
 }
 
 std::string status_of(const RunStatistics& statistics, const Verdict& verdict, Ending ending) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,13 @@ struct StateCovariance {
   Eigen::Matrix3d velocity;  ///< [m^2/s^2], in W
 };
 using PoseCovariance = StateCovariance;  // deprecated: the name of version 0.2
+
+/// The attitude of the body where no more is known: before the start of the estimator, by gyro and accelerometer. The
+/// heading is relative to the first measurement, and drifts.
+struct Attitude {
+  Eigen::Quaterniond R_W_B = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
+};
 
 /// Names one feature for as long as it is tracked; never reused, unique over all cameras.
 using FeatureId = std::uint64_t;

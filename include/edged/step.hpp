@@ -53,6 +53,7 @@ struct Step {
   TrackingStatus status = TrackingStatus::Initializing;
   NavState state;                             ///< at t; meaningful unless status is Initializing
   std::optional<StateCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
+  std::optional<Attitude> attitude;           ///< at t, while Initializing: pure rotation tells no position
   bool keyframe = false;                      ///< this packet became a keyframe
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
   /// reference of the covariance with it.

@@ -130,6 +130,9 @@ class Step(_BodyState):
     def velocity_covariance(self) -> NDArray[np.float64] | None:
         """In W [m^2/s^2]."""
     @property
+    def attitude(self) -> NDArray[np.float64] | None:
+        """R_W_B as x, y, z, w, while INITIALIZING: by gyro and accelerometer, the heading since the first measurement."""
+    @property
     def keyframe(self) -> bool: ...
     @property
     def relocalized(self) -> bool:

@@ -125,6 +125,11 @@ void bind_step(py::module_& module) {
                              [](const Step& s) { return covariance(s, &StateCovariance::rotation); })
       .def_property_readonly("velocity_covariance",
                              [](const Step& s) { return covariance(s, &StateCovariance::velocity); })
+      .def_property_readonly("attitude",
+                             [](const Step& s) -> std::optional<Eigen::Vector4d> {
+                               if (!s.attitude) return std::nullopt;
+                               return s.attitude->R_W_B.coeffs();
+                             })
       .def_readonly("keyframe", &Step::keyframe)
       .def_readonly("relocalized", &Step::relocalized)
       .def_readonly("waiting_for", &Step::waiting_for)

@@ -50,7 +50,8 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       estimator_(fresh_estimator()),
       mapper_(config.map, config.status.lost_after_s),
       judge_(config.status),
-      body_(noise, duration_from_seconds(config.packets.max_age_s)) {}
+      body_(noise, duration_from_seconds(config.packets.max_age_s)),
+      attitude_(noise) {}
 
 void Localization::begin_estimate() {
   counters_before_.add(estimator_.external_counters());
@@ -70,10 +71,12 @@ void Localization::begin_time() {
   judge_.lose("a clock was set back");
   dead_reckoning_until_ = Timestamp::min();
   covariance_.reset();
+  if (attitude_) attitude_.emplace(noise_);
 }
 
 Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
   const auto timer = timings_->measure("predict");
+  if (attitude_) attitude_->add(imu);
   Preintegration motion = body_.predict(imu, estimator_.initialized() || imu.back().t < dead_reckoning_until_);
   turned_unseen_ = gyro_clipped_ && !motion.gyro_clipped();
   gyro_clipped_ = motion.gyro_clipped();
@@ -111,6 +114,7 @@ Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult 
   step.status = status;
   step.state = odom_to_map.in_map(body_.now());
   step.covariance = covariance_;
+  if (status == TrackingStatus::Initializing && attitude_) step.attitude = attitude_->attitude();
   step.waiting_for = std::move(result.waiting_for);
   step.started = std::move(result.started);
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
@@ -127,6 +131,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   EstimatorResult result = estimator_.add(input);
   correction.outliers = result.outliers;
   if (!estimator_.initialized()) return result;
+  attitude_.reset();
   const SE3 T_new_old = body_.correct(estimator_.newest(), result.new_frame);
   if (result.new_frame) correction.T_new_old = T_new_old;
   take_calibrations();

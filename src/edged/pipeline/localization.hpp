@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/estimator/attitude_filter.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
@@ -88,8 +89,9 @@ class Localization {
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;
   BodyMotion body_;
-  bool gyro_clipped_ = false;   ///< in this packet
-  bool turned_unseen_ = false;  ///< it was until this packet
+  std::optional<AttitudeFilter> attitude_;  ///< until the first start
+  bool gyro_clipped_ = false;               ///< in this packet
+  bool turned_unseen_ = false;              ///< it was until this packet
   std::optional<StateCovariance> covariance_;
   Timestamp covariance_at_;
   Timestamp dead_reckoning_until_ = Timestamp::min();  ///< without an estimate: end of dead reckoning
