@@ -12,19 +12,39 @@ Stamps are whole nanoseconds, of each sensor's own clock as recorded; lengths ar
 z up; B the body, which is the IMU: T_W_B maps points of B to W. Quaternions are x, y, z, w.
 """
 import json as _json
+import pathlib as _pathlib
+import sys as _sys
 import warnings as _warnings
 
 import numpy as _numpy
 
-from ._edged import (EVENT, IMU, POSE, Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording,
-                     RecordedCamera, RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
-                     simulator_presets)
-from ._edged import evaluate_to_json as _evaluate_to_json
+
+def _how_to_build():
+    """What to do where the compiled part of the module is missing."""
+    here = _pathlib.Path(__file__).parent
+    built = [file.name for file in here.glob("_edged*.so")]
+    if built:
+        return f"{here} holds {built[0]}, which is for another Python than this {_sys.version.split()[0]} ({_sys.executable})"
+    root = _pathlib.Path(__file__).resolve().parents[2]
+    return (f"the compiled part is not built; in {root}: `cmake --build build/release --target edged_python`, then "
+            f"`export PYTHONPATH={root}/build/release/python`; or `pip install {root}` (docs/python.md)")
+
+
+try:
+    from ._edged import (EVENT, IMU, POSE, Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording,
+                         RecordedCamera, RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
+                         simulator_presets)
+except ModuleNotFoundError as _error:
+    if _error.name != "edged._edged":
+        raise
+    raise ImportError("edged: " + _how_to_build(), name=_error.name) from None
+from ._edged import RunCheck as _RunCheck, append_doc as _append_doc, evaluate_to_json as _evaluate_to_json
+from ._program import write_run
 
 __all__ = [
     "EVENT", "IMU", "POSE", "Calibration", "Camera", "CameraStep", "FinalTrajectory", "InputError", "Measurement", "Odometry", "Recording",
     "RecordedCamera", "RecordingInfo", "State", "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
-    "open_recording", "read_trajectory", "run", "simulate", "simulator_presets", "trajectory"
+    "open_recording", "read_trajectory", "run", "simulate", "simulator_presets", "trajectory", "write_run"
 ]
 
 for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, RecordedCamera, Recording, RecordingInfo, State, Status, Step):
@@ -92,13 +112,18 @@ def trajectory(steps):
 
 
 def run(recording, mode="auto", options=None):
-    """The steps of the odometry over a recording, as it goes; "auto": from all sensors that there are."""
+    """The steps of the odometry over a recording, as it goes; "auto": from all sensors that there are. As `edged run` it
+    checks recording and calibration against each other, and logs what it finds (logger "edged").
+    """
     odometry = recording.odometry(mode, options or {})
+    check = _RunCheck(recording, odometry)
     for measurement in recording:
+        check.add(measurement)
         odometry.add(measurement)
         yield from odometry
     odometry.finish()
     yield from odometry
+    check.finish()
 
 
 def evaluate(estimate, truth, protocol="P3", max_gap_s=0.2, deltas_s=(1.0, 10.0)):
@@ -106,3 +131,11 @@ def evaluate(estimate, truth, protocol="P3", max_gap_s=0.2, deltas_s=(1.0, 10.0)
     `edged eval --json` prints. P1: SE(3) on seconds 3 to 8; P2: SE(3) on the first 5 s; P3: SE(3) on all; P4: Sim(3) on all.
     """
     return _json.loads(_evaluate_to_json(estimate, truth, protocol, max_gap_s, list(deltas_s)))
+
+
+def _add_docs():
+    from . import _docs
+    _docs.add_docs(globals(), _pathlib.Path(__file__).with_name("__init__.pyi"), _append_doc)
+
+
+_add_docs()

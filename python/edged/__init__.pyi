@@ -61,7 +61,8 @@ class Calibration:
     def warnings(self) -> list[str]: ...
     def poses_of(self, body: NDArray[np.void], frame: str) -> NDArray[np.void]:
         """Poses of a camera, on its clock, from those of the body."""
-    def to_yaml(self) -> str: ...
+    def to_yaml(self) -> str:
+        """As a file for `edged run --calib` and rig=."""
 
 
 class _BodyState:
@@ -210,15 +211,20 @@ class Odometry:
                  in_order: bool = False, delays: Mapping[str, float] = {}) -> None:
         """calibration: also a rig's name, or a file. in_order: measurements come as a recording gives them, nothing is waited
         for. delays: by how much "events", "frames", "imu" and "external" (height, velocity) may lag behind the newest of all [s]."""
-    def add_events(self, camera: str, events: NDArray[np.void]) -> None: ...
-    def add_frame(self, camera: str, t: int, image: NDArray[np.uint8]) -> None: ...
-    def add_imu(self, samples: NDArray[np.void]) -> None: ...
+    def add_events(self, camera: str, events: NDArray[np.void]) -> None:
+        """An array of EVENT in any portions, those of one camera in order. Raises InputError for a camera that the
+        calibration does not have."""
+    def add_frame(self, camera: str, t: int, image: NDArray[np.uint8]) -> None:
+        """A grey image, stamped [ns] at the middle of its exposure. Raises InputError as add_events does."""
+    def add_imu(self, samples: NDArray[np.void]) -> None:
+        """An array of IMU, in order."""
     def add_height(self, t: int, height: float, sigma: float = 0.0) -> None:
         """[m], up, from any zero. sigma: 0 for the option's."""
     def add_velocity(self, t: int, velocity: Sequence[float] | NDArray[np.float64],
                      sigma: float | Sequence[float] | NDArray[np.float64] = 0.0) -> None:
         """[m/s] in the axes of the sensor. sigma: one, or one an axis; 0 for the option's, inf for an axis not measured."""
-    def add(self, measurement: Measurement) -> None: ...
+    def add(self, measurement: Measurement) -> None:
+        """A measurement of a Recording."""
     def finish(self) -> None:
         """Marks the end of the measurements: next() returns the remaining steps."""
     def next(self) -> Step | None:
@@ -228,7 +234,8 @@ class Odometry:
     def __next__(self) -> Step: ...
     def newest_state(self) -> State | None:
         """At the newest IMU sample; any thread."""
-    def state_at(self, t: int) -> State | None: ...
+    def state_at(self, t: int) -> State | None:
+        """Propagated by the IMU to t [ns]; None where there is no state; any thread."""
     def load_map(self, map: bytes) -> None:
         """Bytes of save_map of another run, before the first measurement. Poses are in its frame once relocalized."""
     def save_map(self) -> bytes | None:
@@ -310,21 +317,33 @@ class Recording:
     def __next__(self) -> Measurement: ...
 
 
-def known_rigs() -> list[str]: ...
-def load_rig(name: Path) -> Calibration: ...
-def load_calibration(path: Path) -> Calibration: ...
+def known_rigs() -> list[str]:
+    """The names of the calibrations that ship."""
+def load_rig(name: Path) -> Calibration:
+    """A calibration that ships, by its name, or a file."""
+def load_calibration(path: Path) -> Calibration:
+    """A calibration file or folder of any format (docs/calibration.md)."""
 def open_recording(path: Path, rig: Calibration | Path | None = None, topics: Mapping[str, str] = {},
                    geometry: tuple[int, int] | None = None, time_unit: Literal["s", "ms", "us", "ns"] | None = None,
                    begin_s: float | None = None, end_s: float | None = None,
-                   cameras: Sequence[str] | Literal["all"] = []) -> Recording: ...
+                   cameras: Sequence[str] | Literal["all", "first"] | None = None, *, imu: Path | None = None,
+                   height: Path | None = None, velocity: Path | None = None) -> Recording:
+    """A file, a folder, or tcp://HOST:PORT. rig: a calibration, its name or file. topics: of bags and AEDAT4, role or camera
+    to topic. geometry: width and height of the event sensor [px], where the file does not tell. cameras: those to read; None: as
+    `edged run`, two of a kind where their views overlap, else the first; "first": of each kind. imu, height, velocity: csv or txt
+    files of such samples, the IMU's instead of its own."""
 def simulate(preset: str = "room", seed: int = 1, duration_s: float | None = None, options: Mapping[str, Option] = {},
              begin_s: float | None = None, end_s: float | None = None,
-             baseline_m: float | None = None) -> Recording: ...
-def simulator_presets() -> list[str]: ...
-def read_trajectory(file: Path) -> NDArray[np.void]: ...
+             baseline_m: float | None = None) -> Recording:
+    """A simulated flight. options: those of `edged simulate --list`. baseline_m: of a second camera of each kind [m]."""
+def simulator_presets() -> list[str]:
+    """The names of the simulated flights."""
+def read_trajectory(file: Path) -> NDArray[np.void]:
+    """An array of POSE from a file of TUM, EuRoC or other formats that `edged eval` reads."""
 def make_events(t: ArrayLike, x: ArrayLike, y: ArrayLike, p: ArrayLike) -> NDArray[np.void]: ...
 def make_imu(t: ArrayLike, gyro: ArrayLike, accel: ArrayLike) -> NDArray[np.void]: ...
 def make_poses(t: ArrayLike, position: ArrayLike, quaternion: ArrayLike) -> NDArray[np.void]: ...
+def write_run(recording: Path, out: Path | None = None, options: Mapping[str, Option] | None = None, **flags: Any) -> dict[str, Any]: ...
 def trajectory(steps: Iterable[Step]) -> NDArray[np.void]: ...
 def run(recording: Recording, mode: Mode | Literal["auto"] = "auto", options: Mapping[str, Option] | None = None) -> Iterator[Step]: ...
 def evaluate(estimate: NDArray[np.void], truth: NDArray[np.void], protocol: Literal["P1", "P2", "P3", "P4"] = "P3",

@@ -17,10 +17,11 @@ BATCH_NS = 10_000_000
 
 def sensors(seconds):
     """The calibration; columns t, x, y, p of events; frames as (t, image); columns t, gyro, accel of the IMU."""
-    flight = edged.simulate("room", seed=1, end_s=seconds)
+    flight = edged.simulate("room", seed=1, end_s=seconds + 0.1)
     data = {"events": [], "frame": [], "imu": []}
     for measurement in flight:
-        data[measurement.kind].append((measurement.t, measurement.data))
+        if measurement.kind == "imu" or measurement.t < 1e9 * seconds:  # a packet needs IMU samples beyond its end
+            data[measurement.kind].append((measurement.t, measurement.data))
     events, imu = (np.concatenate([array for _, array in data[kind]]) for kind in ("events", "imu"))
     return (flight.calibration, (events["t"], events["x"], events["y"], events["p"]), data["frame"],
             (imu["t"], imu["gyro"], imu["accel"]))

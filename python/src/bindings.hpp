@@ -8,8 +8,11 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "arrays.hpp"
+#include "edged/dataset.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/odometry.hpp"
 
@@ -37,6 +40,9 @@ void set_options(Config& config, const OptionValues& values) {
 /// A Calibration, or the name or the file of one.
 Calibration calibration_of(const py::object& calibration);
 
+/// A message of the library with the arguments of the module in place of the flags of the program.
+std::string in_python(std::string message);
+
 /// Cameras by name.
 py::dict cameras(const Rig& rig);
 
@@ -47,16 +53,32 @@ struct PyMeasurement {
 
 /// An odometry with the lock for its single-threaded calls.
 struct PyOdometry {
-  PyOdometry(const Calibration& calibration, Mode mode, const OptionValues& options, const SensorDelays& delays);
+  PyOdometry(const Calibration& calibration, Mode mode, const OdometryConfig& config, const SensorDelays& delays);
+  /// Throws InputError if the calibration has no camera of that name and kind; one that the mode leaves out is fine.
+  void check_camera(const std::string& name, Modality modality) const;
+  const Rig rig;  ///< of the calibration
   std::mutex mutex;
   Odometry odometry;
 };
 
+/// A recording with the lock for its single-threaded calls.
+struct PyRecording {
+  std::mutex mutex;
+  std::unique_ptr<Dataset> dataset;
+  std::optional<Calibration> calibration;
+  std::vector<std::string> cameras;  ///< of a run, where they are not the first of each kind
+};
+
+OdometryConfig with_options(const OptionValues& options);
+
+void bind_errors(py::module_& module);
 void bind_log();
 void bind_calibration(py::module_& module);
 void bind_step(py::module_& module);
 void bind_odometry(py::module_& module);
 void bind_recording(py::module_& module);
+void bind_run_check(py::module_& module);
 void bind_evaluation(py::module_& module);
+void bind_docs(py::module_& module);
 
 }  // namespace edged::python

@@ -23,7 +23,7 @@ class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
     try {
       // spdlog counts trace 0, debug 1, info 2 ...; Python debug 10, info 20 ...
       logger_.attr("log")(10 * std::max(1, static_cast<int>(message.level)), "%s",
-                          py::str(message.payload.data(), message.payload.size()));
+                          in_python(std::string(message.payload.data(), message.payload.size())));
     } catch (const py::error_already_set&) {  // the handlers are the user's: a log is no place to fail
     }
   }

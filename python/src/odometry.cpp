@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <variant>
 #include <vector>
@@ -8,16 +9,11 @@
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
+#include "edged/io/camera_names.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::python {
 namespace {
-
-OdometryConfig with_options(const OptionValues& options) {
-  OdometryConfig config;
-  set_options(config, options);
-  return config;
-}
 
 SensorDelays delays_of(const std::map<std::string, double>& given, bool in_order) {
   SensorDelays delays = in_order ? kInOrder : SensorDelays{};
@@ -40,10 +36,11 @@ std::unique_ptr<PyOdometry> make_odometry(const py::object& calibration, const s
   const Calibration chosen = calibration_of(calibration);
   if (!chosen.has_extrinsics)
     throw InputError("the calibration holds intrinsics only: the pose of the camera to the IMU is missing");
-  return std::make_unique<PyOdometry>(chosen, parse_mode(mode), options, delays_of(delays, in_order));
+  return std::make_unique<PyOdometry>(chosen, parse_mode(mode), with_options(options), delays_of(delays, in_order));
 }
 
 void add_events(PyOdometry& self, std::string camera, const py::array& events) {
+  self.check_camera(camera, Modality::Events);
   check_events(events);
   const void* const data = events.data();
   const auto size = static_cast<std::size_t>(events.size());
@@ -52,6 +49,7 @@ void add_events(PyOdometry& self, std::string camera, const py::array& events) {
 }
 
 void add_frame(PyOdometry& self, std::string camera, Timestamp t, const py::array& image) {
+  self.check_camera(camera, Modality::Frames);
   check_image(image);
   // A view of the caller's memory: Odometry::add copies the pixels of an image that does not own them.
   const cv::Mat pixels(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), CV_8UC1,
@@ -184,9 +182,27 @@ std::map<std::string, double> timings(PyOdometry& self) {
 
 }  // namespace
 
-PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const OptionValues& options,
+OdometryConfig with_options(const OptionValues& options) {
+  OdometryConfig config;
+  set_options(config, options);
+  return config;
+}
+
+PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const OdometryConfig& config,
                        const SensorDelays& delays)
-    : odometry(calibration.rig, calibration.imu, mode, with_options(options), {delays}) {}
+    : rig(calibration.rig), odometry(calibration.rig, calibration.imu, mode, config, {delays}) {}
+
+void PyOdometry::check_camera(const std::string& name, Modality modality) const {
+  std::vector<std::string> names;
+  for (const RigCamera& camera : rig.cameras) {
+    if (camera.modality != modality) continue;
+    if (camera.name == name) return;
+    names.push_back(camera.name);
+  }
+  throw InputError::format("add_{}: no camera '{}'; of {} the calibration has: {}",
+                           modality == Modality::Events ? "events" : "frame", name, kind_name(modality),
+                           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+}
 
 void bind_odometry(py::module_& module) {
   using Free = py::call_guard<py::gil_scoped_release>;
@@ -194,7 +210,11 @@ void bind_odometry(py::module_& module) {
       .def_property_readonly("poses", [](const FinalTrajectory& known) { return poses_array(known.poses); })
       .def_property_readonly("keyframes",
                              [](const FinalTrajectory& known) { return poses_array(keyframe_poses(known)); })
-      .def_property_readonly("points", &map_points);
+      .def_property_readonly("points", &map_points)
+      .def("__repr__", [](const FinalTrajectory& known) {
+        return fmt::format("<edged.FinalTrajectory {} poses, {} keyframes>", known.poses.size(),
+                           known.keyframes.size());
+      });
   py::class_<PyOdometry> odometry(module, "Odometry");
   bind_external(odometry);
   odometry
@@ -223,7 +243,13 @@ void bind_odometry(py::module_& module) {
       .def("final_trajectory", &final_trajectory)
       .def_property_readonly("rig", &rig)
       .def_property_readonly("counters", &counters)
-      .def_property_readonly("timings", &timings);
+      .def_property_readonly("timings", &timings)
+      .def("__repr__", [](PyOdometry& self) {
+        std::vector<std::string> names;
+        for (const RigCamera& camera : guarded(self.mutex, [&] { return self.odometry.rig(); }).cameras)
+          names.push_back(camera.name);
+        return fmt::format("<edged.Odometry of {}>", fmt::join(names, ", "));
+      });
 }
 
 }  // namespace edged::python

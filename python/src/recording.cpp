@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +12,12 @@
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/core/recording_piece.hpp"
+#include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/run_cameras.hpp"
+#include "edged/io/text/external_text.hpp"
+#include "edged/io/text/imu_text.hpp"
 #include "edged/io/text_parsing.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulated_pair.hpp"
@@ -27,39 +32,80 @@ bool interrupted() {
   return PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0;
 }
 
-struct PyRecording {
-  explicit PyRecording(Recording opened)
-      : dataset(std::move(opened.dataset)), calibration(std::move(opened.calibration)) {}
-  std::mutex mutex;
-  std::unique_ptr<Dataset> dataset;
-  std::optional<Calibration> calibration;
-};
-
 std::unique_ptr<PyRecording> piece_of(Recording recording, const std::optional<double>& begin_s,
                                       const std::optional<double>& end_s) {
   if (begin_s || end_s)
     recording.dataset =
         std::make_unique<RecordingPiece>(std::move(recording.dataset), PieceBounds{begin_s.value_or(0.0), end_s});
-  return std::make_unique<PyRecording>(std::move(recording));
+  auto opened = std::make_unique<PyRecording>();
+  opened->dataset = std::move(recording.dataset);
+  opened->calibration = std::move(recording.calibration);
+  return opened;
+}
+
+/// Files of sensors beside a recording, by the names of the arguments: "imu" and the external sensors.
+using SensorFiles = std::map<std::string, std::string>;
+
+Recording with_files(Recording recording, const SensorFiles& files) {
+  for (const auto& [sensor, file] : files)
+    recording.dataset = sensor == "imu"
+                            ? with_imu_file(std::move(recording.dataset), file)
+                            : with_external_file(std::move(recording.dataset), *find_external_sensor(sensor), file);
+  return recording;
+}
+
+/// The names of the cameras to read; "all", "first" (of each kind), or None: as `edged run` chooses.
+using CameraChoice = std::optional<std::variant<std::vector<std::string>, std::string>>;
+
+Recording open_cameras(const std::string& file, const std::optional<Calibration>& calibration,
+                       const RecordingOptions& options, const SensorFiles& files) {
+  Recording recording = open_recording(file, calibration ? &calibration->rig : nullptr, options);
+  if (calibration) recording.calibration = calibration;
+  return with_files(std::move(recording), files);
+}
+
+/// Sets what is opened; the names of several cameras of a kind go to `chosen`.
+Recording open_choice(const std::string& file, const std::optional<Calibration>& calibration, RecordingOptions options,
+                      const SensorFiles& files, const CameraChoice& cameras, std::vector<std::string>& chosen) {
+  const auto open = [&](const std::vector<std::string>& names, bool all) {
+    options.cameras = names;
+    options.all_cameras = all;
+    return open_cameras(file, calibration, options, files);
+  };
+  if (!cameras && !file.starts_with(kTcpPrefix)) return open_with_stereo_cameras(open, chosen);
+  if (!cameras) return open({}, false);
+  if (const auto* names = std::get_if<std::vector<std::string>>(&*cameras)) return open(chosen = *names, false);
+  return open({}, std::get<std::string>(*cameras) == "all");
+}
+
+SensorFiles given_files(const py::kwargs& files) {
+  SensorFiles given;
+  for (const auto& [key, file] : files) {
+    const std::string sensor = py::str(key);
+    if (sensor != "imu" && !find_external_sensor(sensor))
+      throw py::type_error(fmt::format("open_recording() got an unexpected keyword argument '{}'", sensor));
+    if (!file.is_none()) given[sensor] = py::str(file);
+  }
+  return given;
 }
 
 std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
                                   const std::map<std::string, std::string>& topics,
                                   const std::optional<std::array<int, 2>>& geometry,
                                   const std::optional<std::string>& time_unit, const std::optional<double>& begin_s,
-                                  const std::optional<double>& end_s,
-                                  const std::variant<std::vector<std::string>, std::string>& cameras) {
+                                  const std::optional<double>& end_s, const CameraChoice& cameras,
+                                  const py::kwargs& sensor_files) {
   const std::string file = py::str(path);
   std::optional<Calibration> calibration;
   if (!rig.is_none()) calibration = calibration_of(rig);
+  const SensorFiles files = given_files(sensor_files);
   RecordingOptions options;
   options.topics = topics;
+  options.own_imu = !files.contains("imu");
   if (calibration) options.camera_topics = calibration->topics;
-  if (const auto* names = std::get_if<std::vector<std::string>>(&cameras)) {
-    options.cameras = *names;
-  } else if (options.all_cameras = std::get<std::string>(cameras) == "all"; !options.all_cameras) {
-    throw InputError::format("cameras '{}': give a list of names, or 'all'", std::get<std::string>(cameras));
-  }
+  const auto* choice = cameras ? std::get_if<std::string>(&*cameras) : nullptr;
+  if (choice && *choice != "all" && *choice != "first")
+    throw InputError::format("cameras '{}': give a list of names, 'first' (of each kind) or 'all'", *choice);
   options.interrupted = interrupted;
   if (geometry) options.geometry = cv::Size((*geometry)[0], (*geometry)[1]);
   if (time_unit && !(options.time_unit = parse_time_unit(*time_unit)))
@@ -67,9 +113,9 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
   std::unique_ptr<PyRecording> opened;
   {
     const py::gil_scoped_release free;
-    Recording recording = open_recording(file, calibration ? &calibration->rig : nullptr, options);
-    if (calibration) recording.calibration = std::move(calibration);
-    opened = piece_of(std::move(recording), begin_s, end_s);
+    std::vector<std::string> chosen;
+    opened = piece_of(open_choice(file, calibration, options, files, cameras, chosen), begin_s, end_s);
+    opened->cameras = std::move(chosen);
   }
   if (PyErr_Occurred() != nullptr) throw py::error_already_set();
   return opened;
@@ -126,7 +172,9 @@ Calibration matched_calibration(const PyRecording& self, Mode mode) {
 
 std::unique_ptr<PyOdometry> odometry(const PyRecording& self, const std::string& mode, const OptionValues& options) {
   const Mode chosen = choose_mode(mode, self.dataset->info());
-  return std::make_unique<PyOdometry>(matched_calibration(self, chosen), chosen, options, kInOrder);
+  OdometryConfig config = with_options(options);
+  if (config.cameras.empty() && config.stereo.enabled) config.cameras = fmt::format("{}", fmt::join(self.cameras, ","));
+  return std::make_unique<PyOdometry>(matched_calibration(self, chosen), chosen, config, kInOrder);
 }
 
 const char* kind(const PyMeasurement& measurement) {
@@ -155,6 +203,24 @@ py::array data(const py::object& self) {
   return rows;
 }
 
+std::string measurement_text(const PyMeasurement& measurement) {
+  std::string text =
+      fmt::format("<edged.Measurement {} at {:.3f} s", kind(measurement), to_seconds(stamp(measurement)));
+  if (const auto name = camera(measurement)) text += " of '" + *name + "'";
+  if (const auto* batch = std::get_if<EventBatch>(&measurement.value))
+    text += fmt::format(": {} events", batch->events.size());
+  return text + ">";
+}
+
+/// "'flight' (ecd) of events, frames, imu".
+std::string summary(const DatasetInfo& info) {
+  std::vector<std::string> sensors;
+  for (const RecordedCamera& camera : recorded_cameras(info)) sensors.push_back(camera.name);
+  if (info.has_imu) sensors.emplace_back("imu");
+  sensors.insert(sensors.end(), info.external.begin(), info.external.end());
+  return fmt::format("'{}' ({}) of {}", info.name, info.format, fmt::join(sensors, ", "));
+}
+
 void bind_info(py::module_& module) {
   py::class_<RecordedCamera>(module, "RecordedCamera")
       .def_readonly("name", &RecordedCamera::name)
@@ -162,8 +228,11 @@ void bind_info(py::module_& module) {
           "kind",
           [](const RecordedCamera& camera) { return camera.modality == Modality::Events ? "events" : "frames"; })
       .def_readonly("stream", &RecordedCamera::stream)
-      .def_property_readonly("sensor", [](const RecordedCamera& camera) {
-        return py::make_tuple(camera.sensor.width, camera.sensor.height);
+      .def_property_readonly(
+          "sensor",
+          [](const RecordedCamera& camera) { return py::make_tuple(camera.sensor.width, camera.sensor.height); })
+      .def("__repr__", [](const RecordedCamera& camera) {
+        return fmt::format("<edged.RecordedCamera '{}' {}>", camera.name, kind_name(camera.modality));
       });
   py::class_<DatasetInfo>(module, "RecordingInfo")
       .def_readonly("name", &DatasetInfo::name)
@@ -178,9 +247,10 @@ void bind_info(py::module_& module) {
       .def_readonly("event_camera", &DatasetInfo::event_camera)
       .def_readonly("frame_camera", &DatasetInfo::frame_camera)
       .def_property_readonly("cameras", &recorded_cameras)
-      .def_property_readonly("event_sensor", [](const DatasetInfo& info) {
-        return py::make_tuple(info.event_sensor.width, info.event_sensor.height);
-      });
+      .def_property_readonly(
+          "event_sensor",
+          [](const DatasetInfo& info) { return py::make_tuple(info.event_sensor.width, info.event_sensor.height); })
+      .def("__repr__", [](const DatasetInfo& info) { return fmt::format("<edged.RecordingInfo {}>", summary(info)); });
 }
 
 }  // namespace
@@ -191,7 +261,8 @@ void bind_recording(py::module_& module) {
       .def_property_readonly("kind", &kind)
       .def_property_readonly("camera", &camera)
       .def_property_readonly("t", &stamp)
-      .def_property_readonly("data", &data);
+      .def_property_readonly("data", &data)
+      .def("__repr__", &measurement_text);
   py::class_<PyRecording>(module, "Recording")
       .def_property_readonly("info", [](const PyRecording& self) { return self.dataset->info(); })
       .def_readonly("calibration", &PyRecording::calibration)
@@ -200,11 +271,13 @@ void bind_recording(py::module_& module) {
           "repairs", [](PyRecording& self) { return guarded(self.mutex, [&] { return self.dataset->repairs(); }); })
       .def("odometry", &odometry, py::arg("mode") = "auto", py::arg("options") = OptionValues{})
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &next_measurement);
+      .def("__next__", &next_measurement)
+      .def("__repr__",
+           [](const PyRecording& self) { return fmt::format("<edged.Recording {}>", summary(self.dataset->info())); });
   module.def("open_recording", &open, py::arg("path"), py::arg("rig") = py::none(),
              py::arg("topics") = std::map<std::string, std::string>{}, py::arg("geometry") = py::none(),
              py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
-             py::arg("cameras") = std::vector<std::string>{});
+             py::arg("cameras") = py::none());
   module.def("simulate", &simulate, py::arg("preset") = "room", py::arg("seed") = 1, py::arg("duration_s") = py::none(),
              py::arg("options") = OptionValues{}, py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
              py::arg("baseline_m") = py::none());

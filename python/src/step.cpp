@@ -111,6 +111,10 @@ void bind_step(py::module_& module) {
   py::class_<NavState> state(module, "State");
   state.def_readonly("t", &NavState::t);
   bind_state(state, [](const NavState& s) -> const NavState& { return s; });
+  state.def("__repr__", [](const NavState& s) {
+    const Eigen::Vector3d& p = s.T_W_B.translation();
+    return fmt::format("<edged.State {:.3f} s ({:.3f}, {:.3f}, {:.3f}) m>", to_seconds(s.t), p.x(), p.y(), p.z());
+  });
 
   bind_camera(module);
   py::class_<Step> step(module, "Step");

@@ -63,7 +63,7 @@ def test_every_argument_of_a_function_written_in_python_is_in_the_stub():
     for node in STUB.body:
         if isinstance(node, ast.FunctionDef) and inspect.isfunction(getattr(edged, node.name)):
             mine = list(inspect.signature(getattr(edged, node.name)).parameters)
-            assert mine == [argument.arg for argument in node.args.args], node.name
+            assert mine == [argument.arg for argument in [*node.args.args, *filter(None, [node.args.kwarg])]], node.name
 
 
 def test_every_argument_of_a_function_of_the_library_is_in_the_stub():

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/core/resources.hpp"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -9,6 +11,16 @@
 
 namespace edged {
 namespace fs = std::filesystem;
+namespace {
+
+/// The folder of the shared library that this code is in, such as a module of Python; "" if it is not known.
+fs::path library_folder() {
+  Dl_info info;
+  const void* here = reinterpret_cast<const void*>(&library_folder);
+  return dladdr(here, &info) != 0 && info.dli_fname ? fs::path(info.dli_fname).parent_path() : fs::path();
+}
+
+}  // namespace
 
 std::vector<fs::path> resource_folders(std::string_view kind) {
   std::string variable = "EDGED_";
@@ -18,6 +30,7 @@ std::vector<fs::path> resource_folders(std::string_view kind) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) places.push_back(program.parent_path().parent_path() / "share" / "edged" / kind);
+  places.push_back(library_folder() / "share" / "edged" / kind);
   places.push_back(fs::path(EDGED_INSTALLED_RESOURCES) / kind);
   std::vector<fs::path> folders;
   for (const fs::path& place : places) {

@@ -12,8 +12,8 @@
 namespace edged {
 
 /// The existing folders of one kind ("rigs", "depth"), best first: the one that the environment names (EDGED_RIGS,
-/// EDGED_DEPTH), share/edged/KIND beside the folder of the running program, and that of the installation that the
-/// library was built for.
+/// EDGED_DEPTH), share/edged/KIND beside the folder of the running program, share/edged/KIND in the folder of the
+/// shared library (a wheel of Python), and that of the installation that the library was built for.
 std::vector<std::filesystem::path> resource_folders(std::string_view kind);
 
 /// The files with this extension (".yaml") in these folders, by name; of equal names that of the better folder.
