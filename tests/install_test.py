@@ -106,9 +106,14 @@ class Installed(unittest.TestCase):
         project.mkdir()
         (project / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(p LANGUAGES CXX)\n"
                                                 "find_package(edged REQUIRED COMPONENTS telepathy)\n")
-        with self.assertRaisesRegex(AssertionError, "telepathy"):
-            call(os.environ["CMAKE"], "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+        def configure(folder):
+            shutil.rmtree(project / "build", ignore_errors=True)
+            call(os.environ["CMAKE"], "-S", project, "-B", project / "build", f"-Dedged_DIR={folder}",
                  f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", env=self.environment)
+        with self.assertRaisesRegex(AssertionError, r"has no component 'telepathy'; there\s+is one, 'toolbox'"):
+            configure(next(self.prefix.glob("lib*/**/edgedConfig.cmake")).parent)
+        with self.assertRaisesRegex(AssertionError, r"is where edged is built, not\s+installed"):
+            configure(os.environ["EDGED_BUILD"])
 
 
 if __name__ == "__main__":
