@@ -4,6 +4,7 @@
 """Ground truth as it comes: sparse, late, longer than the run, unreadable. Usage: EDGED=path/to/edged truth_test.py"""
 import json
 import re
+import shutil
 import unittest
 
 from program import WithFlight, edged
@@ -98,6 +99,22 @@ class Truth(WithFlight):
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertIsNone(metrics["ate_rmse_m"])
         self.assertTrue(metrics["findings"][0]["text"].startswith("ground truth: cannot be read: "))
+
+    def test_a_truth_from_another_file_is_compared_with(self):
+        truth = self.folder / "mocap.tum"
+        shutil.copy(self.flight / "groundtruth.txt", truth)
+        blind = self.folder / "blind"
+        shutil.copytree(self.flight, blind, ignore=shutil.ignore_patterns("groundtruth.txt"))
+        own = json.loads(edged("run", self.flight, "--to", 3, "--json", "--quiet", "--out", self.folder / "own").stdout)
+        # Without a truth of its own a folder of this format has the poses of the body.
+        given = edged("run", blind, "--to", 3, "--truth", truth, "--json", "--quiet", "--out", self.folder / "given")
+        given = json.loads(given.stdout)
+        self.assertEqual(own["poses"], given["poses"])
+        self.assertIsNotNone(given["ate_rmse_m"])
+        self.assertLess(abs(given["ate_rmse_m"] - own["ate_rmse_m"]), 0.02)
+        replaced = json.loads(edged("run", self.flight, "--to", 3, "--truth", truth, "--json", "--quiet", "--out", self.folder / "replaced").stdout)
+        self.assertEqual(own["ate_rmse_m"], replaced["ate_rmse_m"])
+        self.assert_refused(edged("run", blind, "--truth", self.folder / "nothing"), "nothing")
 
     def test_an_estimate_outside_its_covariance_is_a_finding_everywhere(self):
         def curved(text):  # an estimate that is half a metre off, as the truth is another

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "common/interrupt.hpp"
@@ -24,6 +25,7 @@
 #include "edged/io/open_recording.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
+#include "edged/io/truth_file.hpp"
 #include "edged/sim/dimmed_frames.hpp"
 #include "edged/sim/simulated_pair.hpp"
 
@@ -100,6 +102,7 @@ Recording open_whole(const SourceOptions& options) {
 Recording open_with_files(const SourceOptions& options) {
   Recording recording = open_whole(options);
   if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  if (!options.truth.empty()) recording.dataset = with_truth_file(std::move(recording.dataset), options.truth);
   for (const auto& [name, file] : options.external)
     if (!file.empty())
       recording.dataset = with_external_file(std::move(recording.dataset), *find_external_sensor(name), file);
@@ -110,10 +113,16 @@ Recording open_with_files(const SourceOptions& options) {
 
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
   if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
-  const std::string text = options.recording.substr(kSimulatorPrefix.size());
-  const std::size_t colon = text.find(':');
-  SimulatorConfig config = simulator_preset(text.substr(0, colon));
-  if (colon != std::string::npos) ConfigFields::of(config).set("seed", text.substr(colon + 1));
+  const std::vector<std::string> parts = CLI::detail::split(options.recording.substr(kSimulatorPrefix.size()), ':');
+  SimulatorConfig config = simulator_preset(parts.front());
+  ConfigFields fields = ConfigFields::of(config);
+  for (const std::string& part : std::span(parts).subspan(1)) {
+    if (part.find('=') == std::string::npos) {
+      fields.set("seed", part);
+    } else {
+      for (const std::string& assignment : CLI::detail::split(part, ',')) fields.set(assignment);
+    }
+  }
   return config;
 }
 
@@ -149,7 +158,8 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
   command
       .add_option("--dim-frames", options.dim_frames,
                   "Darken the frames by this factor, with the noise of their camera: 0.06 leaves about 20 grey levels")
-      ->check(CLI::Range(1e-3, 1.0));
+      ->check(CLI::Range(1e-3, 1.0))
+      ->group("");  // for experiments
 }
 
 void add_cameras_option(CLI::App& command, SourceOptions& options, bool all) {
@@ -166,7 +176,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
   command
       .add_option("RECORDING", options.recording,
                   "Folder or file (the format is detected), tcp://HOST:PORT[,PORT...] of a DV server, or "
-                  "sim:PRESET[:SEED]")
+                  "sim:PRESET[:SEED][:KEY=VALUE,...] of the simulator")
       ->required();
   command.add_option("--imu", options.imu,
                      "IMU samples from a csv or txt on the recording's clock, instead of its own; columns and units by "
@@ -251,6 +261,7 @@ std::string command_line(const std::string& command, const SourceOptions& source
   for (const auto& [name, file] : source.external) add("--" + name, file.string());
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);
+  if (!source.truth.empty()) add("--truth", source.truth.string());
   for (const std::string& topic : source.topics) add("--topic", topic);
   if (!source.cameras.empty()) {
     const bool run = command == "run";

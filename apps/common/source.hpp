@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Opens RECORDING of the command line, a folder, a file or "sim:PRESET[:SEED]" for the simulator, with its calibration.
+// Opens RECORDING of the command line, a folder, a file or "sim:PRESET[:SEED][:KEY=VALUE,...]" for the simulator, with
+// its calibration.
 #pragma once
 
 #include <filesystem>
@@ -22,10 +23,11 @@ namespace edged {
 
 struct SourceOptions {
   std::string recording;
-  std::string rig;              ///< name of a shipped rig; "" if not given
-  std::filesystem::path calib;  ///< calibration file; "" if not given
-  std::filesystem::path imu;    ///< file with IMU samples; "" if not given
-  double imu_clock_rate = 1.0;  ///< seconds of the IMU clock per second of the other sensors
+  std::string rig;                   ///< name of a shipped rig; "" if not given
+  std::filesystem::path calib;       ///< calibration file; "" if not given
+  std::filesystem::path imu;         ///< file with IMU samples; "" if not given
+  std::filesystem::path truth = {};  ///< file with the ground truth; "" if not given
+  double imu_clock_rate = 1.0;       ///< seconds of the IMU clock per second of the other sensors
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                                        ///< "WIDTHxHEIGHT" of the event sensor; "" if not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" if not given
@@ -50,7 +52,8 @@ struct Source {
   std::optional<int> seed;  ///< of the simulator
 };
 
-/// The configuration of "sim:PRESET[:SEED]". Nothing for another recording. Throws InputError for an unknown preset.
+/// The configuration of "sim:PRESET[:SEED][:KEY=VALUE,...]". Nothing for another recording. Throws InputError for an
+/// unknown preset or option.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
 /// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --topic, --from (also --start), --to, --duration and

@@ -75,6 +75,9 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* run_app = app.add_subcommand("run", "Estimate the trajectory of a recording and write a run folder");
   add_source_options(*run_app, options->source);
+  run_app->add_option("--truth", options->source.truth,
+                      "Ground truth to compare with, instead of the recording's own: a trajectory of the body [or of "
+                      "the sensor of the recording's own] on the recording's clock, in any format of `edged eval`");
   add_config_options(*run_app, options->config);
   add_map_options(*run_app, options->map);
   run_app->add_option("MORE", options->more, "More recordings, or options as KEY=VALUE (as with --set)");
@@ -118,6 +121,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged run tcp://127.0.0.1:7777 --calib head.yaml --serve    # a live camera, watched in a browser\n"
       "  edged run tcp://127.0.0.1:7777 --calib head.yaml --mavlink serial:/dev/ttyACM0:921600\n"
       "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
+      "  edged run sim:room:3:duration_s=20,disturbance.kind=lens-covered    # options of `edged simulate --list`\n"
+      "  edged run events.raw --imu imu.csv --calib head.yaml --truth mocap.tum\n"
       "Of several recordings the exit code is that of the first whose is not 0.");
   run_app->callback(
       [options, run_app, &chosen] { chosen = [options, run_app] { return run_all(*options, *run_app); }; });
