@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +35,7 @@ struct CalibOptions {
   std::string camera_of_template;
   std::string file;
   std::filesystem::path imu, out;
-  std::vector<std::string> cameras;  ///< NAME=events|frames|both
+  std::vector<std::string> cameras;  ///< NAME=events|frames|both[:NEW_NAME]
   SourceOptions recording;           ///< to check it against
   std::vector<std::string> refined;  ///< recordings of --refine
   std::string mode = "auto";
@@ -44,23 +45,55 @@ struct CalibOptions {
   bool imu_noise = false;  ///< FILE is a recording at rest
 };
 
-std::map<std::string, Sees> parse_cameras(const std::vector<std::string>& texts) {
-  std::map<std::string, Sees> out;
+/// What the user says of a camera.
+struct CameraChoice {
+  Sees sees;
+  std::string new_name;  ///< "": it keeps its own
+};
+
+std::map<std::string, CameraChoice> parse_cameras(const std::vector<std::string>& texts) {
+  std::map<std::string, CameraChoice> out;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
-    const auto sees = parse_sees(equals == std::string::npos ? "" : text.substr(equals + 1));
-    if (!sees)
-      throw InputError::format("--camera {}: write NAME=events, NAME=frames or NAME=both, such as cam0=events", text);
-    out[text.substr(0, equals)] = *sees;
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const std::size_t colon = value.find(':');
+    const auto sees = parse_sees(value.substr(0, colon));
+    const std::string new_name = colon == std::string::npos ? "" : value.substr(colon + 1);
+    if (!sees || (colon != std::string::npos && (new_name.empty() || *sees == Sees::Both)))
+      throw InputError::format(
+          "--camera {}: write NAME=events, NAME=frames or NAME=both, such as cam0=events, or NAME=frames:NEW_NAME",
+          text);
+    out[text.substr(0, equals)] = {*sees, new_name};
   }
   return out;
+}
+
+/// Swapped names are fine, two equal ones not.
+void rename_cameras(Calibration& calibration, const std::map<std::string, CameraChoice>& choices,
+                    const std::string& file) {
+  std::map<std::string, std::string> topics;
+  std::set<std::string> names;
+  for (RigCamera& camera : calibration.rig.cameras) {
+    const auto topic = calibration.topics.find(camera.name);
+    if (const auto choice = choices.find(camera.name); choice != choices.end() && !choice->second.new_name.empty())
+      camera.name = choice->second.new_name;
+    if (topic != calibration.topics.end()) topics[camera.name] = topic->second;
+    if (!names.insert(camera.name).second)
+      throw InputError::format("{}: --camera: two cameras would be called {}", file, camera.name);
+  }
+  calibration.topics = std::move(topics);
 }
 
 /// A path, else the name of a shipped rig.
 Calibration load_chosen(const CalibOptions& options) {
   if (!std::filesystem::exists(options.file) && options.imu.empty() && options.cameras.empty())
     return load_rig(options.file);
-  return load_calibration(options.file, {.imu_file = options.imu, .sees = parse_cameras(options.cameras)});
+  const std::map<std::string, CameraChoice> choices = parse_cameras(options.cameras);
+  CalibrationOptions chosen{.imu_file = options.imu};
+  for (const auto& [name, choice] : choices) chosen.sees[name] = choice.sees;
+  Calibration calibration = load_calibration(options.file, chosen);
+  rename_cameras(calibration, choices, options.file);
+  return calibration;
 }
 
 ordered_json matrix_json(const SE3& T) {
@@ -268,7 +301,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
           ->add_option(
               "--camera", options->cameras,
               "Modality of a camera, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
-              "tell; may be repeated")
+              "tell; NAME=frames:NEW_NAME also renames it; may be repeated")
           ->allow_extra_args(false);
   calib->add_option("--out", options->out,
                     "Write it as yaml of our own, for --rig and --calib; with --check as the run found it");
@@ -293,6 +326,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "Example:\n"
       "  edged calib davis240c_ecd                                    # a rig that ships\n"
       "  edged calib camchain-imucam.yaml --imu imu.yaml --out head.yaml\n"
+      "  edged calib camchain.yaml --camera cam0=frames:left --camera cam1=frames:right --out head.yaml    # renamed\n"
       "  edged calib --new davis346 --out head.yaml                   # then fill in what was measured\n"
       "  edged calib head.yaml --check flight.bag                     # does it fit what was recorded with it?\n"
       "  edged calib --refine a.bag b.bag --calib head.yaml --out better.yaml\n"

@@ -29,9 +29,9 @@ std::string camera_list(const Rig& rig) {
   const std::string& wanted = events ? info.event_camera : info.frame_camera;
   throw InputError::format(
       "{}: holds {}; rig '{}' has the cameras {}: {}; name the camera of the {} '{}' in the calibration (`edged calib "
-      "FILE --camera NAME={} --out rig.yaml` says what it sees), or run with --mode {}",
+      "FILE --camera NAME={}:{} --out rig.yaml` renames it), or run with --mode {}",
       info.name, stream_list(info), rig.name, camera_list(rig), reason, kind_name(modality), wanted,
-      kind_name(modality), events ? "frames" : "events");
+      kind_name(modality), wanted, events ? "frames" : "events");
 }
 
 /// The cameras beside the first must have the names of the rig: readers name them so where they can.
