@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
@@ -30,12 +31,12 @@ struct ConvertOptions {
 std::string left_out_text(const WriteCounts& counts, std::string_view format) {
   std::vector<std::string> parts;
   const auto add = [&parts](std::size_t count, const char* what) {
-    if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
+    if (count > 0) parts.push_back(counted(count, what));
   };
-  add(counts.frames_left_out, "frames");
-  add(counts.imu_left_out, "IMU samples");
-  add(counts.poses_left_out, "true poses");
-  for (const auto& [sensor, count] : counts.external_left_out) add(count, (sensor + " samples").c_str());
+  add(counts.frames_left_out, "frame");
+  add(counts.imu_left_out, "IMU sample");
+  add(counts.poses_left_out, "true pose");
+  for (const auto& [sensor, count] : counts.external_left_out) add(count, (sensor + " sample").c_str());
   return parts.empty() ? "" : fmt::format("dropped, as {} cannot store them: {}\n", format, fmt::join(parts, ", "));
 }
 
@@ -59,9 +60,9 @@ void print_summary(const ConvertOptions& options, const WritableFormat& format, 
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{}: {} events, {} frames, {} IMU samples, {} true poses{}\n{}", options.target.string(), counts.events,
-             counts.frames, counts.imu, counts.poses, external_text(counts.external),
-             left_out_text(counts, format.name));
+  fmt::print("{}: {}, {}, {}, {}{}\n{}", options.target.string(), counted(counts.events, "event"),
+             counted(counts.frames, "frame"), counted(counts.imu, "IMU sample"), counted(counts.poses, "true pose"),
+             external_text(counts.external), left_out_text(counts, format.name));
   for (const auto& [kind, count] : repairs) fmt::print("repaired: {} ({})\n", kind, count);
 }
 
@@ -74,7 +75,8 @@ int run_convert(const ConvertOptions& options) {
   StatusLine status(options.quiet);
   WriteOptions write{.round = options.round};
   write.progress = [&](Timestamp t) {
-    if (status.due()) status.show(progress_text(t, recording.dataset->info(), "converted"));
+    if (status.due())
+      status.show(progress_text(t, recording.dataset->info(), "converted"), share_done(t, recording.dataset->info()));
   };
   InterruptibleDataset dataset(*recording.dataset);
   const WriteCounts counts = write_recording(dataset, format, options.target, recording.calibration, write);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
 #include "common/status_line.hpp"
@@ -62,7 +63,9 @@ int run_simulate(const SimulateOptions& options) {
   StatusLine status(options.quiet);
   WriteOptions write;
   write.progress = [&](Timestamp t) {
-    if (status.due()) status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s));
+    if (status.due())
+      status.show(fmt::format("{:.1f} / {:.1f} s simulated", to_seconds(t), config.duration_s),
+                  to_seconds(t) / config.duration_s);
   };
   InterruptibleDataset dataset(*recording.dataset);
   const WriteCounts counts =
@@ -76,8 +79,8 @@ int run_simulate(const SimulateOptions& options) {
                                          {"external", counts.external}};
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}: {}events, {} frames, {} IMU samples, {} true poses{}\n", folder.string(),
-               si_number(static_cast<double>(counts.events)), counts.frames, counts.imu, counts.poses,
+    fmt::print("{}: {}events, {}, {}, {}{}\n", folder.string(), si_number(static_cast<double>(counts.events)),
+               counted(counts.frames, "frame"), counted(counts.imu, "IMU sample"), counted(counts.poses, "true pose"),
                external_text(counts.external));
   }
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
@@ -95,11 +98,12 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<SimulateOptions>();
   const auto list = std::make_shared<bool>(false);
   CLI::App* simulate = app.add_subcommand("simulate", "Make a recording with ground truth: events, frames and IMU");
-  simulate->add_option("--preset", options->preset, fmt::format("One of {}", fmt::join(simulator_presets(), ", ")))
-      ->check(CLI::IsMember(simulator_presets()))
+  simulate->add_option("--preset", options->preset, "What is simulated: see below")
+      ->type_name("PRESET")
+      ->check(CLI::IsMember(simulator_presets()).description(""))
       ->capture_default_str();
   simulate->add_option("--seed", options->seed, "Another flight, other noise [1]");
-  simulate->add_option("--duration", options->duration_s, "[s] [that of the preset]");
+  simulate->add_option("--duration", options->duration_s, "Length [s] [that of the preset]");
   simulate
       ->add_option("--baseline", options->baseline_m,
                    "Distance of a second event camera and a second frame camera, events2 and frames2, to the right of "
@@ -111,11 +115,14 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
   simulate->add_flag("--quiet", options->quiet, "No status line");
   simulate->add_flag("--json", options->json, "Print the summary as JSON");
-  simulate->footer(
-      "Examples:\n"
-      "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
-      "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
-      "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
+  std::string presets = "Presets:\n";
+  for (const std::string& name : simulator_presets())
+    presets += fmt::format("  {:<20} {}\n", name, preset_summary(name));
+  simulate->footer(presets +
+                   "\nExamples:\n"
+                   "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
+                   "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
+                   "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
   simulate->callback([options, list, &chosen] {
     chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };
   });

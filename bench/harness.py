@@ -214,7 +214,7 @@ def clock(seconds):
 
 
 class Progress:
-    """Done of total, time taken and left: a bar on a terminal that is written over; in a file, a line each."""
+    """Done of total in percent, time taken and left: a bar on a terminal that is written over; in a file, a line each."""
 
     def __init__(self, total):
         self.total, self.done, self.begin = total, 0, time.monotonic()
@@ -232,7 +232,7 @@ class Progress:
     def line(self):
         elapsed = time.monotonic() - self.begin
         left = f", {clock(elapsed / self.done * (self.total - self.done))} left" if self.done else ""
-        text = f"{self.done} of {self.total}, {clock(elapsed)}{left}: {', '.join(self.active.values())}"
+        text = f"{100 * self.done // max(1, self.total)} %, {self.done} of {self.total}, {clock(elapsed)}{left}: {', '.join(self.active.values())}"
         if not sys.stderr.isatty():
             return text
         filled = 20 * self.done // max(1, self.total)

@@ -76,7 +76,9 @@ class CheckRun {
       rig_ = odometry_.rig();
       found_ = compare();
     }
-    if (status_.due()) status_.show(progress_text(step.t, source_.dataset->info(), "checked"));
+    if (status_.due())
+      status_.show(progress_text(step.t, source_.dataset->info(), "checked"),
+                   share_done(step.t, source_.dataset->info()));
     return interrupt_signal() == 0;
   }
 

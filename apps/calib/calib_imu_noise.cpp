@@ -185,7 +185,7 @@ void read_all(Dataset& dataset, RestingImu& imu, bool quiet) {
   while (const std::optional<Measurement> measurement = recording.next()) {
     if (const auto* sample = std::get_if<ImuSample>(&*measurement)) imu.add(*sample);
     if (const auto* sample = std::get_if<ImuSample>(&*measurement); sample && status.due())
-      status.show(progress_text(sample->t, dataset.info(), "read"));
+      status.show(progress_text(sample->t, dataset.info(), "read"), share_done(sample->t, dataset.info()));
   }
 }
 

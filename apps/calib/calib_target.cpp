@@ -13,6 +13,7 @@
 
 #include "calib/target_result.hpp"
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -49,7 +50,7 @@ std::vector<std::string> lens_names() {
 
 void show_progress(StatusLine& status, const Measurement& at, const DatasetInfo& info, const ViewCollector& collector) {
   if (const auto t = last_stamp(at))
-    status.show(progress_text(*t, info, "searched") + "; target in " + collector.progress());
+    status.show(progress_text(*t, info, "searched") + "; target in " + collector.progress(), share_done(*t, info));
 }
 
 /// Reads the recording once, with the views found so far in the status line.
@@ -94,7 +95,7 @@ void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& camer
                 DistortionModel lens, StatusLine& status) {
   std::string needed;
   for (const TargetViews& views : cameras) {
-    status.show(fmt::format("lens of {} from {} views", views.name, views.views.size()));
+    status.show(fmt::format("lens of {} from {}", views.name, counted(views.views.size(), "view")));
     LensFit fit = fit_lens(views, collector.layout(), lens);
     result.coverage.push_back(coverage_of(views, fit, collector.layout()));
     const MissingViews missing = missing_views(views, fit, result.coverage.back());

@@ -6,6 +6,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
@@ -24,7 +26,7 @@ std::size_t terminal_columns() {
 }  // namespace
 
 StatusLine::StatusLine(bool quiet)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), begin_(std::chrono::steady_clock::now()), last_(begin_) {}
 
 StatusLine::~StatusLine() { clear(); }
 
@@ -34,9 +36,10 @@ bool StatusLine::due() const {
   return terminal_ ? since >= kTerminalPeriod : since >= kPlainPeriod;
 }
 
-void StatusLine::show(const std::string& text) {
+void StatusLine::show(const std::string& what, std::optional<double> share) {
   if (quiet_) return;
   last_ = std::chrono::steady_clock::now();
+  const std::string text = share_text(share, std::chrono::duration<double>(last_ - begin_).count()) + what;
   if (terminal_) {
     std::fputs((kWipe + fit_columns(text, terminal_columns() - 1)).c_str(), stderr);
   } else {
@@ -74,6 +77,22 @@ std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view
   const Timestamp begin = info.begin.value_or(Timestamp());
   const std::string whole = info.end ? fmt::format(" / {:.1f}", to_seconds(*info.end - begin)) : "";
   return fmt::format("{:.1f}{} s {}", to_seconds(t - begin), whole, what);
+}
+
+std::optional<double> share_done(Timestamp t, const DatasetInfo& info) {
+  if (!info.begin || !info.end || *info.end <= *info.begin) return std::nullopt;
+  return std::clamp(to_seconds(t - *info.begin) / to_seconds(*info.end - *info.begin), 0.0, 1.0);
+}
+
+std::string share_text(std::optional<double> share, double elapsed_s) {
+  constexpr double kLeastShare = 0.01, kLeast_s = 1.0;  // before, the speed is not known
+  if (!share) return "";
+  const std::string percent = fmt::format("{:.0f} %", std::floor(100.0 * *share));
+  if (*share < kLeastShare || elapsed_s < kLeast_s) return percent + "  ";
+  const auto left_s = static_cast<long>(std::lround(elapsed_s / *share * (1.0 - *share)));
+  const long hours = left_s / 3600, minutes = left_s / 60 % 60;
+  const std::string whole = hours > 0 ? fmt::format("{}:{:02}", hours, minutes) : fmt::format("{}", minutes);
+  return fmt::format("{}, {}:{:02} left  ", percent, whole, left_s % 60);
 }
 
 std::string wrapped(const std::string& line, std::size_t indent) {

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,7 +26,8 @@ class StatusLine {
 
   /// True if another line is due. To be checked before formatting.
   bool due() const;
-  void show(const std::string& text);
+  /// share: of the work that is done, 0 to 1, if it is known: the line begins with it and the time left.
+  void show(const std::string& text, std::optional<double> share = std::nullopt);
   /// Clears the line, so that something else can be printed.
   void clear();
 
@@ -33,6 +35,7 @@ class StatusLine {
   bool quiet_;
   bool terminal_;
   bool shown_ = false;
+  std::chrono::steady_clock::time_point begin_;
   std::chrono::steady_clock::time_point last_;
 };
 
@@ -48,6 +51,12 @@ std::string si_number(double value);
 
 /// Progress at time t: "12.3 / 60.0 s read", without the total if it is unknown.
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
+
+/// The share of a recording that lies before t, 0 to 1, if its end is known.
+std::optional<double> share_done(Timestamp t, const DatasetInfo& info);
+
+/// "42 %, 1:05 left  ": the time that is left at the speed so far, if it can be told. "" without a share.
+std::string share_text(std::optional<double> share, double elapsed_s);
 
 /// Minimum width of a terminal.
 inline constexpr std::size_t kColumns = 80;

@@ -22,6 +22,24 @@ TEST(Wrapped, BreaksBetweenWordsAndIndentsWhatFollows) {
   EXPECT_EQ(wrapped("    " + endless + " z", 4), "    " + endless + "\n    z");
 }
 
+TEST(StatusLine, TellsTheTimeLeftOnceTheSpeedIsKnown) {
+  EXPECT_EQ(share_text(std::nullopt, 10.0), "");
+  EXPECT_EQ(share_text(0.5, 0.1), "50 %  ");
+  EXPECT_EQ(share_text(0.005, 100.0), "0 %  ");
+  EXPECT_EQ(share_text(0.25, 30.0), "25 %, 1:30 left  ");
+  EXPECT_EQ(share_text(0.01, 100.0), "1 %, 2:45:00 left  ");
+  EXPECT_EQ(share_text(1.0, 100.0), "100 %, 0:00 left  ");
+}
+
+TEST(StatusLine, KnowsTheShareOfARecordingWhoseEndIsKnown) {
+  DatasetInfo info;
+  info.begin = timestamp_from_ns(1'000'000'000);
+  EXPECT_EQ(share_done(timestamp_from_ns(2'000'000'000), info), std::nullopt);
+  info.end = timestamp_from_ns(5'000'000'000);
+  EXPECT_EQ(share_done(timestamp_from_ns(2'000'000'000), info), 0.25);
+  EXPECT_EQ(share_done(timestamp_from_ns(9'000'000'000), info), 1.0);
+}
+
 TEST(StatusLine, IsNeverDueWhenQuiet) { EXPECT_FALSE(StatusLine(true).due()); }
 
 TEST(SiNumber, TakesThePrefixThatFits) {

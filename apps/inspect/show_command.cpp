@@ -13,6 +13,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -36,7 +37,8 @@ struct ShowOptions {
   std::filesystem::path out;
   double window_s = 0.02;
   std::size_t events = 0;
-  PictureStyle style = PictureStyle::Polarity;
+  std::string style = "polarity";
+  PictureStyle picture_style() const { return style == "counts" ? PictureStyle::Counts : PictureStyle::Polarity; }
   double max_mb = 4.5;
   std::size_t max_pictures = 10000;
   bool quiet = false, json = false;
@@ -67,7 +69,7 @@ class Reader {
       if (const auto* batch = std::get_if<EventBatch>(&*measurement)) pictures_.add(batch->events, show);
       if (const auto* frame = std::get_if<Frame>(&*measurement)) on_frame(*frame);
       if (const auto t = last_stamp(*measurement); t && status_.due())
-        status_.show(progress_text(*t, dataset_.info(), "shown"));
+        status_.show(progress_text(*t, dataset_.info(), "shown"), share_done(*t, dataset_.info()));
     }
     pictures_.finish(show);
     status_.clear();
@@ -100,7 +102,7 @@ Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sens
               newest.reset();
             }
             const std::string file = fmt::format("events_{:06d}.png", ++shown.pictures);
-            write_picture(options.out / file, draw_event_picture(picture, options.style));
+            write_picture(options.out / file, draw_event_picture(picture, options.picture_style()));
             table += fmt::format("{},{},{},{},{}\n", file, to_ns(picture.begin), to_ns(picture.end), picture.events,
                                  frame_file);
             return true;
@@ -126,7 +128,7 @@ Shown write_page(const ShowOptions& options, Dataset& dataset, cv::Size sensor) 
                                  {"binning", binning},
                                  {"window_s", options.window_s},
                                  {"events_each", options.events},
-                                 {"style", options.style == PictureStyle::Counts ? "counts" : "polarity"}};
+                                 {"style", options.style}};
   data.update(player.to_json());
   write_file(options.out, player_page(data));
   return {player.pictures(), data["frames"].size(), player.every(), {}};
@@ -140,7 +142,8 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{}: {} pictures of events, {} frames\n", options.out.string(), shown.pictures, shown.frames);
+  fmt::print("{}: {} of events, {}\n", options.out.string(), counted(shown.pictures, "picture"),
+             counted(shown.frames, "frame"));
   if (shown.every > 1)
     fmt::print("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
                shown.every, options.max_mb);
@@ -181,11 +184,10 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   show->add_option("--events", options->events, "Number of events per image, instead of a time window")
       ->check(CLI::PositiveNumber)
       ->excludes(window);
-  const std::map<std::string, PictureStyle> styles = {{"polarity", PictureStyle::Polarity},
-                                                      {"counts", PictureStyle::Counts}};
   show->add_option("--style", options->style,
-                   "polarity: blue brighter, red darker; counts: grey (can be switched on the page) [polarity]")
-      ->transform(CLI::Transformer(styles));
+                   "polarity: blue brighter, red darker; counts: grey (can be switched on the page)")
+      ->check(CLI::IsMember({"polarity", "counts"}))
+      ->capture_default_str();
   show->add_option("--max-mb", options->max_mb,
                    "Largest total size of the page's images; beyond it every second image is dropped [MB]")
       ->check(CLI::Range(0.1, 200.0))

@@ -319,7 +319,7 @@ SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<voi
       surveyor.add(*measurement);
       if (also) also(*measurement);
       if (const auto t = last_stamp(*measurement); t && status.due())
-        status.show(progress_text(*t, dataset.info(), "read"));
+        status.show(progress_text(*t, dataset.info(), "read"), share_done(*t, dataset.info()));
     }
   } catch (const InputError& error) {
     damage = error.what();

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
@@ -40,9 +41,11 @@ void wait_for_subscribers(const ros2::Player& player, StatusLine& status) {
 }
 
 void print_counters(const ros2::PlayCounters& counters) {
-  std::string text = fmt::format("sent {} events in {} messages", counters.events, counters.messages);
+  std::string text =
+      fmt::format("sent {} in {}", counted(counters.events, "event"), counted(counters.messages, "message"));
   if (counters.dropped > 0)
-    text += fmt::format("; {} messages dropped, as subscribers did not keep up: lower --rate", counters.dropped);
+    text +=
+        fmt::format("; {} dropped, as subscribers did not keep up: lower --rate", counted(counters.dropped, "message"));
   std::puts(text.c_str());
 }
 
@@ -60,7 +63,8 @@ int run_play(const PlayOptions& options) {
   do {
     if (!recording.dataset) recording = open_uncalibrated(source);
     const ros2::PlayCounters counters = player.play(*recording.dataset, stop, [&](Timestamp t) {
-      if (status.due()) status.show(progress_text(t, recording.dataset->info(), "played"));
+      if (status.due())
+        status.show(progress_text(t, recording.dataset->info(), "played"), share_done(t, recording.dataset->info()));
     });
     status.clear();
     if (counters.messages == 0 && !stop())

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include "common/counted.hpp"
 #include "common/status_line.hpp"
 #include "common/step_facts.hpp"
 #include "run/run_observer.hpp"
@@ -15,7 +16,7 @@ class RunStatusLine : public RunObserver {
  public:
   explicit RunStatusLine(const RunContext& run) : run_(run), line_(run.options.quiet) {}
   void on_step(const Step& step) override {
-    if (line_.due()) line_.show(text_of(step));
+    if (line_.due()) line_.show(text_of(step), share_done(step.t, run_.info()));
   }
   void on_summary(RunEnd&) override { line_.clear(); }
 
@@ -59,8 +60,8 @@ class RunLog : public RunObserver {
     for (const Finding& finding : summary.verdict.findings)
       spdlog::info(fmt::format("found: {}: {}", finding.text, finding.remedy));
     spdlog::info(fmt::format("verdict: {}", summary.verdict.text));
-    spdlog::info(fmt::format("status {}, {} poses, {} keyframes", summary.status, summary.poses,
-                             summary.statistics.keyframes()));
+    spdlog::info(fmt::format("status {}, {}, {}", summary.status, counted(summary.poses, "pose"),
+                             counted(summary.statistics.keyframes(), "keyframe")));
   }
 
  private:

@@ -140,6 +140,34 @@ const std::vector<std::string>& simulator_presets() {
   return names;
 }
 
+std::string_view preset_summary(const std::string& name) {
+  static const std::map<std::string, std::string_view> summaries{
+      {"room", "a DAVIS240C in the hand, in a furnished room"},
+      {"poster", "the same in front of a wall with a photo, slower"},
+      {"shapes", "the same in front of a wall with few plain shapes"},
+      {"handheld-fast", "room, up to 2 m/s and 180 deg/s"},
+      {"handheld-wild", "room, up to 1.5 m/s and 573 deg/s; slow pixels"},
+      {"walkers", "room with people who walk through the view"},
+      {"dark", "room at 3 % of the light, long exposures"},
+      {"spot", "poster in the dark, lit by a wandering lamp"},
+      {"fisheye", "room through a fisheye lens of 152 deg"},
+      {"calibration-target", "around an AprilGrid, for `edged calib --target`"},
+      {"circle", "quadrotor in a hall: three laps of 1.6 m radius"},
+      {"aggressive", "quadrotor: fast shifts to the sides, with roll"},
+      {"aggressive-lowlit", "the same at 2 % of the light"},
+      {"square", "quadrotor: two laps with quarter turns at the corners"},
+      {"line", "quadrotor: to and fro on a line"},
+      {"turned", "quadrotor: slow path, fast turns of yaw"},
+      {"low-lit", "quadrotor: loops at 2 % of the light"},
+      {"30-percent", "quadrotor: loops at 30 % of the light"},
+      {"60-percent", "quadrotor: loops at 60 % of the light"},
+      {"dynamic-hdr", "quadrotor: loops under lamps that are switched"},
+      {"constant-hdr", "quadrotor: loops in the hall with sun through windows"}};
+  const auto found = summaries.find(name);
+  EDGED_CHECK(found != summaries.end(), "preset {}", name);
+  return found->second;
+}
+
 SimulatorConfig simulator_preset(const std::string& name) {
   if (const auto plan = flight_plans().find(name); plan != flight_plans().end()) return flight(name, plan->second);
   SimulatorConfig config;

@@ -252,6 +252,9 @@ struct SimulatorConfig {
 /// One of simulator_presets(). Throws InputError that lists them.
 SimulatorConfig simulator_preset(const std::string& name);
 
+/// What one of simulator_presets() simulates, in a line.
+std::string_view preset_summary(const std::string& name);
+
 /// A DAVIS240C in the hand ("room" is the default), then flight_presets().
 const std::vector<std::string>& simulator_presets();
 
