@@ -19,7 +19,7 @@
 namespace edged {
 namespace {
 
-const cv::Scalar kGrid(228, 228, 228), kTruth(150, 150, 150), kEstimate(200, 90, 20), kWrong(40, 30, 190);
+const cv::Scalar kGrid(228, 228, 228), kTruth(40, 30, 20), kEstimate(235, 160, 90), kWrong(40, 30, 190);
 const cv::Scalar kNotSure(205, 235, 250), kLostTime(210, 210, 250), kNotYet(236, 236, 236);
 constexpr int kMargin = 16, kImageWidth = 400, kPlaneSize = 430, kCurveHeight = 150, kTitleHeight = 70;
 constexpr int kAxisLeft = 56, kAxisBelow = 40;
@@ -68,7 +68,7 @@ void draw_axes(cv::Mat& canvas, const Axes& axes, const std::string& u_name, con
   }
   cv::rectangle(canvas, area, kGrid, 1);
   put_text(canvas, u_name, {area.x + (area.width - text_width(u_name, 0.42)) / 2, area.br().y + 34}, 0.42);
-  put_text(canvas, v_name, {area.x - kAxisLeft + 8, area.y - 8}, 0.42);
+  put_text(canvas, v_name, {area.x - kAxisLeft + 8, area.y - 14}, 0.42);  // clear of a tick at the top
 }
 
 void draw_line(cv::Mat& canvas, const std::vector<cv::Point2d>& line, const cv::Scalar& colour, int thickness) {
@@ -91,7 +91,7 @@ bool begins_anew(const OverviewContent& content, const Trajectory& path, std::si
 void draw_path(cv::Mat& canvas, const Axes& axes, int v, const OverviewContent& content, bool truth) {
   const Trajectory& path = truth ? content.truth : content.estimate;
   const cv::Scalar& colour = truth ? kTruth : kEstimate;
-  const int thickness = truth ? 3 : 1;
+  const int thickness = truth ? 1 : 3;  // above the estimate, which it would hide
   std::vector<cv::Point2d> line;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!truth && begins_anew(content, path, i)) draw_line(canvas, std::exchange(line, {}), colour, thickness);
@@ -113,8 +113,8 @@ void draw_plane(cv::Mat& canvas, const OverviewContent& content, const cv::Rect&
   const Eigen::Vector3d corner = 0.5 * (low + high) - Eigen::Vector3d::Constant(0.5 * extent);
   const Axes axes{area, {corner.x(), corner[v]}, {extent, extent}};
   draw_axes(canvas, axes, "x [m]", fmt::format("{} [m]", "xyz"[v]));
-  draw_path(canvas, axes, v, content, true);
   draw_path(canvas, axes, v, content, false);
+  draw_path(canvas, axes, v, content, true);
   const Eigen::Vector3d& start = content.estimate.front().T.translation();
   cv::circle(canvas, axes.at(start.x(), start[v]), 5, kEstimate, cv::FILLED, cv::LINE_AA);
 }
@@ -131,6 +131,14 @@ void shade_status(cv::Mat& canvas, const OverviewContent& content, const Axes& a
                                                                     : kNotYet;
     cv::rectangle(canvas, from, to, colour, cv::FILLED);
   }
+}
+
+/// A covered lens, or the dark.
+bool shows_nothing(const cv::Mat& frame) {
+  constexpr double kLeastContrast = 4.0;  // grey levels
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(frame, mean, deviation);
+  return deviation[0] < kLeastContrast;
 }
 
 /// In mm below 10 cm.
@@ -156,10 +164,10 @@ void draw_error(cv::Mat& canvas, const OverviewContent& content, const cv::Rect&
 }
 
 void draw_legend(cv::Mat& canvas, const OverviewContent& content, cv::Point at) {
-  cv::line(canvas, at, at + cv::Point(26, 0), kEstimate, 2, cv::LINE_AA);
+  cv::line(canvas, at, at + cv::Point(26, 0), kEstimate, 3, cv::LINE_AA);
   put_text(canvas, "estimate, from the dot on", at + cv::Point(34, 4));
   if (content.truth.empty()) return;
-  cv::line(canvas, at + cv::Point(250, 0), at + cv::Point(276, 0), kTruth, 3, cv::LINE_AA);
+  cv::line(canvas, at + cv::Point(250, 0), at + cv::Point(276, 0), kTruth, 1, cv::LINE_AA);
   put_text(canvas, "ground truth", at + cv::Point(284, 4));
 }
 
@@ -228,7 +236,8 @@ void LiveliestMoment::consider(const Step& step) {
   if (event_frame.empty() && frame.empty()) return;
   const double liveliness =
       event_frame.empty() ? static_cast<double>(numbers_of(step, Modality::Frames).tracks) : events.event_rate_hz;
-  const double score = step.status == TrackingStatus::Good ? 1.0 + liveliness : -1.0 / (1.0 + liveliness);
+  const bool good = step.status == TrackingStatus::Good && (frame.empty() || !shows_nothing(frame));
+  const double score = good ? 1.0 + liveliness : -1.0 / (1.0 + liveliness);
   const bool first_frame = frame_.empty() && !frame.empty();
   if (score <= score_ && !first_frame) return;
   score_ = score;
@@ -264,7 +273,8 @@ cv::Mat draw_overview(const OverviewContent& content) {
   draw_legend(canvas, content, cv::Point(first_x, kTitleHeight + 6));
   draw_plane(canvas, content, cv::Rect(first_x, kPlotY, kPlaneSize, kPlaneSize), 1);
   draw_plane(canvas, content, cv::Rect(second_x, kPlotY, kPlaneSize, kPlaneSize), 2);
-  draw_error(canvas, content, cv::Rect(first_x, kCurveY, second_x + kPlaneSize - first_x, kCurveHeight));
+  const int curve_x = images.size() < 2 ? kMargin + kAxisLeft : first_x;  // also below a single image
+  draw_error(canvas, content, cv::Rect(curve_x, kCurveY, second_x + kPlaneSize - curve_x, kCurveHeight));
   return canvas;
 }
 

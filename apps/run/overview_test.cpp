@@ -12,14 +12,21 @@
 namespace edged {
 namespace {
 
-Step good_step(double rate_hz, bool frame) {
+/// Its first pixel is the rate; the right half is white where the lens is open.
+cv::Mat frame_of(double rate_hz, bool covered) {
+  cv::Mat image(18, 24, CV_8UC1, cv::Scalar(rate_hz));
+  if (!covered) image.colRange(12, 24) = cv::Scalar(255);
+  return image;
+}
+
+Step good_step(double rate_hz, bool frame, bool covered = false) {
   Step step;
   step.status = TrackingStatus::Good;
   step.cameras = {{.name = "events",
                    .modality = Modality::Events,
                    .image = cv::Mat(18, 24, CV_8UC1, cv::Scalar(1)),
                    .event_rate_hz = rate_hz},
-                  {.name = "frames", .image = frame ? cv::Mat(18, 24, CV_8UC1, cv::Scalar(rate_hz)) : cv::Mat()}};
+                  {.name = "frames", .image = frame ? frame_of(rate_hz, covered) : cv::Mat()}};
   return step;
 }
 
@@ -33,6 +40,7 @@ TEST(LiveliestMoment, IsThatOfTheHighestEventRateWithAFrameButNoFlash) {
   Step initializing = good_step(99, true);
   initializing.status = TrackingStatus::Initializing;
   moment.consider(initializing);
+  moment.consider(good_step(40, true, true));
   Step flash = good_step(900, true);
   moment.consider(flash);
   EXPECT_EQ(moment.frame().at<unsigned char>(0, 0), 30);

@@ -100,9 +100,10 @@ function playerCard(data) {
   const [styleLabel, style] = choice('events as', [['polarity', 'polarity'], ['counts', 'counts']], data.style, value => { screen.style = value; screen.draw(); });
   screen.style = data.style;
   const begins = data.pictures.map(picture => picture.begin);
+  const liveliest = data.pictures.reduce((best, picture) => picture.events > best.events ? picture : best).begin;
   let shown = null;
   const show = () => {
-    const t = time.cursor === null ? time.full[0] : time.cursor, i = rowAt(begins, t), picture = data.pictures[i];
+    const t = time.cursor === null ? liveliest : time.cursor, i = rowAt(begins, t), picture = data.pictures[i];
     slider.value = t;
     if (shown === i || !picture) return;
     shown = i;

@@ -154,16 +154,17 @@ function fillSpace() {
     }
     const kept = run.map_keyframes;
     if (show.kept && kept && kept.t) space.points.push({xyz: kept.t.flatMap((t, k) => place(kept, k)), colour: 'accent', size: 6});
-    if (show.truth && run.truth.length) {
-      space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'truth', width: 4, dash: true});
-    }
     if (show.final && run.final && run.final.length) {
-      space.paths.push({x: axisOf(run.final, 0), y: axisOf(run.final, 1), z: axisOf(run.final, 2), colour: 'ink', width: 1});
+      space.paths.push({x: axisOf(run.final, 0), y: axisOf(run.final, 1), z: axisOf(run.final, 2), colour: 'truth', width: 6});
     }
     if (!rows.x) return;
     const shade = show.error && rows.error_m ? rows.error_m : null;
-    space.paths.push({x: rows.x, y: rows.y, z: rows.z, colour: runColour(i), width: 2, shade, shadeMax});
+    space.paths.push({x: rows.x, y: rows.y, z: rows.z, colour: runColour(i), width: show.truth && run.truth.length ? 4 : 2, shade, shadeMax});
   });
+  // Above the estimates, which would hide it.
+  for (const run of runs.filter(each => show.truth && each.truth.length)) {
+    space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'ink', width: 1, dash: true});
+  }
   space.fit(show.map && show.whole);
   return shadeMax;
 }
@@ -198,7 +199,7 @@ function pathCard() {
   };
   const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe),
                kept: runs.some(run => run.map_keyframes && run.map_keyframes.t), links: runs.some(run => run.live || linksOf(run).length)};
-  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (wide grey)'], ['final', 'final path (thin)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (thin, above)'], ['final', 'final path (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
                               ['links', 'seen again (lines)']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
@@ -238,7 +239,7 @@ function picturesCard() {
       card.append(make('figure', {class: 'shot'}, image, caption));
     }
   }
-  const figures = make('div', {class: 'shots'}, ...card.querySelectorAll('figure'));
+  const figures = make('div', {class: shown.length > 2 ? 'shots many' : 'shots'}, ...card.querySelectorAll('figure'));
   card.append(figures, make('p', {class: 'hint'}, 'Orange: new corners, green: those followed for more than five images.'));
   const update = () => {
     const t = time.cursor === null ? time.full[0] + 0.5 * (time.full[1] - time.full[0]) : time.cursor;

@@ -5,9 +5,17 @@
 
 // ---- plots ----
 
+/** Lengths of a plot in mm if all are small: [factor, unit]. A live page, whose columns grow, stays with metres. */
+function lengthUnit(columns) {
+  const small = !runs.some(run => run.live) && columns.every(column => column.every(value => Math.abs(value || 0) < 0.1));
+  return small ? [1e3, 'mm'] : [1, 'm'];
+}
+const scaled = (column, factor) => factor === 1 ? column : column.map(value => value === null ? null : factor * value);
+
 /** One plot of a column with all runs, and the truth if requested. Nothing if no run has the column. */
 function columnPlot(parent, title, unit, key, more) {
   const series = [];
+  const [factor, shownUnit] = more && more.error ? lengthUnit(runs.filter(run => run.rows[key]).map(run => run.rows[key])) : [1, unit];
   let truth = null;
   runs.forEach((run, i) => {
     const rows = run.rows;
@@ -16,28 +24,28 @@ function columnPlot(parent, title, unit, key, more) {
     }
     if (!rows[key] || !(run.live || rows[key].some(value => value !== null))) return;
     if (about(run) && about(run).mode === (more && more.notIn)) return;
-    series.push({t: rows.t, y: rows[key], label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i), dots: more && more.dots});
+    series.push({t: rows.t, y: scaled(rows[key], factor), label: runs.length > 1 ? runName(run) : more && more.truth ? 'estimate' : '', colour: runColour(i), dots: more && more.dots});
   });
   if (!series.length) return;
   if (truth) series.unshift(truth);
-  new TimePlot(time, {title, unit, series, zero: more && more.zero}, parent);
+  new TimePlot(time, {title, unit: shownUnit, series, zero: more && more.zero}, parent);
 }
 
 /** Errors with their limits by the covariance, if there is a truth; else only the limits. */
 function errorPlots(parent) {
   for (const axis of ['x', 'y', 'z']) {
     const key = 'sigma3_' + axis, series = [];
+    const [factor, unit] = lengthUnit(runs.flatMap(run => run.pose_errors.t ? [run.pose_errors[axis], run.pose_errors[key]] : run.rows[key] ? [run.rows[key]] : []));
     runs.forEach((run, i) => {
       const pose_errors = run.pose_errors, label = runs.length > 1 ? runName(run) : '';
       if (pose_errors.t) {
-        series.push({t: pose_errors.t, y: pose_errors[axis], label, colour: runColour(i), band: {low: pose_errors[key].map(s => -s), high: pose_errors[key]}});
+        series.push({t: pose_errors.t, y: scaled(pose_errors[axis], factor), label, colour: runColour(i), band: {low: scaled(pose_errors[key], -factor), high: scaled(pose_errors[key], factor)}});
       } else if (run.rows[key] && run.rows[key].some(s => s !== null)) {
-        const low = run.rows[key].map(s => s === null ? null : -s);
-        series.push({t: run.rows.t, y: run.rows[key].map(() => null), label, colour: runColour(i), band: {low, high: run.rows[key]}});
+        series.push({t: run.rows.t, y: run.rows[key].map(() => null), label, colour: runColour(i), band: {low: scaled(run.rows[key], -factor), high: scaled(run.rows[key], factor)}});
       }
     });
     const compared = runs.some(run => run.pose_errors.t);
-    if (series.length) new TimePlot(time, {title: compared ? 'error ' + axis + ' since the start, ±3 σ' : '±3 σ of ' + axis, unit: 'm', series}, parent);
+    if (series.length) new TimePlot(time, {title: compared ? 'error ' + axis + ' since the start, ±3 σ' : '±3 σ of ' + axis, unit, series}, parent);
   }
 }
 
@@ -78,7 +86,7 @@ function plotSection() {
   triple(group('Position' + (frames ? ' of ' + frames : '')), ['x', 'y', 'z'], 'm', ['x', 'y', 'z'], truth);
   triple(group('Orientation of the body (IMU)'), ['roll', 'pitch', 'yaw'], '°', ['roll', 'pitch', 'yaw'], truth);
   const errors = group('Errors, and how sure the estimate is');
-  columnPlot(errors, 'position error, aligned', 'm', 'error_m', {zero: true});
+  columnPlot(errors, 'position error, aligned', 'm', 'error_m', {zero: true, error: true});
   columnPlot(errors, 'rotation error, aligned', '°', 'rotation_error_deg', {zero: true});
   if (runs.some(run => run.live)) triple(errors, ['3 σ of x', '3 σ of y', '3 σ of z'], 'm', ['sigma3_x', 'sigma3_y', 'sigma3_z'], {zero: true});
   else errorPlots(errors);
