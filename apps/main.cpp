@@ -5,8 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
+#include <string>
 
 #include "commands.hpp"
+#include "common/status_line.hpp"
 #include "program.hpp"
 
 namespace {
@@ -25,6 +28,17 @@ constexpr const char* kFooter =
     "stderr.\n"
     "See `edged COMMAND --help`.";
 
+/// Descriptions of options in a column of their own that ends at the width of a terminal.
+class WrappedHelp : public CLI::Formatter {
+ public:
+  std::string make_option(const CLI::Option* option, bool positional) const override {
+    std::string text;
+    for (const std::string& line : CLI::detail::split(CLI::Formatter::make_option(option, positional), '\n'))
+      text += edged::wrapped(line, get_column_width()) + '\n';
+    return text;
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -32,7 +46,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Edged USLAM: visual-inertial odometry from events, frames and an IMU", "edged"};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("edged {}", kVersion));
-  app.footer(kFooter);
+  app.formatter(std::make_shared<WrappedHelp>());
   std::function<int()> chosen;
   add_run_command(app, chosen);
   add_info_command(app, chosen);
@@ -50,5 +64,6 @@ int main(int argc, char** argv) {
   add_ros2_command(app, chosen);
   add_play_command(app, chosen);
   add_manual_command(app, chosen);
+  app.footer(kFooter);  // last, as commands take it over
   return run_program(app, argc, argv, [&] { return chosen(); });
 }

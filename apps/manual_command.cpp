@@ -17,9 +17,14 @@
 namespace edged {
 namespace {
 
-/// The options that help shows.
+/// The commands that help shows.
 std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+/// The options that help shows.
+std::vector<const CLI::Option*> shown_options(const CLI::App& command) {
+  return command.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
 }
 
 /// Text escaped for troff.
@@ -45,7 +50,7 @@ std::string roff_verbatim(const std::string& text) {
 std::string roff_options(const CLI::App& command) {
   const CLI::Formatter formatter;
   std::string text;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : shown_options(command)) {
     const std::string name = option->get_positional() ? option->get_name(true) : option->get_name(false, true);
     text += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff(name), roff(formatter.make_option_opts(option)),
                         roff(option->get_description()));
@@ -85,6 +90,7 @@ std::string assignments() {
 /// The possible values of an option; "" for a file or any text. rigs: the shell code that lists their names.
 std::string choices(const CLI::App& command, const CLI::Option& option, const std::string& rigs) {
   if (option.check_name("--rig")) return rigs;
+  if (option.check_name("--preset")) return fmt::format("{}", fmt::join(simulator_presets(), " "));
   if (option.check_name("--set"))
     return command.get_name() == "simulate" ? assignments<SimulatorConfig>() : assignments<RunConfig>();
   // The format of CLI::IsMember in the help: TEXT:{a,b,c}
@@ -109,7 +115,7 @@ std::string completion_cases(const CLI::App& command, const ShellWords& shell) {
     cases += fmt::format("    {}) {}{}{} ;;\n", pattern, shell.begin, words, shell.end);
   };
   for (const CLI::App* inner : shown_commands(command)) names += inner->get_name() + " ";
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : shown_options(command)) {
     for (const std::string& long_name : option->get_lnames()) {
       names += "--" + long_name + " ";
       if (option->get_items_expected_max() > 0)
@@ -183,7 +189,7 @@ std::string fish_quoted(const std::string& text) {
 /// Files are offered for positional words, and for options with any text.
 std::string fish_options(const CLI::App& command, const std::string& where) {
   std::string text;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : shown_options(command)) {
     std::string line;
     for (const std::string& name : option->get_lnames()) line += " -l " + name;
     if (line.empty()) continue;

@@ -58,6 +58,30 @@ class Run(WithFlight):
         for name in ("trajectory_final.tum", "keyframes.csv", "map.ply"):
             self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
 
+    def test_a_simulation_takes_options_of_the_simulator(self):
+        run = edged("run", "sim:room:3:duration_s=2,frames.rate_hz=10", "--json", "--quiet", "--out", self.folder / "run")
+        metrics = json.loads(run.stdout)
+        self.assertEqual((metrics["seed"], round(metrics["duration_s"])), (3, 2))
+        first = json.loads(edged("run", "sim:room:duration_s=1.5", "--json", "--quiet", "--out", self.folder / "first").stdout)
+        self.assertEqual(round(first["duration_s"], 1), 1.5)
+        self.assert_refused(edged("run", "sim:room:x"), "option 'seed' is 'x'")
+
+    def test_a_piece_is_not_called_repaired(self):
+        run = edged("run", self.flight, "--duration", 2, "--quiet", "--out", self.folder / "piece")
+        self.assertNotIn("repaired", run.stdout)
+        self.assertEqual(json.loads((self.folder / "piece" / "metrics.json").read_text())["repairs"], {})
+
+    def test_a_broken_picture_is_told_in_our_words(self):
+        broken = self.folder / "broken"
+        shutil.copytree(self.flight, broken)
+        for number, change in ((3, lambda b: b[:200] + b"x" * 60 + b[260:]), (5, lambda b: b[:len(b) // 2])):
+            picture = broken / "images" / f"frame_{number:08}.png"
+            picture.write_bytes(change(picture.read_bytes()))
+        found = edged("info", broken, "--quiet")
+        self.assertEqual([line for line in found.stderr.splitlines() if not line.startswith("edged: ")], [])
+        self.assertIn("frame_00000003.png: image unreadable", found.stderr)
+        self.assertRegex(found.stdout, r"image unreadable\D+2|2\D+image unreadable")
+
     def test_without_a_map_the_final_path_is_the_causal_one(self):
         out = self.folder / "run"
         result = edged("run", self.flight, "--out", out, "--quiet", "map.enabled=false")

@@ -20,6 +20,26 @@ class CommandLine(WithFolder):
         for command in ("run", "info", "doctor", "calib", "convert", "simulate", "eval", "enhance", "depth"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
+    def test_every_help_fits_a_terminal_and_names_values_as_they_are_written(self):
+        commands = [word for word in edged("--help").stdout.split("Subcommands:")[1].split("\n\n")[0].split("\n") if word.startswith("  ")]
+        names = {line.split()[0] for line in commands if not line.startswith("   ")}
+        self.assertLessEqual({"run", "simulate", "show", "map", "play"}, names)
+        for words in (*((name,) for name in names), ("map", "info"), ("map", "show"), ("map", "merge"), ("manual",)):
+            text = edged(*words, "--help").stdout
+            self.assertNotIn("ENUM", text, words)
+            self.assertNotIn("->", text, words)
+            self.assertNotIn("--dim-frames", text, "for experiments")
+            self.assertNotIn("A first minute", text, words)
+            described = [line for line in text.split("\n\nExample")[0].splitlines() if line.startswith(" " * 30)]
+            self.assertLessEqual(max([len(line) for line in described if " " in line.strip()], default=0), 80, words)
+
+    def test_every_preset_is_described(self):
+        help_text = edged("simulate", "--help").stdout
+        names = edged("simulate", "--preset", "nothing").stderr.split("{")[1].split("}")[0].split(",")
+        self.assertGreater(len(names), 20)
+        for name in names:
+            self.assertRegex(help_text, rf"(?m)^  {name} +\w.{{20,}}$")
+
     def test_a_wrong_command_line_is_code_2(self):
         for args in ([], ["fly"], ["run"], ["run", "x", "--mode", "sonar"], ["eval", "a"], ["config", "--what"]):
             self.assertEqual(edged(*args).returncode, 2, args)
@@ -78,6 +98,22 @@ class BadInput(WithFolder):
 
     def test_an_unknown_option_suggests_the_nearest(self):
         self.assert_refused(edged("run", "sim:room", "--set", "packets.max_intervall_s=1"), "'packets.max_interval_s'")
+
+    def test_an_option_of_the_simulator_is_looked_for_where_it_is_listed(self):
+        self.assert_refused(edged("simulate", "--set", "sede=3"), "unknown option 'sede'", "'seed'", "`edged simulate --list`")
+        self.assert_refused(edged("run", "sim:room:3:motoin.rest_s=1"), "'motion.rest_s'", "`edged simulate --list`")
+
+    def test_a_text_that_is_no_events_is_refused_with_line_and_column(self):
+        text = self.folder / "events.txt"
+        for line, why in (("0.1 5", "2 columns where an event of this file has 4: t x y p"),
+                          ("0.1 5 abc 1", "column 3 ('abc') must be a pixel, whole and from 0 on"),
+                          ("0.1 5 6 7", "column 4 ('7') must be a polarity: 0 or 1, or -1 or 1"),
+                          ("0.1 -5 6 0", "column 2 ('-5') must be a pixel")):
+            text.write_text("# a heading\n" + f"{line}\n" * 3000)
+            self.assert_refused(edged("info", text, "--geometry", "240x180", "--quiet"), f"{text}:2: {why}")
+        shutil.copy(text, self.folder / "good.txt")
+        (self.folder / "good.txt").write_text("".join(f"0.{i:04} 5 6 {'x' if i == 7 else 1}\n" for i in range(100)))
+        self.assertIn("good.txt:8: column 4 ('x') must be a polarity", edged("info", self.folder / "good.txt", "--geometry", "240x180").stderr)
 
     def test_an_option_out_of_range_names_the_range(self):
         self.assert_refused(edged("run", "sim:room", "packets.max_interval_s=-1"), "packets.max_interval_s", "0.001")
@@ -285,7 +321,8 @@ class Calib(WithFolder):
             self.assertEqual(edged("calib", "--new", camera, "--out", head).returncode, 0)
             self.assertEqual(edged("calib", "--new", camera).stdout, head.read_text())
             self.assertIn(imu, head.read_text())
-            self.assert_refused(edged("calib", head), f"{head}:", "FILL_IN")
+            wanted = [i for i, line in enumerate(head.read_text().splitlines(), 1) if "FILL_IN" in line.split("#")[0]]
+            self.assert_refused(edged("calib", head), f"{head}:{wanted[0]}: {len(wanted)} lines read FILL_IN: {', '.join(map(str, wanted))};")
             rows = iter(("[1, 0, 0, 0.01]", "[0, 1, 0, 0]", "[0, 0, 1, 0.03]"))
             filled = []
             for line in head.read_text().splitlines():
@@ -301,6 +338,17 @@ class Calib(WithFolder):
             self.assertEqual(shown["warnings"], [])
         self.assert_refused(edged("calib", "--new", "evk4", "--out", head), "exists")
         self.assert_refused(edged("calib"), "FILE, --new, --check, --refine or --print-target", code=2)
+
+    def test_cameras_are_renamed_with_what_they_see(self):
+        rig = self.folder / "rig.yaml"
+        self.assertEqual(edged("calib", "davis240c_ecd", "--out", rig).returncode, 0)
+        out = self.folder / "renamed.yaml"
+        shown = edged("calib", rig, "--camera", "events=events:dvs", "--camera", "frames=frames:events", "--out", out, "--json")
+        self.assertEqual([(c["name"], c["modality"]) for c in json.loads(shown.stdout)["cameras"]], [("dvs", "events"), ("events", "frames")])
+        self.assertEqual([c["name"] for c in json.loads(edged("calib", out, "--json").stdout)["cameras"]], ["dvs", "events"])
+        self.assert_refused(edged("calib", rig, "--camera", "events=events:frames"), "two cameras would be called frames")
+        for wrong in ("events=events:", "events=both:dvs"):
+            self.assert_refused(edged("calib", rig, "--camera", wrong), f"--camera {wrong}: write NAME=events")
 
     def test_what_looks_wrong_is_said(self):
         self.chain.write_text(self.KALIBR.replace("-0.1]", "-100]"))

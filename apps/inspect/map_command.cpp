@@ -11,6 +11,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/json_text.hpp"
 #include "edged/core/angles.hpp"
@@ -59,14 +60,14 @@ int run_info(const MapCommandOptions& options) {
     fmt::print("{}\n", json_text(about));
     return kExitOk;
   }
-  fmt::print("{}: {} keyframes, {} points over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
-             about["keyframes"].get<int>(), about["points"].get<int>(), about["size_m"][0].get<double>(),
-             about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
+  fmt::print("{}: {}, {} over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
+             counted(about["keyframes"].get<int>(), "keyframe"), counted(about["points"].get<int>(), "point"),
+             about["size_m"][0].get<double>(), about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
              std::filesystem::file_size(options.file) / 1024);
   for (const auto& camera : about["cameras"])
-    fmt::print("  {:<12} {} keyframes; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
-               camera["keyframes"].get<int>(), camera["width"].get<int>(), camera["height"].get<int>(),
-               camera["focal_px"].get<double>());
+    fmt::print("  {:<12} {}; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
+               counted(camera["keyframes"].get<int>(), "keyframe"), camera["width"].get<int>(),
+               camera["height"].get<int>(), camera["focal_px"].get<double>());
   return kExitOk;
 }
 
@@ -77,8 +78,8 @@ int run_show(const MapCommandOptions& options) {
   if (options.json)
     fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
   else
-    fmt::print("{}: {} keyframes' points; any viewer of point clouds shows them\n", options.out.string(),
-               map.keyframes.size());
+    fmt::print("{}: points of {}; any viewer of point clouds shows them\n", options.out.string(),
+               counted(map.keyframes.size(), "keyframe"));
   return kExitOk;
 }
 
@@ -101,9 +102,9 @@ int run_merge(const MapCommandOptions& options) {
                                   {"other_turned_deg", so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian}}));
     return kExitOk;
   }
-  fmt::print("{}: {} keyframes; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
-             both.keyframes.size(), options.other.string(), p.x(), p.y(), p.z(), options.file.string(),
-             so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
+  fmt::print("{}: {}; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
+             counted(both.keyframes.size(), "keyframe"), options.other.string(), p.x(), p.y(), p.z(),
+             options.file.string(), so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
   return kExitOk;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/counted.hpp"
 #include "common/numbers.hpp"
 
 namespace edged {
@@ -64,6 +65,10 @@ Protocol chosen_protocol(const EvaluationOptions& options) {
   return result;
 }
 
+std::string error_text(double error_m) {
+  return error_m < 0.1 ? fmt::format("{:.2f} mm", 1e3 * error_m) : fmt::format("{:.3f} m", error_m);
+}
+
 std::string local_error_text(const std::vector<LocalError>& local) {
   std::string errors, counts;
   std::size_t most = 0;
@@ -79,12 +84,12 @@ std::string local_error_text(const std::vector<LocalError>& local) {
 
 std::string to_table(const Evaluation& e) {
   const bool timed = !std::isnan(e.duration_s);
-  std::string table = fmt::format("{} pairs over {}{:.3f} m; {} alignment on {}\n", e.pairs,
+  std::string table = fmt::format("{} over {}{:.3f} m; {} alignment on {}\n", counted(e.pairs, "pair"),
                                   timed ? fmt::format("{:.2f} s and ", e.duration_s) : "", e.path_length_m,
                                   to_string(e.protocol.alignment), window_text(e.protocol.window));
   if (e.outside + e.in_gaps > 0) {
-    table +=
-        fmt::format("without ground truth: {} poses outside its time span, {} in its gaps\n", e.outside, e.in_gaps);
+    table += fmt::format("without ground truth: {} outside its time span, {} in its gaps\n", counted(e.outside, "pose"),
+                         e.in_gaps);
   }
   table += fmt::format("  {:<22} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "rmse", "mean", "median", "std",
                        "min", "max");

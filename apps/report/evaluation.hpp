@@ -25,6 +25,8 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options);
 Protocol chosen_protocol(const EvaluationOptions& options);
 
 std::string to_table(const Evaluation& evaluation);
+/// "1.23 mm", from 10 cm on "0.123 m".
+std::string error_text(double error_m);
 /// In one line, for the existing windows.
 std::string local_error_text(const std::vector<LocalError>& local);
 

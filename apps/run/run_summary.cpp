@@ -79,8 +79,10 @@ std::string live_table(const LiveSummary& live) {
   return line("latency", fmt::format("{:.1f} ms", 1e3 * latency.quantile_s(0.50)),
               fmt::format("median; 95 % {:.1f} ms, 99 % {:.1f} ms, worst {:.1f} ms", 1e3 * latency.quantile_s(0.95),
                           1e3 * latency.quantile_s(0.99), 1e3 * latency.max_s())) +
-         line("left out", shed ? fmt::format("{} events", live.shed.events) : "nothing",
-              shed ? fmt::format("{} frames, {} packets: too slow", live.shed.frames, live.shed_packets) : "");
+         line("left out", shed ? counted(live.shed.events, "event") : "nothing",
+              shed ? fmt::format("{}, {}: too slow", counted(live.shed.frames, "frame"),
+                                 counted(live.shed_packets, "packet"))
+                   : "");
 }
 
 std::string calibration_line(const CalibrationFound& c) {
@@ -142,6 +144,7 @@ void evaluate_final(RunSummary& summary, const Trajectory& body, const Rig& rig,
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters) {
   const IntakeCounters& intake = counters.intake;
   const PacketizerCounters& packets = counters.packets;
+  // One packet after the last IMU sample is how a recording, or a piece of it, ends.
   const std::pair<const char*, std::size_t> dropped[] = {
       {"measurements of cameras that the calibration does not have dropped", intake.unknown_camera},
       {"measurements dropped as the queue was full", intake.no_room},
@@ -152,7 +155,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"measurements with stamps far ahead dropped", intake.far_ahead},
       {"clocks set back: restarted", intake.clocks_set_back},
       {"packets before the first IMU sample dropped", packets.packets_before_imu},
-      {"packets after the last IMU sample dropped", packets.packets_after_imu},
+      {"packets after the last IMU sample dropped", packets.packets_after_imu > 1 ? packets.packets_after_imu : 0},
       {"packets dropped during gaps of the IMU", packets.packets_overflow},
       {"late events dropped", packets.events_late},
       {"late frames dropped", packets.frames_late},
@@ -244,17 +247,18 @@ std::string timing_json(const StageTimings& pipeline, const StageTimings& progra
 std::string to_table(const RunSummary& s) {
   const double span = s.statistics.visual_span_s();
   std::string table = fmt::format("{}, {}, {:.1f} s -> {}\n", s.recording, s.mode, span, s.folder);
-  table += line("status", s.status,
-                s.statistics.times_lost() > 0 ? "lost " + counted(s.statistics.times_lost(), "time") : "");
+  const std::size_t losses = s.statistics.times_lost();
+  table += line("status", losses > 0 ? s.status + ", lost " + counted(losses, "time") : s.status);
   if (s.evaluation) {
     const Evaluation& e = *s.evaluation;
-    table += line("ATE RMSE", fmt::format("{:.4f} m", e.ate_m.rmse),
-                  fmt::format("{} alignment, {} poses, {:.2f} m path", to_string(e.protocol.alignment), e.pairs,
-                              e.path_length_m));
+    table += line("ATE RMSE", error_text(e.ate_m.rmse),
+                  fmt::format("{} alignment, {}, {:.2f} m path", to_string(e.protocol.alignment),
+                              counted(e.pairs, "pose"), e.path_length_m));
     table += line("local error", local_error_text(e.local));
     if (s.final_evaluation) {
-      table += line("final, not causal", fmt::format("{:.4f} m", s.final_evaluation->ate_m.rmse),
-                    "ATE of the final trajectory; local error " + local_error_text(s.final_evaluation->local));
+      const std::string local = local_error_text(s.final_evaluation->local);
+      table += line("final, not causal", error_text(s.final_evaluation->ate_m.rmse),
+                    "ATE of the final trajectory" + (local.starts_with('-') ? "" : "; local error " + local));
     }
     if (std::isnan(e.mpe_percent))
       table += line("mean position error", "-", fmt::format("the path is shorter than {} m", kShortestPath_m));
@@ -272,7 +276,7 @@ std::string to_table(const RunSummary& s) {
   for (const CalibrationFound& c : s.calibration) table += calibration_line(c);
   for (const auto& [sensor, e] : s.external)
     table += line(sensor.c_str(), fmt::format("{} used", e.used),
-                  fmt::format("of {} samples; {} rejected, {} late", e.samples, e.rejected, e.late));
+                  fmt::format("of {}; {} rejected, {} late", counted(e.samples, "sample"), e.rejected, e.late));
   table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()));
   table += line(
       "coverage", fmt::format("{:.1f} %", 100.0 * s.statistics.coverage()),
@@ -291,7 +295,7 @@ std::string to_table(const RunSummary& s) {
   if (s.map && !s.map->saved.empty()) table += line("map kept", s.map->saved);
   if (!s.archive.empty()) table += line("archive", s.archive);
   if (s.live) table += live_table(*s.live);
-  for (const auto& [kind, count] : s.repairs) table += line("repaired", std::to_string(count), kind);
+  for (const auto& [kind, count] : s.repairs) table += line("repaired", fmt::format("{} x", count), kind);
   return table + verdict_text(s);
 }
 

@@ -291,8 +291,10 @@ void ConfigFields::set(const std::string& key, const std::string& value) {
   }
   std::vector<std::string> keys;
   for (const ConfigField& field : fields_) keys.push_back(field.key);
-  throw InputError::format("unknown option '{}'; did you mean '{}'? (`edged config` lists all)", key,
-                           nearest_name(keys, key));
+  throw InputError::format(
+      "unknown option '{}'; did you mean '{}'? (`edged config` lists those of a run, `edged simulate --list` those of "
+      "the simulator)",
+      key, nearest_name(keys, key));
 }
 
 void ConfigFields::set(const std::string& assignment) {

@@ -5,10 +5,14 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "edged/io/bytes.hpp"
 #include "edged/io/source_path.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
+
+/// Decodes an image file in memory as read_gray_image() does; empty if it is damaged. Throws cv::Exception.
+cv::Mat decode_gray(ByteSpan bytes);
 
 /// Reads an image as 8-bit grey: colours by their luminance, the upper 8 of 16 bits (TUM-VI). Empty if the file is no
 /// image or damaged. Throws InputError if the file cannot be read.

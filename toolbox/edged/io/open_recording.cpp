@@ -217,11 +217,12 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   if (const auto form = find_event_form(file)) return open_event_csv(file, *form, rig, options);
   std::vector<std::string_view> names;
   for (const FileFormat& format : kFileFormats) names.push_back(format.name);
+  const std::string why = why_no_event_file(file);
   throw InputError::format(
       "{}: unknown file format; looked for {} and text with an event in each line (`t x y p`, or columns named in the "
-      "first line; also as .gz). Of a recording in several files give the folder (unpack an archive other than zip "
+      "first line; also as .gz{}). Of a recording in several files give the folder (unpack an archive other than zip "
       "first, and what is no text out of .gz)",
-      file.string(), fmt::join(names, ", "));
+      file.string(), fmt::join(names, ", "), why.empty() ? why : "; " + why);
 }
 
 Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {

@@ -3,6 +3,8 @@
 // Access to yaml, with errors that name file, line and key.
 #include "edged/io/calib/yaml_reader.hpp"
 
+#include <spdlog/fmt/ranges.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -38,8 +40,26 @@ std::string hint(const std::string& text, int line) {
   return "; a list begins here where a key should: the rows of a matrix need one pair of brackets around them all";
 }
 
+/// Refuses a template with all lines that are still to be filled in.
+void check_filled_in(const SourcePath& file, const std::string& text) {
+  std::vector<std::size_t> lines;
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    if (line.substr(0, line.find('#')).find("FILL_IN") != std::string_view::npos) lines.push_back(number + 1);
+    begin = end + 1;
+  }
+  if (lines.empty()) return;
+  const std::string first = fmt::format("{}:{}: ", file.string(), lines.front());
+  throw InputError(first + (lines.size() == 1 ? "reads FILL_IN; write your number there"
+                                              : fmt::format("{} lines read FILL_IN: {}; write your numbers there",
+                                                            lines.size(), fmt::join(lines, ", "))));
+}
+
 YAML::Node parse_file(const SourcePath& file) {
   const std::string text = read_small_file(file);
+  check_filled_in(file, text);
   try {
     return is_xml(text) ? parse_opencv_xml(text) : YAML::Load(text);
   } catch (const Damage& damage) {

@@ -14,6 +14,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/io/distortion.hpp"
+#include "edged/io/image_file.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -231,8 +232,7 @@ GrayImage read_compressed_image(WireReader message) try {
   message.text();  // format: detected from the data
   const ByteSpan data = message.bytes();
   if (data.empty()) throw Damage("no image");
-  const cv::Mat raw(1, static_cast<int>(data.size()), CV_8UC1, const_cast<std::uint8_t*>(data.data()));
-  out.image = cv::imdecode(raw, cv::IMREAD_GRAYSCALE);
+  out.image = decode_gray(data);
   if (out.image.empty()) throw Damage("image cannot be decoded");
   return out;
 } catch (const cv::Exception&) {

@@ -35,6 +35,9 @@ struct EventTextForm {
   std::string complaint = {};  ///< of a heading with unknown names: then the columns are found from the content
 };
 
+/// The first line of a text file that holds numbers but no event, with the reason; "" if there is none.
+std::string why_no_event_file(const SourcePath& file);
+
 /// Nothing if the file has no lines of events: numbers `t x y p`, or in another order that fits events only, or after a
 /// line that names the columns.
 std::optional<EventTextForm> find_event_form(const SourcePath& file);

@@ -3,6 +3,7 @@
 // Detects the columns of a plain event file, and the unit of its stamps.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "edged/core/check.hpp"
@@ -169,7 +170,31 @@ bool is_text(std::string_view block) {
   });
 }
 
+/// The first line of numbers that is no event, with the reason; "" if there is none.
+std::string first_that_is_no_event(const SourcePath& file, std::string_view block) {
+  constexpr std::size_t kMostLines = 5000;
+  for (std::size_t line = 1; line <= kMostLines && !block.empty(); ++line) {
+    const std::size_t end = block.find('\n');
+    std::string_view text = block.substr(0, end);
+    if (text.ends_with('\r')) text.remove_suffix(1);
+    Event event;
+    const bool numbers = !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) != 0 || text[0] == '-');
+    if (numbers && end != std::string_view::npos && !parse_event_fields(text, {}, event))
+      return fmt::format("{}:{}: {}", file.string(), line, why_no_event(text, {}));
+    block.remove_prefix(std::min(end, block.size() - 1) + 1);
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string why_no_event_file(const SourcePath& file) try {
+  BlockReader blocks(file);
+  const std::string_view block = blocks.next();
+  return is_text(block) ? first_that_is_no_event(file, block) : "";
+} catch (const InputError&) {
+  return "";
+}
 
 std::optional<TimeUnit> guess_time_unit(const StampSample& stamps) {
   constexpr double kHour = 3600, kDay = 24 * kHour;

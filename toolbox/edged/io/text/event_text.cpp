@@ -87,6 +87,23 @@ bool parse_event_fields(std::string_view line, const EventColumns& columns, Even
   return true;
 }
 
+std::string why_no_event(std::string_view line, const EventColumns& columns) {
+  FieldReader fields(line);
+  std::vector<std::string_view> field;
+  while (!fields.rest().empty()) field.push_back(fields.next());
+  if (field.size() != columns.count)
+    return fmt::format(
+        "{} column{} where an event of this file has {}", field.size(), field.size() == 1 ? "" : "s",
+        columns == EventColumns{.header_lines = columns.header_lines} ? "4: t x y p" : std::to_string(columns.count));
+  const auto wrong = [&](std::size_t column, const char* wanted) {
+    return fmt::format("column {} ('{}') must be {}", column + 1, field[column].substr(0, 40), wanted);
+  };
+  if (!parse_stamp(field[columns.t], columns.unit)) return wrong(columns.t, "a stamp");
+  for (const std::size_t pixel : {columns.x, columns.y})
+    if (!whole_number(field[pixel])) return wrong(pixel, "a pixel, whole and from 0 on");
+  return wrong(columns.p, "a polarity: 0 or 1, or -1 or 1");
+}
+
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns) {
   Event event;
   return parse_event_fields(line, columns, event) ? std::optional(event.t) : std::nullopt;
@@ -204,9 +221,7 @@ void EventTextStream::reject_line(std::string_view line, bool terminated) {
   const std::string_view first = fields.next();
   if (first.empty() || first[0] == '#' || line_ <= columns_.header_lines) return;
   if (!terminated) return damage_.mended(line_, "last line cut", "the file ends within a line");
-  damage_.bad(line_, "unreadable line",
-              columns_ == EventColumns() ? "not `t x y p` with t in seconds, whole pixels and p 0 or 1"
-                                         : "not an event in the columns of this file");
+  damage_.bad(line_, "unreadable line", why_no_event(line, columns_));
 }
 
 }  // namespace edged

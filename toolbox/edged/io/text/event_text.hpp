@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/io/ahead_gate.hpp"
@@ -36,6 +38,9 @@ const char* parse_event_line(const char* p, Event& event);
 /// The same for any order of columns and notation of numbers (exponents, `96.0`, polarity -1), but slower. False if the
 /// line is no event.
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event);
+
+/// What keeps the line from being an event, by its column as the user counts: "column 3 ('abc') must be ...".
+std::string why_no_event(std::string_view line, const EventColumns& columns);
 
 /// Parses the stamp only.
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns);

@@ -165,7 +165,7 @@ TEST(EventStream, RefusesAFileThatIsMostlyDamaged) {
   for (int i = 0; i < 2000; ++i) text += "1 2 3\n";
   const auto file = folder.write("events.txt", text);
   const std::string message = input_error([&] { read_stream(file); });
-  EXPECT_THAT(message, HasSubstr("events.txt:2: not `t x y p`"));
+  EXPECT_THAT(message, HasSubstr("events.txt:2: 3 columns where an event of this file has 4: t x y p"));
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
 
