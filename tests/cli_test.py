@@ -109,8 +109,8 @@ class BadInput(WithFolder):
                           ("0.1 5 abc 1", "column 3 ('abc') must be a pixel, whole and from 0 on"),
                           ("0.1 5 6 7", "column 4 ('7') must be a polarity: 0 or 1, or -1 or 1"),
                           ("0.1 -5 6 0", "column 2 ('-5') must be a pixel")):
-            text.write_text("# a heading\n" + f"{line}\n" * 3000)
-            self.assert_refused(edged("info", text, "--geometry", "240x180", "--quiet"), f"{text}:2: {why}")
+            text.write_text(f"{line}\n" * 3000)
+            self.assert_refused(edged("info", text, "--geometry", "240x180", "--quiet"), f"{text}:1: {why}")
         shutil.copy(text, self.folder / "good.txt")
         (self.folder / "good.txt").write_text("".join(f"0.{i:04} 5 6 {'x' if i == 7 else 1}\n" for i in range(100)))
         self.assertIn("good.txt:8: column 4 ('x') must be a polarity", edged("info", self.folder / "good.txt", "--geometry", "240x180").stderr)
