@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/log.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
 
@@ -49,27 +50,43 @@ std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info)
   return pair ? names : std::vector<std::string>();
 }
 
-Source open_run_source(SourceOptions& options) {
-  if (!options.cameras.empty() || is_live(options) || simulator_config(options)) return open_source(options);
+namespace {
+
+/// The recording with all cameras, where the run uses all of them; else nothing, as it is opened again with those of
+/// the run: so far it has said nothing then, to say it once. Puts the cameras of the run into options, and why not all
+/// can be read into refusal.
+std::optional<Recording> opened_with_all_cameras(SourceOptions& options, std::string& refusal) {
+  HeldWarnings held;
   SourceOptions every = options;
   every.all_cameras = true;
   std::optional<Recording> recording;
   try {
     recording = open_uncalibrated(every);
   } catch (const InputError& e) {
-    Source one = open_source(options);  // throws where it is the recording that is wrong
-    spdlog::warn(fmt::format("{}; one camera of each kind is used", e.what()));
-    return one;
+    refusal = e.what();
+    held.take();
+    return std::nullopt;
   }
   const DatasetInfo& info = recording->dataset->info();
   if (recording->calibration) options.cameras = stereo_cameras(recording->calibration->rig, info);
+  if (info.more_cameras.empty() || options.cameras.size() == recorded_cameras(info).size()) return recording;
+  held.take();
+  return std::nullopt;
+}
+
+}  // namespace
+
+Source open_run_source(SourceOptions& options) {
+  if (!options.cameras.empty() || is_live(options) || simulator_config(options)) return open_source(options);
+  std::string refusal;
+  std::optional<Recording> recording = opened_with_all_cameras(options, refusal);
   if (!options.cameras.empty())
     spdlog::info(fmt::format("cameras {}: views overlap; --set cameras=first uses one of each kind",
                              fmt::join(options.cameras, ", ")));
-  if (info.more_cameras.empty() || options.cameras.size() == recorded_cameras(info).size())
-    return calibrated(options, std::move(*recording));
-  recording.reset();
-  return open_source(options);
+  if (recording) return calibrated(options, std::move(*recording));
+  Source source = open_source(options);  // throws where it is the recording that is wrong
+  if (!refusal.empty()) spdlog::warn(fmt::format("{}; one camera of each kind is used", refusal));
+  return source;
 }
 
 }  // namespace edged
