@@ -28,16 +28,16 @@ KeyframeMap map_of(int keyframes, std::mt19937_64& random) {
   KeyframeMap map({});
   for (int k = 0; k < keyframes; ++k) {
     const Timestamp t = timestamp_from_seconds(k);
-    MapKeyframe keyframe{t, t, "frames", SE3(), {}};
+    MapView view{"frames", SE3(), {}};
     for (int i = 0; i < kPointsPerKeyframe; ++i) {
       MapPoint point;
       point.point = {place(random), place(random)};
       point.inverse_depth = 0.5;
       point.sigma = 0.005;
       point.descriptor = random_descriptor(random);
-      keyframe.points.push_back(std::move(point));
+      view.points.push_back(std::move(point));
     }
-    map.add(std::move(keyframe));
+    map.add({t, t, {std::move(view)}});
   }
   return map;
 }
@@ -50,7 +50,7 @@ void BM_RecogniseAPlace(benchmark::State& state) {
   // Cameras that look along the horizon.
   const Eigen::Quaterniond R_O_C(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
   const std::vector<SE3> T_M_K(map.keyframes().size(), SE3(R_O_C, Eigen::Vector3d::Zero()));
-  const MapKeyframe& there = map.keyframes()[map.keyframes().size() / 2];
+  const MapView& there = map.keyframes()[map.keyframes().size() / 2].views.front();
   std::uniform_real_distribution<double> place(-0.5, 0.5);
   std::vector<std::optional<Descriptor>> descriptors;
   std::vector<Eigen::Vector2d> points;
@@ -91,7 +91,7 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
       observations.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
     }
   }
-  for (auto _ : state) benchmark::DoNotOptimize(filter.update(observations, observations.size(), SE3()));
+  for (auto _ : state) benchmark::DoNotOptimize(filter.update(observations, observations.size(), {SE3()}));
 }
 BENCHMARK(BM_TakeUpWhatWasFound)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
 
@@ -127,7 +127,7 @@ TrajectorySmoother record_of(double duration_s) {
             {keyframe, p_K, 0.01 * p_K, (true_pose(t).inverse() * point_ahead(k)).hnormalized(), 0.01});
       }
     }
-    record.add_observations(T_O_B, SE3(), observations);
+    record.add_observations(T_O_B, {SE3()}, observations);
   }
   return record;
 }

@@ -41,17 +41,33 @@ class StereoRecordings(WithFlight):
         self.assertEqual(self.run_bits(self.flight, "--set", ALL), every)
         self.assertNotEqual(self.run_bits(self.flight, "--set", "cameras=events,frames"), every)
 
-    def test_a_bent_rig_is_told_and_corrected(self):
+    def calibration_with(self, cameras, turned):
+        """The calibration of the flight with other rows of R_B_C of these cameras."""
         lines = (self.flight / "calibration.yaml").read_text().splitlines()
-        begin = next(i for i, line in enumerate(lines) if 'name: "frames2"' in line)
-        rows = next(i for i in range(begin, len(lines)) if "T_B_C" in lines[i]) + 1
-        turn = math.radians(1.0)
-        for i in range(rows, rows + 3):  # T_B_C times a rotation by 1 deg about the camera's z axis
-            x, y, *rest = (float(cell) for cell in lines[i][lines[i].index("[") + 1:lines[i].index("]")].split(","))
-            cells = [x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn), *rest]
-            lines[i] = f"      - [{', '.join(f'{cell:.16g}' for cell in cells)}]"
-        bent = self.folder / "bent.yaml"
-        bent.write_text("\n".join(line for i, line in enumerate(lines) if i != rows + 4) + "\n")  # without q_B_C
+        for name in cameras:
+            begin = lines.index(f'  - name: "{name}"')
+            rows = next(i for i in range(begin, len(lines)) if "T_B_C" in lines[i]) + 1
+            for i in range(rows, rows + 3):
+                *row, t = (float(cell) for cell in lines[i][lines[i].index("[") + 1:lines[i].index("]")].split(","))
+                lines[i] = f"      - [{', '.join(f'{cell:.16g}' for cell in (*turned(*row), t))}]"
+            del lines[rows + 4]  # q_B_C
+        made = self.folder / "turned.yaml"
+        made.write_text("\n".join(lines) + "\n")
+        return made
+
+    def test_a_run_says_once_which_topics_it_takes_for_which_cameras(self):
+        bag = self.converted("a.bag")
+        rear = self.calibration_with(("events2", "frames2"), lambda x, y, z: (-x, y, -z))
+        for calib, used in ((self.flight, "frames,frames2"), (rear, "frames")):
+            out = self.folder / "run"
+            result = edged("run", bag, "--calib", calib, "--mode", "frames", "--out", out, "--force", "--quiet")
+            self.assertEqual(result.stderr.count("topics of frames are the cameras frames, frames2 in the order"), 1, result.stderr)
+            calibrated = json.loads((out / "metrics.json").read_text())["calibration"]
+            self.assertEqual(",".join(camera["camera"] for camera in calibrated), used)
+
+    def test_a_bent_rig_is_told_and_corrected(self):
+        c, s = math.cos(math.radians(1.0)), math.sin(math.radians(1.0))
+        bent = self.calibration_with(("frames2",), lambda x, y, z: (x * c + y * s, y * c - x * s, z))  # about the camera's z axis
         for calib, told in ((bent, True), (self.flight, False)):
             result = edged("run", self.flight, "--calib", calib, "--mode", "frames", "--out", self.folder / "bent", "--force",
                            "--quiet")

@@ -39,10 +39,11 @@ nlohmann::ordered_json describe(const SavedMap& map) {
   std::map<std::string, std::size_t> keyframes;
   std::size_t points = 0;
   for (const MappedKeyframe& keyframe : mapped(map)) {
-    ++keyframes[keyframe.camera];
     points += keyframe.points.size();
     for (const MappedKeyframe::Point& point : keyframe.points) box.extend(point.p_W);
   }
+  for (const MapKeyframe& keyframe : map.keyframes)
+    for (const MapView& view : keyframe.views) ++keyframes[view.camera];
   nlohmann::ordered_json cameras = nlohmann::ordered_json::array();
   for (const auto& [name, width, height, focal] : map.cameras)
     cameras.push_back(

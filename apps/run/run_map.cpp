@@ -47,7 +47,8 @@ class RunMap : public RunObserver {
     if (!options_.load.empty())
       read_map_file(options_.load, [&](const std::string& bytes) {
         run.odometry.load_map(bytes);
-        for (const MapKeyframe& keyframe : saved_map_from_bytes(bytes).keyframes) made_by_.insert(keyframe.camera);
+        for (const MapKeyframe& keyframe : saved_map_from_bytes(bytes).keyframes)
+          for (const MapView& view : keyframe.views) made_by_.insert(view.camera);
         return 0;
       });
   }

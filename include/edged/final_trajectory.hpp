@@ -16,9 +16,10 @@ namespace edged {
 
 /// An observation of a map point in an image.
 struct MapMatch {
-  Timestamp keyframe;     ///< creation time of its keyframe, IMU clock
-  Eigen::Vector2d pixel;  ///< undistorted in an event frame, as recorded in a standard frame
-  Eigen::Vector3d p_W;    ///< position in the map [m]
+  Timestamp keyframe;       ///< creation time of its keyframe, IMU clock
+  Eigen::Vector2d pixel;    ///< undistorted in an event frame, as recorded in a standard frame
+  Eigen::Vector3d p_W;      ///< position in the map [m]
+  std::string camera = {};  ///< camera of the image
 };
 
 /// A keyframe of the map, and its map points.
@@ -30,7 +31,7 @@ struct MappedKeyframe {
   };
   Timestamp t;  ///< IMU clock
   SE3 T_W_B;
-  std::string camera;   ///< camera of its image
+  std::string camera;   ///< camera of its image; of several, separated by blanks
   int times_found = 0;  ///< number of later images with matches of its points
   Timestamp found_at;   ///< time of the last match; t without any
   std::vector<Point> points;

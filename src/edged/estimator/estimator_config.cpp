@@ -46,12 +46,14 @@ void CalibrationConfig::visit(ConfigFields& fields) {
               "Prior uncertainty of the first distortion coefficient of each camera; that of the second is as large at "
               "the rim of "
               "the image. 0 keeps the given values."});
-  fields.add("relative_rotation_sigma_deg", relative_rotation_sigma_deg,
-             {"deg", 0.001, 10, "Prior uncertainty of the rotation between a camera and the first one of its kind."});
-  fields.add("baseline_sigma_mm", baseline_sigma_mm,
-             {"mm", 0, 500,
-              "Prior uncertainty of the position of a camera relative to the first one of its kind. 0: neither "
-              "it nor the rotation between them is known beforehand."});
+  fields.add(
+      "relative_rotation_sigma_deg", relative_rotation_sigma_deg,
+      {"deg", 0.001, 10,
+       "Prior uncertainty of the rotation between a camera and the first one of its kind, and between the first event "
+       "camera and the first frame camera."});
+  fields.add(
+      "baseline_sigma_mm", baseline_sigma_mm,
+      {"mm", 0, 500, "The same of the position. 0: neither it nor the rotation between them is known beforehand."});
   fields.add("imu_sigma", imu_sigma,
              {"1", 0, 0.1,
               "Prior uncertainty of scale factors and axis misalignment of gyroscope and accelerometer. 0 keeps them "

@@ -90,8 +90,9 @@ void Window::free_calibration(const CalibrationConfig& config) {
         if (i != kTimeAt && sigmas[i] > 0.0) sigmas[i] = kFree;
     }
     add_soft_prior(prior_at({BlockKind::Calibration, camera}, of.calibration, sigmas));
-    const auto beside = std::ranges::find_if(
+    auto beside = std::ranges::find_if(
         cameras_, [&](const WindowCamera& other) { return other.given.modality == of.given.modality; });
+    if (&*beside == &of) beside = cameras_.begin();  // the first frame camera beside the first event camera
     if (const auto first = static_cast<std::size_t>(beside - cameras_.begin());
         first < camera && config.baseline_sigma_mm > 0.0 &&
         twin == cameras_.begin() + static_cast<std::ptrdiff_t>(camera))  // else the other one behind the lens has it

@@ -112,6 +112,21 @@ TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
   EXPECT_EQ(window.soft_priors().back()->blocks().front().kind, BlockKind::ImuIntrinsics);
 }
 
+TEST(Window, KnowsThePoseOfTheFirstFrameCameraToTheFirstEventCamera) {
+  Rig rig;
+  rig.cameras = {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()},
+                 {"frames", Modality::Frames, CameraModel(320, 240, 300, 300, 160, 120), SE3()}};
+  rig.cameras[1].T_B_C.translation().x() = 0.05;
+  Window window(rig, 1.0);
+  window.free_calibration({});
+  const auto pair =
+      std::ranges::find_if(window.soft_priors(), [](const auto& soft) { return soft->blocks().size() == 2; });
+  ASSERT_NE(pair, window.soft_priors().end());
+  const std::vector<BlockKey> both{{BlockKind::Calibration, 0}, {BlockKind::Calibration, 1}};
+  EXPECT_EQ((*pair)->blocks(), both);
+  EXPECT_EQ(window.soft_priors().size(), 4U);  // each camera, the pair, the IMU
+}
+
 TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
   Rig rig;
   rig.cameras = {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()}};

@@ -22,8 +22,10 @@ constexpr double kReturn_px = 0.5;
 }  // namespace
 
 void StereoConfig::visit(ConfigFields& fields) {
-  fields.add("enabled", enabled,
-             {.effect = "Match features between cameras of one kind whose views overlap: they share landmarks."});
+  fields.add(
+      "enabled", enabled,
+      {.effect = "Match features between cameras whose views overlap: they share landmarks. Not between events and "
+                 "frames of one lens."});
   fields.add("max_epipolar_px", max_epipolar_px,
              {.unit = "px", .min = 0.1, .max = 50, .effect = "A match may be this far from the epipolar line."});
 }

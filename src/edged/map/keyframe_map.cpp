@@ -44,10 +44,13 @@ std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_no
 }  // namespace
 
 MappedKeyframe mapped(const MapKeyframe& keyframe, const SE3& T_M_K) {
-  MappedKeyframe seen{keyframe.t, T_M_K, keyframe.camera, keyframe.times_found, keyframe.found_at, {}};
-  for (const MapPoint& point : keyframe.points) {
-    const Eigen::Vector3d p_K = keyframe.T_B_C * (point.point.homogeneous() / point.inverse_depth);
-    seen.points.push_back({T_M_K * p_K, point.patch.middle(), point.tried, point.found});
+  MappedKeyframe seen{keyframe.t, T_M_K, "", keyframe.times_found, keyframe.found_at, {}};
+  for (const MapView& view : keyframe.views) {
+    seen.camera += (seen.camera.empty() ? "" : " ") + view.camera;
+    for (const MapPoint& point : view.points) {
+      const Eigen::Vector3d p_K = view.T_B_C * (point.point.homogeneous() / point.inverse_depth);
+      seen.points.push_back({T_M_K * p_K, point.patch.middle(), point.tried, point.found});
+    }
   }
   return seen;
 }
@@ -55,20 +58,26 @@ MappedKeyframe mapped(const MapKeyframe& keyframe, const SE3& T_M_K) {
 bool KeyframeMap::gains_by(MapKeyframe& keyframe) const {
   const bool soon = !keyframes_.empty() && to_seconds(keyframe.t - keyframes_.back().t) < config_.min_interval_s;
   if (soon) return false;
-  std::erase_if(keyframe.points,
+  for (MapView& view : keyframe.views) keep_best(view.points);
+  std::erase_if(keyframe.views,
+                [&](const MapView& view) { return static_cast<int>(view.points.size()) < config_.min_points; });
+  return !keyframe.views.empty();
+}
+
+void KeyframeMap::keep_best(std::vector<MapPoint>& points) const {
+  std::erase_if(points,
                 [&](const MapPoint& point) { return !(point.sigma < config_.max_depth_error * point.inverse_depth); });
-  if (static_cast<int>(keyframe.points.size()) < config_.min_points) return false;
-  if (static_cast<int>(keyframe.points.size()) > config_.max_points) {
-    std::ranges::stable_sort(keyframe.points, {}, [](const MapPoint& p) { return p.sigma / p.inverse_depth; });
-    keyframe.points.resize(static_cast<std::size_t>(config_.max_points));
-  }
-  return true;
+  if (static_cast<int>(points.size()) <= config_.max_points) return;
+  std::ranges::stable_sort(points, {}, [](const MapPoint& p) { return p.sigma / p.inverse_depth; });
+  points.resize(static_cast<std::size_t>(config_.max_points));
 }
 
 void KeyframeMap::add(MapKeyframe keyframe) {
-  std::vector<double> inverse;
-  for (const MapPoint& point : keyframe.points) inverse.push_back(point.inverse_depth);
-  keyframe.scene_depth = 1.0 / median(std::move(inverse));
+  for (MapView& view : keyframe.views) {
+    std::vector<double> inverse;
+    for (const MapPoint& point : view.points) inverse.push_back(point.inverse_depth);
+    view.scene_depth = 1.0 / median(std::move(inverse));
+  }
   keyframes_.push_back(std::move(keyframe));
 }
 
@@ -95,20 +104,30 @@ void KeyframeMap::note(const Candidate& candidate, Timestamp t) {
   keyframe.found_at = t;
 }
 
-std::vector<std::size_t> KeyframeMap::near(const MapQuery& query, const SE3& T_M_C) const {
-  const double widest = std::cos(kWidest_deg * std::numbers::pi / 180.0);
-  std::vector<std::pair<double, std::size_t>> found;
+std::vector<KeyframeMap::Asked> KeyframeMap::asked(const MapQuery& query) const {
+  std::vector<Asked> views;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    const MapKeyframe& keyframe = keyframes_[k];
-    if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
-    const SE3 T_M_then = query.T_M_K[k] * keyframe.T_B_C;
-    const double distance = (T_M_then.translation() - T_M_C.translation()).norm() / keyframe.scene_depth;
+    if (!query.made.contains(keyframes_[k].t)) continue;
+    const auto view = std::ranges::find(keyframes_[k].views, query.camera, &MapView::camera);
+    if (view == keyframes_[k].views.end()) continue;
+    views.push_back({k, static_cast<std::size_t>(view - keyframes_[k].views.begin())});
+  }
+  return views;
+}
+
+std::vector<KeyframeMap::Asked> KeyframeMap::near(const MapQuery& query, const SE3& T_M_C) const {
+  const double widest = std::cos(kWidest_deg * std::numbers::pi / 180.0);
+  std::vector<std::pair<double, Asked>> found;
+  for (const Asked& each : asked(query)) {
+    const MapView& view = keyframes_[each.keyframe].views[each.view];
+    const SE3 T_M_then = query.T_M_K[each.keyframe] * view.T_B_C;
+    const double distance = (T_M_then.translation() - T_M_C.translation()).norm() / view.scene_depth;
     const double cosine = T_M_then.R().col(2).dot(T_M_C.R().col(2));
-    if (distance < kFarthest && cosine > widest) found.emplace_back(distance + 1.0 - cosine, k);
+    if (distance < kFarthest && cosine > widest) found.emplace_back(distance + 1.0 - cosine, each);
   }
   const auto most = std::min<std::ptrdiff_t>(config_.candidates, std::ssize(found));
-  std::ranges::stable_sort(found, {}, &std::pair<double, std::size_t>::first);
-  std::vector<std::size_t> nearest;
+  std::ranges::stable_sort(found, {}, &std::pair<double, Asked>::first);
+  std::vector<Asked> nearest;
   for (auto it = found.begin(); it != found.begin() + most; ++it) nearest.push_back(it->second);
   return nearest;
 }
@@ -118,10 +137,10 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
   const double widest = std::cos(config_.max_view_angle_deg * std::numbers::pi / 180.0);
   const SE3 T_C_M = T_M_C.inverse();
   std::vector<Candidate> found;
-  for (const std::size_t k : near(query, T_M_C)) {
-    MapKeyframe& keyframe = keyframes_[k];
-    const SE3 T_C_K = T_C_M * query.T_M_K[k] * keyframe.T_B_C;
-    for (MapPoint& point : keyframe.points) {
+  for (const Asked& each : near(query, T_M_C)) {
+    MapView& view = keyframes_[each.keyframe].views[each.view];
+    const SE3 T_C_K = T_C_M * query.T_M_K[each.keyframe] * view.T_B_C;
+    for (MapPoint& point : view.points) {
       if (point.tried >= kJudged && point.found < kMinFound * point.tried) continue;
       const Eigen::Vector3d p_K = point.point.homogeneous() / point.inverse_depth, p_C = T_C_K * p_K;
       const auto pixel = camera.project(p_C);
@@ -131,8 +150,8 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
       if (scale > config_.max_scale || scale < 1.0 / config_.max_scale || cosine < widest) continue;
       const auto A = patch_warp(point, T_C_K, camera, *pixel);
       if (!A) continue;
-      const Eigen::Vector3d depth_sigma_K = keyframe.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
-      found.push_back({.observation = {static_cast<std::uint32_t>(k), keyframe.T_B_C * p_K, depth_sigma_K},
+      const Eigen::Vector3d depth_sigma_K = view.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
+      found.push_back({.observation = {static_cast<std::uint32_t>(each.keyframe), view.T_B_C * p_K, depth_sigma_K},
                        .point = &point,
                        .pixel = *pixel,
                        .A = *A});
@@ -151,16 +170,14 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
 /// of an image stay in the cache and those of the map do not.
 std::vector<KeyframeMap::Alike> KeyframeMap::most_alike(const MapQuery& query,
                                                         std::span<const std::optional<Descriptor>> descriptors) const {
-  std::vector<Alike> alike(descriptors.size(), Alike{kAlike, 0, nullptr});
-  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    const MapKeyframe& keyframe = keyframes_[k];
-    if (!query.made.contains(keyframe.t) || keyframe.camera != query.camera) continue;
-    for (const MapPoint& point : keyframe.points) {
+  std::vector<Alike> alike(descriptors.size(), Alike{kAlike, {}, nullptr});
+  for (const Asked& each : asked(query)) {
+    for (const MapPoint& point : keyframes_[each.keyframe].views[each.view].points) {
       if (!point.descriptor) continue;
       for (std::size_t i = 0; i < descriptors.size(); ++i) {
         if (!descriptors[i]) continue;
         const int bits = distance(*descriptors[i], *point.descriptor);
-        if (bits < alike[i].bits) alike[i] = {bits, k, &point};
+        if (bits < alike[i].bits) alike[i] = {bits, each, &point};
       }
     }
   }
@@ -173,10 +190,11 @@ std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const
   const std::vector<Alike> alike = most_alike(query, descriptors);
   std::vector<PlaceMatch> matches;
   for (std::size_t i = 0; i < alike.size(); ++i) {
-    const auto& [bits, k, point] = alike[i];
+    const auto& [bits, of, point] = alike[i];
     if (point == nullptr) continue;
-    const Eigen::Vector3d p_K = keyframes_[k].T_B_C * (point->point.homogeneous() / point->inverse_depth);
-    matches.push_back({points[i], query.T_M_K[k] * p_K});
+    const SE3& T_B_C = keyframes_[of.keyframe].views[of.view].T_B_C;
+    const Eigen::Vector3d p_K = T_B_C * (point->point.homogeneous() / point->inverse_depth);
+    matches.push_back({points[i], query.T_M_K[of.keyframe] * p_K});
   }
   const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, kAgreement_px / focal);
   if (!pose || pose->agreeing < kFewestAgreeing ||

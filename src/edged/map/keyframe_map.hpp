@@ -33,14 +33,19 @@ struct MapPoint {
   int tried = 0, found = 0;                         ///< number of matches, in images whose matches agreed
 };
 
-struct MapKeyframe {
-  Timestamp t, found_at;  ///< time of creation, and of the last match of its points
-  std::string camera;     ///< camera of its image: in others the same place has another appearance
+/// The image of one camera.
+struct MapView {
+  std::string camera;  ///< its points are matched in images of this one: in others they have another appearance
   SE3 T_B_C;
   std::vector<MapPoint> points;
-  std::size_t number = 0;    ///< in TrajectorySmoother
   double scene_depth = 0.0;  ///< median of its points [m]; computed by KeyframeMap
-  int times_found = 0;       ///< number of images with matches of its points
+};
+
+struct MapKeyframe {
+  Timestamp t, found_at;       ///< time of creation, and of the last match of its points
+  std::vector<MapView> views;  ///< at most one per camera
+  std::size_t number = 0;      ///< in TrajectorySmoother
+  int times_found = 0;         ///< number of instants with matches of its points
 };
 
 /// The view of the map for its users.
@@ -54,7 +59,7 @@ struct Period {
 
 /// A query of the map.
 struct MapQuery {
-  std::string_view camera;     ///< keyframes of this camera only
+  std::string_view camera;     ///< views of this camera only
   Period made;                 ///< keyframes of this time only
   std::span<const SE3> T_M_K;  ///< pose of the body at each keyframe of the map, in their order
 };
@@ -75,7 +80,7 @@ class KeyframeMap {
 
   /// Whether a keyframe is worth keeping if the map already covers that share of its view.
   bool wants(double covered) const { return covered <= config_.max_covered; }
-  /// Whether the keyframe is worth keeping. Removes points that are not.
+  /// Whether the keyframe is worth keeping. Removes points and views that are not.
   bool gains_by(MapKeyframe& keyframe) const;
   void add(MapKeyframe keyframe);
   /// The keyframe to remove next, if there are too many: of those of that time, except the newest, the one not matched
@@ -98,13 +103,19 @@ class KeyframeMap {
   const std::vector<MapKeyframe>& keyframes() const { return keyframes_; }
 
  private:
+  /// A view of a keyframe, by its indices.
+  struct Asked {
+    std::size_t keyframe = 0, view = 0;
+  };
   struct Alike {
     int bits;  ///< that differ
-    std::size_t keyframe;
+    Asked of;
     const MapPoint* point;  ///< null: no similar one
   };
   std::vector<Alike> most_alike(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const;
-  std::vector<std::size_t> near(const MapQuery& query, const SE3& T_M_C) const;
+  std::vector<Asked> asked(const MapQuery& query) const;
+  std::vector<Asked> near(const MapQuery& query, const SE3& T_M_C) const;
+  void keep_best(std::vector<MapPoint>& points) const;
 
   KeyframeMapConfig config_;
   std::vector<MapKeyframe> keyframes_;

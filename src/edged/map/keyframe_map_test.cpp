@@ -22,8 +22,8 @@ MapQuery asked(double before_s, std::string_view camera = kName) {
 }
 
 /// A wall 2 m ahead, its points 20 px apart.
-MapKeyframe keyframe(double t_s, double depth_sigma = 0.01) {
-  MapKeyframe made{at(t_s), at(t_s), kName, SE3(), {}};
+MapView view_of_wall(const std::string& camera, const SE3& T_B_C = SE3(), double depth_sigma = 0.01) {
+  MapView made{camera, T_B_C, {}};
   for (int x = 20; x < 230; x += 20) {
     for (int y = 20; y < 170; y += 20) {
       MapPoint point;
@@ -37,12 +37,16 @@ MapKeyframe keyframe(double t_s, double depth_sigma = 0.01) {
   return made;
 }
 
+MapKeyframe keyframe(double t_s, double depth_sigma = 0.01) {
+  return {at(t_s), at(t_s), {view_of_wall(kName, SE3(), depth_sigma)}};
+}
+
 TEST(KeyframeMap, KeepsOnlyWhatItGainsBy) {
   const KeyframeMap map({});
   MapKeyframe good = keyframe(5.0), vague = keyframe(5.0, 0.3);
   EXPECT_TRUE(map.wants(0.2));
   EXPECT_TRUE(map.gains_by(good));
-  EXPECT_EQ(good.points.size(), 60U) << "the best-placed";
+  EXPECT_EQ(good.views.front().points.size(), 60U) << "the best-placed";
   EXPECT_FALSE(map.wants(0.8));
   EXPECT_TRUE(map.wants(0.0));
   EXPECT_FALSE(map.gains_by(vague));
@@ -83,6 +87,31 @@ TEST(KeyframeMap, ExpectsNothingFromAfarFromAsideOrOfTheNewest) {
   EXPECT_EQ(count(SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -3.5}), 10.0), 0U) << "too small";
   EXPECT_EQ(count(SE3(so3::exp({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()), 10.0), 0U) << "behind";
   EXPECT_EQ(count(SE3(so3::exp({0.0, -0.9, 0.0}), {2.2, 0.0, 0.6}), 10.0), 0U) << "from aside";
+}
+
+TEST(KeyframeMap, ExpectsInEachCameraTheViewsOfThatCamera) {
+  const SE3 T_B_rear(so3::exp({0.0, M_PI, 0.0}), {0.0, 0.0, -0.2});
+  KeyframeMap map({});
+  map.add({at(5.0), at(5.0), {view_of_wall(kName), view_of_wall("rear", T_B_rear)}});
+  ASSERT_FALSE(map.visible(asked(10.0), SE3(), kCamera, 40).empty());
+  EXPECT_TRUE(map.visible(asked(10.0, "rear"), SE3(), kCamera, 40).empty()) << "it points away from that wall";
+  const std::vector<Candidate> behind = map.visible(asked(10.0, "rear"), T_B_rear, kCamera, 40);
+  ASSERT_FALSE(behind.empty());
+  for (const Candidate& c : behind) {
+    EXPECT_NEAR(c.observation.p_K.z(), -2.2, 1e-9) << "in the body";
+    EXPECT_LT((c.pixel - *kCamera.project(T_B_rear.inverse() * c.observation.p_K)).norm(), 1e-9);
+  }
+  const MappedKeyframe seen = mapped(map.keyframes().front(), SE3());
+  EXPECT_EQ(seen.camera, "frames rear");
+  EXPECT_EQ(seen.points.size(), 2 * view_of_wall(kName).points.size());
+}
+
+TEST(KeyframeMap, KeepsOfSeveralViewsThoseWithEnoughPoints) {
+  const KeyframeMap map({});
+  MapKeyframe made{at(5.0), at(5.0), {view_of_wall("left", SE3(), 0.3), view_of_wall("right")}};
+  ASSERT_TRUE(map.gains_by(made));
+  ASSERT_EQ(made.views.size(), 1U);
+  EXPECT_EQ(made.views.front().camera, "right");
 }
 
 TEST(KeyframeMap, GivesUpPointsThatAreNeverFound) {

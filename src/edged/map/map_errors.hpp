@@ -24,11 +24,16 @@ struct MapObservationOf {
   Vector3 depth_sigma_K = Vector3::Zero();  ///< change of p_K with one sigma of its depth
   Vector2 seen = Vector2::Zero();           ///< on the unit plane of the camera
   Scalar sigma = 0;                         ///< of seen, each coordinate
+  std::uint32_t camera = 0;                 ///< of its image: index of T_B_C
 
   template <typename Other>
   MapObservationOf<Other> cast() const {
-    return {keyframe, p_K.template cast<Other>(), depth_sigma_K.template cast<Other>(), seen.template cast<Other>(),
-            static_cast<Other>(sigma)};
+    return {keyframe,
+            p_K.template cast<Other>(),
+            depth_sigma_K.template cast<Other>(),
+            seen.template cast<Other>(),
+            static_cast<Other>(sigma),
+            camera};
   }
 };
 using MapObservation = MapObservationOf<double>;

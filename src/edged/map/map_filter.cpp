@@ -138,13 +138,13 @@ double MapFilter::misfit(std::span<const MapObservation> observations, std::span
 }
 
 std::optional<SE3> MapFilter::update(std::span<const MapObservation> observations, std::size_t expected,
-                                     const SE3& T_B_C) {
+                                     const std::vector<SE3>& T_B_C) {
   if (static_cast<int>(observations.size()) < config_.min_observations ||
       static_cast<double>(observations.size()) < config_.min_found_share * static_cast<double>(expected))
     return std::nullopt;
   std::vector<LinearizedObservation> rows;
   for (const MapObservation& observation : observations) {
-    std::optional<LinearizedObservation> row = linearise(observation, T_B_C);
+    std::optional<LinearizedObservation> row = linearise(observation, T_B_C[observation.camera]);
     if (!row) return std::nullopt;
     rows.push_back(*row);
   }

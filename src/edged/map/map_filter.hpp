@@ -34,9 +34,10 @@ class MapFilter {
   void load(std::vector<SE3> T_M_K, const Eigen::MatrixXd& covariance);
   /// The order of the other keyframes stays.
   void remove_keyframe(std::size_t keyframe);
-  /// Updates all poses with the observations; expected: how many points were searched for. Returns the corrected T_M_O;
-  /// nothing if they do not agree, without any change.
-  std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected, const SE3& T_B_C);
+  /// Updates all poses with the observations; expected: how many points were searched for; T_B_C: one per image.
+  /// Returns the corrected T_M_O; nothing if they do not agree, without any change.
+  std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected,
+                            const std::vector<SE3>& T_B_C);
 
   const SE3& T_M_B() const { return T_M_B_; }
   const std::vector<SE3>& keyframes() const { return T_M_K_; }

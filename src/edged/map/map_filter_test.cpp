@@ -98,7 +98,7 @@ Walk walk(std::uint64_t seed) {
       continue;
     }
     const std::vector<MapObservation> observations = world.observations(keyframes, nth / 4 % keyframes.size(), t);
-    T_M_O = filter.update(observations, observations.size(), world.T_B_C).value_or(T_M_O);
+    T_M_O = filter.update(observations, observations.size(), {world.T_B_C}).value_or(T_M_O);
     Eigen::Matrix<double, 6, 1> error;
     error << T_M_B.translation() - filter.T_M_B().translation(),
         so3::log((filter.T_M_B().inverse() * T_M_B).rotation());
@@ -149,34 +149,34 @@ class OneKeyframe : public testing::Test {
 
 TEST_F(OneKeyframe, PullsTheBodyBack) {
   const double before = error();
-  ASSERT_TRUE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  ASSERT_TRUE(filter_.update(sights_, sights_.size(), {world_.T_B_C}));
   EXPECT_LT(error(), 0.6 * before);
 }
 
 TEST_F(OneKeyframe, ChangesNothingWhereTooFewOrTooSmallAShareIsFound) {
   const SE3 before = filter_.T_M_B();
-  EXPECT_FALSE(filter_.update(std::span(sights_).first(5), 5, world_.T_B_C));
-  EXPECT_FALSE(filter_.update(sights_, 3 * sights_.size(), world_.T_B_C));
+  EXPECT_FALSE(filter_.update(std::span(sights_).first(5), 5, {world_.T_B_C}));
+  EXPECT_FALSE(filter_.update(sights_, 3 * sights_.size(), {world_.T_B_C}));
   EXPECT_EQ(before.translation(), filter_.T_M_B().translation());
 }
 
 TEST_F(OneKeyframe, ChangesNothingWhereTheSightsAgreeOnNoPose) {
   const SE3 before = filter_.T_M_B();
   for (MapObservation& observation : sights_) observation.seen += 8.0 * kPixel * world_.normal().head<2>();
-  EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  EXPECT_FALSE(filter_.update(sights_, sights_.size(), {world_.T_B_C}));
   EXPECT_EQ(before.translation(), filter_.T_M_B().translation());
 }
 
 TEST_F(OneKeyframe, IsHardlyMovedByAFewThatAreWrong) {
   for (std::size_t i = 0; i < sights_.size(); i += 5) sights_[i].seen.x() += 12.0 * kPixel;
   const double before = error();
-  ASSERT_TRUE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  ASSERT_TRUE(filter_.update(sights_, sights_.size(), {world_.T_B_C}));
   EXPECT_LT(error(), 0.6 * before);
 }
 
 TEST_F(OneKeyframe, NeverTakesAPointThatLiesBehind) {
   sights_[0].p_K = Eigen::Vector3d(-5.0, 0.0, 0.0);
-  EXPECT_FALSE(filter_.update(sights_, sights_.size(), world_.T_B_C));
+  EXPECT_FALSE(filter_.update(sights_, sights_.size(), {world_.T_B_C}));
 }
 
 /// The predicted error of an observation follows from the Jacobians of both poses: once with an exact keyframe, once
@@ -199,7 +199,30 @@ TEST_F(OneKeyframe, ForgetsAKeyframeAndKeepsTheOthers) {
   ASSERT_EQ(filter_.keyframes().size(), 1U);
   EXPECT_EQ(filter_.keyframes()[0].translation(), kept.translation());
   const std::vector<MapObservation> observations = world_.observations({World::truth(4.0)}, 0, 4.0, 0.0);
-  EXPECT_TRUE(filter_.update(observations, observations.size(), world_.T_B_C));
+  EXPECT_TRUE(filter_.update(observations, observations.size(), {world_.T_B_C}));
+}
+
+/// A camera that points backwards adds what the first cannot separate: movement to the side and rotation.
+TEST(MapFilter, TakesEachObservationByTheCameraOfItsImage) {
+  const SE3 front = World(1).T_B_C, rear = SE3(so3::exp({0.0, 0.0, M_PI}), Eigen::Vector3d::Zero()) * front;
+  const SE3 T_M_B(so3::exp({0.0, 0.0, 0.02}), {0.0, 0.05, 0.0});
+  const auto error_with = [&](bool both) {
+    MapFilter filter(config_of_world());
+    filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
+    filter.add_keyframe(SE3(), SE3(), Timestamp{});
+    filter.restart(SE3(), SE3(), Timestamp{}, 0.1, 0.05);
+    std::vector<MapObservation> observations;
+    for (int i = 0; i < (both ? 24 : 12); ++i) {
+      const std::uint32_t camera = i % (both ? 2 : 1);
+      const Eigen::Vector3d p_M((camera == 0 ? 3.0 : -3.0), 0.2 * (i % 5) - 0.4, 0.2 * (i % 3) - 0.2);
+      const Eigen::Vector3d p_C = (T_M_B * (camera == 0 ? front : rear)).inverse() * p_M;
+      observations.push_back({0, p_M, Eigen::Vector3d::Zero(), p_C.hnormalized(), 0.002, camera});
+    }
+    EXPECT_TRUE(filter.update(observations, observations.size(), {front, rear}));
+    return (filter.T_M_B().translation() - T_M_B.translation()).norm();
+  };
+  EXPECT_LT(error_with(true), 0.002);
+  EXPECT_LT(error_with(true), 0.2 * error_with(false));
 }
 
 TEST(MapFilter, IsLessSureOfAnOdometryThatDriftsMore) {

@@ -26,25 +26,34 @@ struct Hypothesis {
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
 };
 
+/// The pose of the body in A, by the descriptors of one view of a keyframe of B.
+std::optional<SE3> recognised_body(const KeyframeMap& places, const SavedMap& map, const MapView& view,
+                                   const SE3& T_B_K) {
+  const double focal = focal_of(map, view.camera);
+  if (focal <= 0.0) return std::nullopt;
+  std::vector<std::optional<Descriptor>> descriptors;
+  std::vector<Eigen::Vector2d> points;
+  for (const MapPoint& point : view.points) {
+    descriptors.push_back(point.descriptor);
+    points.push_back(point.point);
+  }
+  const std::optional<SE3> T_A_C =
+      places.recognise({view.camera, {}, map.T_M_K}, descriptors, points, (T_B_K * view.T_B_C).rotation(), focal);
+  return T_A_C ? std::optional(*T_A_C * view.T_B_C.inverse()) : std::nullopt;
+}
+
 std::vector<Hypothesis> hypotheses_of(const SavedMap& map, const SavedMap& other) {
   KeyframeMapConfig config;
   KeyframeMap places(config);
   for (const MapKeyframe& keyframe : map.keyframes) places.add(keyframe);
   std::vector<Hypothesis> hypotheses;
   for (std::size_t k = 0; k < other.keyframes.size(); ++k) {
-    const MapKeyframe& keyframe = other.keyframes[k];
-    const double focal = focal_of(map, keyframe.camera);
-    if (focal <= 0.0) continue;
-    std::vector<std::optional<Descriptor>> descriptors;
-    std::vector<Eigen::Vector2d> points;
-    for (const MapPoint& point : keyframe.points) {
-      descriptors.push_back(point.descriptor);
-      points.push_back(point.point);
+    for (const MapView& view : other.keyframes[k].views) {
+      const std::optional<SE3> T_A_K = recognised_body(places, map, view, other.T_M_K[k]);
+      if (!T_A_K) continue;
+      hypotheses.push_back({*T_A_K, other.T_M_K[k]});
+      break;  // two views of a keyframe are not independent
     }
-    const SE3 T_B_C = other.T_M_K[k] * keyframe.T_B_C;
-    const std::optional<SE3> T_A_C =
-        places.recognise({keyframe.camera, {}, map.T_M_K}, descriptors, points, T_B_C.rotation(), focal);
-    if (T_A_C) hypotheses.push_back({*T_A_C * keyframe.T_B_C.inverse(), other.T_M_K[k]});
   }
   return hypotheses;
 }

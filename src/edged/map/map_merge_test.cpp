@@ -30,14 +30,14 @@ struct Wall {
     map.cameras = {{"frames", 240, 180, 200.0}};
     for (std::size_t k = 0; k < T_A_K.size(); ++k) {
       const Timestamp t = Timestamp() + std::chrono::seconds(k);
-      MapKeyframe keyframe{t, t, "frames", T_K_C, {}};
+      MapView view{"frames", T_K_C, {}};
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d p_C = (T_A_K[k] * T_K_C).inverse() * points[i];
         if (p_C.z() < 0.5 || p_C.hnormalized().norm() > 0.8) continue;
-        keyframe.points.push_back(
+        view.points.push_back(
             {0, p_C.hnormalized(), 1.0 / p_C.z(), 0.01 / p_C.z(), {}, looks[i], Eigen::Vector2d::Zero(), 0, 0});
       }
-      map.keyframes.push_back(keyframe);
+      map.keyframes.push_back({t, t, {view}});
       map.T_M_K.push_back(T_A_B.inverse() * T_A_K[k]);
     }
     map.covariance = 1e-6 * Eigen::MatrixXd::Identity(6 * std::ssize(T_A_K), 6 * std::ssize(T_A_K));

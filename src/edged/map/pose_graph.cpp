@@ -80,8 +80,9 @@ void PoseGraph::add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const M
   steps_.push_back({a, b, T_A_B, covariance.inverse()});
 }
 
-void PoseGraph::add_observations(std::size_t body, const SE3& T_B_C, std::span<const MapObservation> observations) {
-  views_.push_back({body, T_B_C, {observations.begin(), observations.end()}});
+void PoseGraph::add_observations(std::size_t body, std::vector<SE3> T_B_C,
+                                 std::span<const MapObservation> observations) {
+  views_.push_back({body, std::move(T_B_C), {observations.begin(), observations.end()}});
 }
 
 void PoseGraph::take(const Step& step, Equations& equations) const {
@@ -96,7 +97,8 @@ void PoseGraph::take(const Step& step, Equations& equations) const {
 
 void PoseGraph::take(const View& view, bool trusting, Equations& equations) const {
   for (const MapObservation& observation : view.observations) {
-    const auto row = linearised(observation, T_M_B_[view.body], T_M_B_[observation.keyframe], view.T_B_C);
+    const auto row =
+        linearised(observation, T_M_B_[view.body], T_M_B_[observation.keyframe], view.T_B_C[observation.camera]);
     if (!row) continue;
     const Eigen::Matrix2d information = row->R.inverse();
     const double far = trusting ? 0.0 : row->r.dot(information * row->r) / (kFarSigmas * kFarSigmas);

@@ -22,8 +22,8 @@ class PoseGraph {
   std::size_t add_known_pose(const SE3& T_M_B);
   /// A relative pose T_A_B; the covariance is that of B's error.
   void add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const Matrix6d& covariance);
-  /// Map matches in the image at a pose, with keyframes by their numbers.
-  void add_observations(std::size_t body, const SE3& T_B_C, std::span<const MapObservation> observations);
+  /// Map matches in the images at a pose, with keyframes by their numbers; T_B_C: one per image.
+  void add_observations(std::size_t body, std::vector<SE3> T_B_C, std::span<const MapObservation> observations);
   /// Gauss-Newton; observations with a Cauchy loss, except in the first steps.
   /// Deterministic.
   void solve();
@@ -38,7 +38,7 @@ class PoseGraph {
   };
   struct View {
     std::size_t body;
-    SE3 T_B_C;
+    std::vector<SE3> T_B_C;
     std::vector<MapObservation> observations;
   };
   static constexpr Eigen::Index kKnown = -1;

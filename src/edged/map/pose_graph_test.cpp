@@ -56,7 +56,7 @@ TEST(PoseGraph, StraightensALoopWhoseDriftIsKnown) {
   Chain chain;
   const double off = distance(chain.graph.poses().back(), chain.truth.back());
   ASSERT_GT(off, 0.1);
-  chain.graph.add_observations(kPoses - 1, SE3(), observations_from_last(chain));
+  chain.graph.add_observations(kPoses - 1, {SE3()}, observations_from_last(chain));
   chain.graph.solve();
   EXPECT_LT(distance(chain.graph.poses().front(), SE3()), 1e-12) << "the first one stays";
   EXPECT_LT(distance(chain.graph.poses().back(), chain.truth.back()), 0.05 * off);
@@ -67,9 +67,9 @@ TEST(PoseGraph, StraightensALoopWhoseDriftIsKnown) {
 TEST(PoseGraph, IsHardlyMovedByAPointThatIsWrong) {
   Chain right, wrong;
   std::vector<MapObservation> observations = observations_from_last(right);
-  right.graph.add_observations(kPoses - 1, SE3(), observations);
+  right.graph.add_observations(kPoses - 1, {SE3()}, observations);
   observations[3].seen.x() += 0.02;
-  wrong.graph.add_observations(kPoses - 1, SE3(), observations);
+  wrong.graph.add_observations(kPoses - 1, {SE3()}, observations);
   right.graph.solve();
   wrong.graph.solve();
   EXPECT_LT(distance(right.graph.poses().back(), wrong.graph.poses().back()), 0.002);
@@ -78,7 +78,7 @@ TEST(PoseGraph, IsHardlyMovedByAPointThatIsWrong) {
 TEST(PoseGraph, IgnoresAPointThatLiesBehind) {
   Chain chain;
   const std::vector<SE3> before = chain.graph.poses();
-  chain.graph.add_observations(kPoses - 1, SE3(),
+  chain.graph.add_observations(kPoses - 1, {SE3()},
                                std::vector<MapObservation>{{0, {0, 0, -9}, {0, 0, 0}, {0, 0}, 0.001}});
   chain.graph.solve();
   EXPECT_LT(distance(before.back(), chain.graph.poses().back()), 1e-12);

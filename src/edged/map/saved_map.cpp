@@ -18,7 +18,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "maps are written and read as they lie in memory");
 
 constexpr std::string_view kMagic = "edged map\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kOneView = 1;  // the version whose keyframes have one view each
 constexpr std::size_t kMostCameras = 16, kMostKeyframes = 10'000, kMostPoints = 10'000, kLongestName = 200;
 constexpr double kSameFocal = 0.02;  // share: difference of two calibrations of one lens
 constexpr Duration kBefore = std::chrono::seconds(1), kOldest = std::chrono::hours(24 * 365 * 100);
@@ -49,11 +50,12 @@ class Writer {
   void expect(std::size_t /*bytes*/) {}
 
   std::string bytes;
+  static constexpr std::uint32_t version = kVersion;
 };
 
 class Reader {
  public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  explicit Reader(std::string_view bytes, std::uint32_t its_version = kVersion) : version(its_version), bytes_(bytes) {}
 
   void operator()(Plain auto& x) {
     expect(sizeof(x));
@@ -73,6 +75,8 @@ class Reader {
     if (bytes > bytes_.size()) refuse("it is truncated");
   }
   bool at_end() const { return bytes_.empty(); }
+
+  const std::uint32_t version;
 
  private:
   std::string_view bytes_;
@@ -115,13 +119,22 @@ void fields_of(auto& archive, MapPoint& point) {
   archive(point.found);
 }
 
+void fields_of(auto& archive, MapView& view) {
+  fields_of(archive, view.camera);
+  fields_of(archive, view.T_B_C);
+  archive.size(view.points, kMostPoints);
+  for (MapPoint& point : view.points) fields_of(archive, point);
+}
+
 void fields_of(auto& archive, MapKeyframe& keyframe) {
   fields_of(archive, keyframe.t);
   fields_of(archive, keyframe.found_at);
-  fields_of(archive, keyframe.camera);
-  fields_of(archive, keyframe.T_B_C);
-  archive.size(keyframe.points, kMostPoints);
-  for (MapPoint& point : keyframe.points) fields_of(archive, point);
+  if (archive.version == kOneView) {
+    keyframe.views.resize(1);
+  } else {
+    archive.size(keyframe.views, kMostCameras);
+  }
+  for (MapView& view : keyframe.views) fields_of(archive, view);
 }
 
 void fields_of(auto& archive, SavedMap& map) {
@@ -147,10 +160,13 @@ void fields_of(auto& archive, SavedMap& map) {
 void check_values(const SavedMap& map) {
   const auto past = [](Timestamp t) { return t < Timestamp() && t > Timestamp() - kOldest; };
   const auto unit = [](const SE3& T) { return std::abs(T.rotation().norm() - 1.0) < 1e-6; };
+  const auto sound = [](const MapPoint& p) { return p.inverse_depth > 0.0 && p.sigma >= 0.0 && p.tried >= p.found; };
+  const auto usable = [&](const MapView& view) {
+    return !view.points.empty() && std::ranges::all_of(view.points, sound) && unit(view.T_B_C);
+  };
   for (const MapKeyframe& keyframe : map.keyframes) {
-    const auto sound = [](const MapPoint& p) { return p.inverse_depth > 0.0 && p.sigma >= 0.0 && p.tried >= p.found; };
-    if (keyframe.points.empty() || !std::ranges::all_of(keyframe.points, sound) || !unit(keyframe.T_B_C) ||
-        !past(keyframe.t) || !past(keyframe.found_at))
+    if (keyframe.views.empty() || !std::ranges::all_of(keyframe.views, usable) || !past(keyframe.t) ||
+        !past(keyframe.found_at))
       refuse("a keyframe in it is invalid");
   }
   if (!std::ranges::all_of(map.T_M_K, unit) || (map.covariance.diagonal().array() < 0.0).any())
@@ -208,11 +224,12 @@ SavedMap saved_map_from_bytes(std::string_view bytes) {
   std::uint32_t version = 0;
   std::uint64_t sum = 0;
   head(version);
-  if (version != kVersion) throw InputError::format("a map of version {}, this program reads {}", version, kVersion);
+  if (version != kVersion && version != kOneView)
+    throw InputError::format("a map of version {}, this program reads {} and {}", version, kOneView, kVersion);
   head(sum);
   const std::string_view body = bytes.substr(kMagic.size() + sizeof(version) + sizeof(sum));
   if (checksum(body) != sum) refuse("it has been damaged or cut off");
-  Reader reader(body);
+  Reader reader(body, version);
   SavedMap map;
   fields_of(reader, map);
   if (!reader.at_end()) refuse("it has extra bytes at its end");

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "edged/core/check.hpp"
@@ -15,15 +16,17 @@ namespace {
 
 using std::chrono::seconds;
 
+MapView second_view(MapView view) {
+  view.camera = "frames2";
+  view.points.pop_back();
+  return view;
+}
+
 SavedMap some_map() {
   SavedMap map;
   map.cameras = {{"frames", 240, 180, 200.0}, {"events", 240, 180, 205.0}};
   for (int k = 0; k < 3; ++k) {
-    MapKeyframe keyframe{Timestamp() + seconds(10 + k),
-                         Timestamp() + seconds(40 - k),
-                         k == 1 ? "events" : "frames",
-                         SE3(so3::exp({0.1, 0.2, 0.3 * k}), {0.01, 0.02, 0.03}),
-                         {}};
+    MapView view{k == 1 ? "events" : "frames", SE3(so3::exp({0.1, 0.2, 0.3 * k}), {0.01, 0.02, 0.03}), {}};
     for (int i = 0; i < 4; ++i) {
       MapPoint point;
       point.point = {0.1 * i, -0.2 * k};
@@ -33,9 +36,10 @@ SavedMap some_map() {
       if (i != 2) point.descriptor = Descriptor{1U + static_cast<unsigned>(i), 2, 3, ~std::uint64_t{0}};
       point.pixel = {100.0 + i, 50.0};
       point.tried = 7, point.found = 5;
-      keyframe.points.push_back(point);
+      view.points.push_back(point);
     }
-    map.keyframes.push_back(keyframe);
+    map.keyframes.push_back({Timestamp() + seconds(10 + k), Timestamp() + seconds(40 - k), {view}});
+    if (k == 2) map.keyframes.back().views.push_back(second_view(view));
     map.T_M_K.emplace_back(so3::exp({0.0, 0.1 * k, 0.5}), Eigen::Vector3d(k, 2.0, -1.0));
   }
   const Eigen::MatrixXd root = Eigen::MatrixXd::Random(18, 18);
@@ -47,6 +51,30 @@ Rig rig_with(const std::string& name, double focal) {
   Rig rig;
   rig.cameras.push_back({name, Modality::Frames, CameraModel(240, 180, focal, focal, 120, 90), SE3(), Duration(0)});
   return rig;
+}
+
+void expect_equal(const MapView& a, const MapView& b) {
+  EXPECT_EQ(a.camera, b.camera);
+  EXPECT_EQ(a.T_B_C.matrix(), b.T_B_C.matrix());
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    EXPECT_EQ(a.points[i].point, b.points[i].point);
+    EXPECT_EQ(a.points[i].patch.pixels, b.points[i].patch.pixels);
+    EXPECT_EQ(a.points[i].descriptor, b.points[i].descriptor);
+    EXPECT_EQ(a.points[i].found, b.points[i].found);
+  }
+}
+
+/// As version 1 has it, whose keyframes have one view each and no number of views. Of a map without cameras and with
+/// one keyframe.
+std::string as_version_1(std::string bytes) {
+  constexpr std::size_t kVersionAt = 10, kSumAt = 14, kBodyAt = 22;
+  bytes.erase(kBodyAt + 8 + 16, 4);  // after the numbers of cameras and of keyframes, and two times
+  bytes[kVersionAt] = 1;
+  std::uint64_t sum = 0xcbf29ce484222325U;
+  for (const char c : bytes.substr(kBodyAt)) sum = (sum ^ static_cast<std::uint8_t>(c)) * 0x100000001b3U;
+  std::memcpy(bytes.data() + kSumAt, &sum, sizeof(sum));
+  return bytes;
 }
 
 std::string refusal(std::string_view bytes) {
@@ -65,15 +93,9 @@ TEST(SavedMap, ComesBackAsItWas) {
   EXPECT_EQ(back.covariance, map.covariance.selfadjointView<Eigen::Lower>().toDenseMatrix());
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const MapKeyframe &a = map.keyframes[k], &b = back.keyframes[k];
-    EXPECT_EQ(a.camera, b.camera);
     EXPECT_EQ(map.T_M_K[k].matrix(), back.T_M_K[k].matrix());
-    EXPECT_EQ(a.T_B_C.matrix(), b.T_B_C.matrix());
-    for (std::size_t i = 0; i < a.points.size(); ++i) {
-      EXPECT_EQ(a.points[i].point, b.points[i].point);
-      EXPECT_EQ(a.points[i].patch.pixels, b.points[i].patch.pixels);
-      EXPECT_EQ(a.points[i].descriptor, b.points[i].descriptor);
-      EXPECT_EQ(a.points[i].found, b.points[i].found);
-    }
+    ASSERT_EQ(a.views.size(), b.views.size());
+    for (std::size_t v = 0; v < a.views.size(); ++v) expect_equal(a.views[v], b.views[v]);
   }
   EXPECT_EQ(to_bytes(back), to_bytes(map));
 }
@@ -96,13 +118,25 @@ TEST(SavedMap, DamagedOnesAreRefused) {
     EXPECT_NE(refusal(bad), "") << i;
   }
   std::string later = good;
-  later[10] = 2;
-  EXPECT_EQ(refusal(later), "a map of version 2, this program reads 1");
+  later[10] = 3;
+  EXPECT_EQ(refusal(later), "a map of version 3, this program reads 1 and 2");
+}
+
+TEST(SavedMap, OfVersion1IsRead) {
+  SavedMap map = some_map();
+  map.cameras.clear();
+  map.keyframes.resize(1), map.T_M_K.resize(1);
+  map.covariance.conservativeResize(6, 6);
+  const SavedMap back = saved_map_from_bytes(as_version_1(to_bytes(map)));
+  ASSERT_EQ(back.keyframes.size(), 1U);
+  ASSERT_EQ(back.keyframes[0].views.size(), 1U);
+  expect_equal(back.keyframes[0].views[0], map.keyframes[0].views[0]);
+  EXPECT_EQ(to_bytes(back), to_bytes(map));
 }
 
 TEST(SavedMap, WhatMakesNoSenseIsRefused) {
   SavedMap map = some_map();
-  map.keyframes[1].points[0].inverse_depth = -1.0;
+  map.keyframes[1].views[0].points[0].inverse_depth = -1.0;
   EXPECT_NE(refusal(to_bytes(map)), "");
   map = some_map();
   map.T_M_K[0].translation().x() = std::numeric_limits<double>::quiet_NaN();

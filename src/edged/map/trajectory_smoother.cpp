@@ -156,9 +156,9 @@ std::size_t TrajectorySmoother::add_keyframe(const StampedPose& T_O_K) {
   return keyframes_++;
 }
 
-void TrajectorySmoother::add_observations(const StampedPose& T_O_B, const SE3& T_B_C,
+void TrajectorySmoother::add_observations(const StampedPose& T_O_B, std::vector<SE3> T_B_C,
                                           std::span<const MapObservation> observations) {
-  View view{T_O_B, T_B_C, std::ranges::min(observations, {}, &MapObservation::sigma).sigma, {}};
+  View view{T_O_B, std::move(T_B_C), std::ranges::min(observations, {}, &MapObservation::sigma).sigma, {}};
   for (MapObservation observation : observations) {
     observation.sigma /= view.sigma;
     view.observations.push_back(observation.cast<float>());

@@ -35,8 +35,8 @@ class TrajectorySmoother {
   void refine(const StampedPose& T_O_K);
   /// The map keeps that keyframe. Returns its number, which observations refer to.
   std::size_t add_keyframe(const StampedPose& T_O_K);
-  /// Map matches in an image, after the correction of OdomToMap by them.
-  void add_observations(const StampedPose& T_O_B, const SE3& T_B_C, std::span<const MapObservation> observations);
+  /// Map matches in the images of an instant, after the correction of OdomToMap by them; T_B_C: one per image.
+  void add_observations(const StampedPose& T_O_B, std::vector<SE3> T_B_C, std::span<const MapObservation> observations);
 
   struct Path {
     Trajectory poses;            ///< T_M_B of all that were added
@@ -48,7 +48,7 @@ class TrajectorySmoother {
  private:
   struct View {
     StampedPose T_O_B;
-    SE3 T_B_C;
+    std::vector<SE3> T_B_C;
     double sigma;                                       ///< the smallest
     std::vector<MapObservationOf<float>> observations;  ///< their sigmas as multiples of that one
   };

@@ -51,7 +51,7 @@ class FlightRecordTest : public testing::Test {
         observations.push_back({static_cast<std::uint32_t>(keyframe), p_K, 0.0002 * p_K, p_B.hnormalized(), 0.0002});
       }
     }
-    record_.add_observations({instant(t), T_O_B_}, SE3(), observations);
+    record_.add_observations({instant(t), T_O_B_}, {SE3()}, observations);
     odom_to_map_.correct(instant(t), T_M_O_);
   }
   static double error(const StampedPose& pose) {

@@ -49,8 +49,9 @@ class Channel {
 
   RigCamera camera;  ///< with the calibration of the estimator
   FeatureTracker tracker;
-  SE3 T_O_Blast;      ///< at the last image
-  SE3 T_O_Bkeyframe;  ///< at the last keyframe
+  bool only_one_of_its_kind = false;  ///< in the run
+  SE3 T_O_Blast;                      ///< at the last image
+  SE3 T_O_Bkeyframe;                  ///< at the last keyframe
 
  private:
   void align(const TrackSummary& summary);
@@ -70,6 +71,7 @@ class Channel {
 struct ChannelView {
   Channel* channel;
   cv::Mat track, detect;
+  cv::Mat as_events = {};  ///< of a frame in a keyframe: as event cameras behind other lenses would see its scene
 };
 
 /// The camera with most tracks, the last of equals (frames); null without any.

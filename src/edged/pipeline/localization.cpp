@@ -170,12 +170,24 @@ LandmarkDepths Localization::landmark_depths() const {
 }
 
 /// The map uses frames if these have enough features, as the appearance of an event frame depends on the motion; those
-/// of the first camera of the kind.
-std::size_t Localization::mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const {
-  const auto frames = std::ranges::find(rig_.cameras, Modality::Frames, &RigCamera::modality);
-  const auto first_frames = static_cast<std::size_t>(frames - rig_.cameras.begin());
-  if (first_frames == 0 || first_frames == rig_.cameras.size()) return 0;
-  return without(seen.images[first_frames], outliers).carried() >= kFeaturesForMap ? first_frames : 0;
+/// of all cameras of the kind that have one in the packet.
+std::vector<PosedImage> Localization::mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers) {
+  const auto is_frames = [&](std::size_t camera) { return rig_.cameras[camera].modality == Modality::Frames; };
+  double carried_by_frames = 0.0;
+  std::vector<TrackedImage> images;
+  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
+    images.push_back(without(seen.images[camera], outliers));
+    if (is_frames(camera)) carried_by_frames += images.back().carried();
+  }
+  const bool frames = is_frames(0) || carried_by_frames >= kFeaturesForMap;  // event cameras come first
+  std::vector<PosedImage> mapping;
+  for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
+    if (is_frames(camera) != frames || images[camera].image.empty()) continue;
+    const RigCamera& calibrated = rig_.cameras[camera];
+    images[camera].model = image_model(camera, images[camera].model);
+    mapping.push_back({std::move(images[camera]), body_.moved_on(calibrated.time_offset) * calibrated.T_B_C});
+  }
+  return mapping;
 }
 
 const CameraModel& Localization::image_model(std::size_t camera, const CameraModel& given) {
@@ -195,14 +207,10 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
   const auto timer = timings_->measure("map");
   bool relocalized = false;
   mapper_.predict(body_.now());
-  const std::size_t camera = mapping_camera(seen, result.outliers);
-  if (!seen.images[camera].image.empty()) {
-    TrackedImage image = without(seen.images[camera], result.outliers);
-    image.model = image_model(camera, image.model);
-    const RigCamera& calibrated = rig_.cameras[camera];
-    const SE3 T_O_C = body_.moved_on(calibrated.time_offset) * calibrated.T_B_C;
-    relocalized = mapper_.localize(t, image, T_O_C);
-    if (seen.keyframe) mapper_.keyframe(t, image, T_O_C);
+  const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
+  if (!images.empty()) {
+    relocalized = mapper_.localize(t, images);
+    if (seen.keyframe) mapper_.keyframe(t, images);
   }
   for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
   return relocalized;

@@ -61,7 +61,7 @@ class Localization {
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
-  std::size_t mapping_camera(const VisionOutput& seen, const std::vector<FeatureId>& outliers) const;
+  std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void take_calibrations();
   const CameraModel& image_model(std::size_t camera, const CameraModel& given);
   void update_covariance(Timestamp t);

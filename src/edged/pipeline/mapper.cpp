@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace edged {
@@ -18,6 +20,21 @@ constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;  // of an odometry that has just started, whose scale is still inaccurate
 constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to measure how much of it the map covers
+
+/// Replaces the points by those that the window has estimated.
+void place_points(MapView& view, const KeyframeView& estimated) {
+  view.T_B_C = estimated.T_B_C;
+  std::vector<MapPoint> points;
+  for (const KeyframePoint& placed : estimated.points) {
+    const auto looks = std::ranges::find(view.points, placed.id, &MapPoint::id);
+    if (looks == view.points.end()) continue;
+    MapPoint& point = points.emplace_back(*looks);
+    point.point = placed.point;
+    point.inverse_depth = placed.inverse_depth;
+    point.sigma = placed.sigma;
+  }
+  view.points = std::move(points);
+}
 
 /// One per track.
 std::vector<std::optional<Descriptor>> descriptors_of(const TrackedImage& image, const SE3& T_O_C) {
@@ -57,7 +74,7 @@ void Mapper::begin_start(const OdomState& now) {
   started_ = now.t;
   dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
-  recognised_.reset();
+  recognised_.clear();
   in_window_.clear();
   found_.clear();
 }
@@ -100,18 +117,20 @@ std::vector<MapObservation> Mapper::Search::observations() const {
   return observations;
 }
 
-Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C,
-                              Period made) {
+/// The points that should be in view of that image, and their matches; nothing if too few of them match, as when the
+/// lens is covered.
+std::vector<Candidate> Mapper::search_in(const TrackedImage& image, const MapFilter& filter, const SE3& T_M_C,
+                                         const SE3& T_B_C, Period made) {
   const CameraModel& camera = image.model;
-  Search search{map_.visible({image.camera, made, filter.keyframes()}, T_M_O * T_O_C, camera, config_.max_observations),
-                filter.T_M_B().inverse() * T_M_O * T_O_C};
-  for (Candidate& candidate : search.candidates) {
+  std::vector<Candidate> candidates =
+      map_.visible({image.camera, made, filter.keyframes()}, T_M_C, camera, config_.max_observations);
+  for (Candidate& candidate : candidates) {
     MapObservation& observation = candidate.observation;
     observation.seen = camera.pixel_to_point(candidate.pixel);
     const double stretch = camera.stretch(observation.seen);
     observation.sigma = config_.filter.pixel_sigma / camera.mean_focal() * stretch;
     const double expected_px =
-        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, search.T_B_C);
+        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, T_B_C);
     const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
     const auto match =
         match_patch(candidate.point->patch, image.image, candidate.pixel, candidate.A, radius, config_.patch);
@@ -120,11 +139,29 @@ Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, const T
     candidate.pixel = match->pixel;
     observation.seen = camera.pixel_to_point(match->pixel);
   }
+  if (static_cast<double>(std::ranges::count_if(candidates, &Candidate::found)) <
+      config_.filter.min_found_share * static_cast<double>(candidates.size()))
+    candidates.clear();
+  return candidates;
+}
+
+Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images,
+                              Period made) {
+  Search search;
+  for (const auto& [image, T_O_C] : images) {
+    const auto camera = static_cast<std::uint32_t>(search.T_B_C.size());
+    search.T_B_C.push_back(filter.T_M_B().inverse() * T_M_O * T_O_C);
+    for (Candidate& candidate : search_in(image, filter, T_M_O * T_O_C, search.T_B_C.back(), made)) {
+      candidate.observation.camera = camera;
+      search.candidates.push_back(candidate);
+    }
+  }
   return search;
 }
 
 /// The filter takes the matches if they agree, and corrects T_M_O.
-bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t) {
+bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
+                    std::span<const PosedImage> images) {
   const SE3 T_O_B = T_M_O.inverse() * filter.T_M_B();
   std::vector<MapObservation> observations = search.observations();
   const std::optional<SE3> corrected = filter.update(observations, search.candidates.size(), search.T_B_C);
@@ -136,7 +173,8 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
     if (!candidate.found) continue;
     const MapObservation& observation = candidate.observation;
     found_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
-                      filter.keyframes()[observation.keyframe] * observation.p_K});
+                      filter.keyframes()[observation.keyframe] * observation.p_K,
+                      images[observation.camera].image.camera});
   }
   for (MapObservation& observation : observations)
     observation.keyframe = static_cast<std::uint32_t>(map_.keyframes()[observation.keyframe].number);
@@ -144,22 +182,22 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
   return true;
 }
 
-bool Mapper::localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
-  // In a map of another run no dead reckoning rejects wrong places: two images that agree must be further apart.
+bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
+  // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
   const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
   if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
   looked_at_ = t;
   found_.clear();
   const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const SE3 T_M_O = odom_to_map_.T_M_O();
-  const Search here = search(filter_, T_M_O, image, T_O_C, old_enough);
+  const Search here = search(filter_, T_M_O, images, old_enough);
   const auto older = std::ranges::count_if(here.candidates, [&](const Candidate& candidate) {
     return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < started_;
   });
-  const bool agreed = update(filter_, T_M_O, here, t);
+  const bool agreed = update(filter_, T_M_O, here, t, images);
   if (!searching_ && !unlocated_before_) return false;
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
-  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, image, T_O_C);
+  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, images);
   if (found_by_looks) unlocated_before_.reset();
   if (found_by_guess || found_by_looks) searching_ = false;
   return found_by_guess || found_by_looks;
@@ -174,7 +212,8 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
 }
 
 /// T_M_O by place recognition, from keyframes of that time.
-std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const {
+std::optional<SE3> Mapper::recognised(const PosedImage& posed, Period made) const {
+  const auto& [image, T_O_C] = posed;
   std::vector<Eigen::Vector2d> points;
   for (const Track& track : image.tracks) points.push_back(image.model.pixel_to_point(track.pixel));
   const std::optional<SE3> T_M_C =
@@ -183,53 +222,69 @@ std::optional<SE3> Mapper::recognised(const TrackedImage& image, const SE3& T_O_
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
-/// Relocalization by place recognition, in the keyframes before the newest start or in the loaded map. Two images must
-/// agree on the pose, and the points that should then be in view must match. Keyframes mapped since, at uncertain
-/// poses, are removed.
-bool Mapper::recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
+/// Relocalization by place recognition, in the keyframes before the newest start or in the loaded map. The images of
+/// two instants must agree on the pose: two cameras of one instant may both take a similar place for this one.
+bool Mapper::recognise(Timestamp t, std::span<const PosedImage> images) {
   const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
-  const std::optional<SE3> T_M_O = recognised(image, T_O_C, before);
-  const std::optional<SE3> last = std::exchange(recognised_, std::nullopt);
-  if (!T_M_O) return false;
+  const SE3 T_O_B = odom_to_map_.T_M_O().inverse() * filter_.T_M_B();
+  const std::vector<SE3> last = std::exchange(recognised_, {});
+  for (const PosedImage& posed : images) {
+    const std::optional<SE3> T_M_O = recognised(posed, before);
+    if (T_M_O && (unlocated_before_ || plausible(*T_M_O, T_O_B))) recognised_.push_back(*T_M_O);
+  }
+  const auto agrees = [&](const SE3& T_M_O, const SE3& other) {
+    const SE3 between = (other * T_O_B).inverse() * (T_M_O * T_O_B);
+    return between.translation().norm() <= kSamePlace_m && so3::log(between.rotation()).norm() <= kSamePlace_rad;
+  };
+  return std::ranges::any_of(recognised_, [&](const SE3& T_M_O) {
+    return std::ranges::any_of(last, [&](const SE3& other) { return agrees(T_M_O, other); }) &&
+           confirmed(T_M_O, t, images, before);
+  });
+}
+
+/// Whether the points that should then be in view match. Keyframes mapped since, at uncertain poses, are removed.
+bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period before) {
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
-  if (!unlocated_before_ && !plausible(*T_M_O, T_O_B)) return false;
-  recognised_ = T_M_O;
-  if (!last) return false;
-  const SE3 between = (*last * T_O_B).inverse() * (*T_M_O * T_O_B);
-  if (between.translation().norm() > kSamePlace_m || so3::log(between.rotation()).norm() > kSamePlace_rad) return false;
   MapFilter there = filter_;
-  there.restart(*T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
-  if (!update(there, *T_M_O, search(there, *T_M_O, image, T_O_C, before), t)) return false;
+  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  if (!update(there, T_M_O, search(there, T_M_O, images, before), t, images)) return false;
   odom_to_map_.forget_guess();
-  if (unlocated_before_) odom_to_map_.move_before(*T_M_O * T_M_O_so_far.inverse());
+  if (unlocated_before_) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
 }
 
-double Mapper::covered_share(const TrackedImage& image) const {
-  const CameraModel& camera = image.model;
-  const auto cell = [&](const Eigen::Vector2d& pixel) {
-    return std::pair(static_cast<int>(pixel.x() * kCellsAcross / camera.width()),
-                     static_cast<int>(pixel.y() * kCellsDown / camera.height()));
-  };
-  std::set<std::pair<int, int>> textured, shown;
-  for (const Track& track : image.tracks) textured.insert(cell(track.pixel));
-  for (const MapMatch& point : found_) {
-    if (textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
+/// Of all cells with features, in any of the images.
+double Mapper::covered_share(std::span<const PosedImage> images) const {
+  std::set<std::tuple<std::string_view, int, int>> textured, shown;
+  for (const PosedImage& posed : images) {
+    const TrackedImage& image = posed.image;
+    const auto cell = [&](const Eigen::Vector2d& pixel) {
+      return std::tuple(std::string_view(image.camera),
+                        static_cast<int>(pixel.x() * kCellsAcross / image.model.width()),
+                        static_cast<int>(pixel.y() * kCellsDown / image.model.height()));
+    };
+    for (const Track& track : image.tracks) textured.insert(cell(track.pixel));
+    for (const MapMatch& point : found_) {
+      if (point.camera == image.camera && textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
+    }
   }
   return textured.empty() ? 1.0 : static_cast<double>(shown.size()) / static_cast<double>(textured.size());
 }
 
-void Mapper::keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C) {
+void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   if (to_seconds(t - started_) < config_.keyframes.min_known_s) return;
-  if (!map_.wants(covered_share(image))) return;
-  MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, image.camera, SE3(), {}});
-  const std::vector<std::optional<Descriptor>> descriptors = descriptors_of(image, T_O_C);
-  for (std::size_t i = 0; i < image.tracks.size(); ++i) {
-    const Track& track = image.tracks[i];
-    if (const auto patch = cut_patch(image.image, track.pixel))
-      keyframe.points.push_back({.id = track.id, .patch = *patch, .descriptor = descriptors[i], .pixel = track.pixel});
+  if (!map_.wants(covered_share(images))) return;
+  MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, {}});
+  for (const auto& [image, T_O_C] : images) {
+    MapView& view = keyframe.views.emplace_back(MapView{image.camera, SE3(), {}});
+    const std::vector<std::optional<Descriptor>> descriptors = descriptors_of(image, T_O_C);
+    for (std::size_t i = 0; i < image.tracks.size(); ++i) {
+      const Track& track = image.tracks[i];
+      if (const auto patch = cut_patch(image.image, track.pixel))
+        view.points.push_back({.id = track.id, .patch = *patch, .descriptor = descriptors[i], .pixel = track.pixel});
+    }
   }
 }
 
@@ -238,18 +293,8 @@ void Mapper::take(const KeyframeRecord& record) {
   while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
   if (in_window_.empty() || in_window_.front().t != record.t) return;
   MapKeyframe& keyframe = in_window_.front();
-  const auto view = std::ranges::find(record.views, keyframe.camera, &KeyframeView::camera);
-  keyframe.T_B_C = view->T_B_C;
-  std::vector<MapPoint> points;
-  for (const KeyframePoint& placed : view->points) {
-    const auto looks = std::ranges::find(keyframe.points, placed.id, &MapPoint::id);
-    if (looks == keyframe.points.end()) continue;
-    MapPoint& point = points.emplace_back(*looks);
-    point.point = placed.point;
-    point.inverse_depth = placed.inverse_depth;
-    point.sigma = placed.sigma;
-  }
-  keyframe.points = std::move(points);
+  for (MapView& view : keyframe.views)
+    place_points(view, *std::ranges::find(record.views, view.camera, &KeyframeView::camera));
   if (!map_.gains_by(keyframe)) return;
   keyframe.number = record_.add_keyframe({record.t, record.T_W_B});
   map_.add(std::move(keyframe));

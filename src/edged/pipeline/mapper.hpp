@@ -6,7 +6,9 @@
 
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "edged/core/odom_state.hpp"
 #include "edged/final_trajectory.hpp"
@@ -33,11 +35,11 @@ class Mapper {
   void begin_time();
   /// The odometry has reached `now`.
   void predict(const OdomState& now);
-  /// Matches the map in the image; after a new start, until relocalized, by place recognition: true when it has just
-  /// been relocalized. T_O_C: of the image's camera and instant.
-  bool localize(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
-  /// The packet has become a keyframe, with this image.
-  void keyframe(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
+  /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
+  /// by place recognition: true when it has just been relocalized.
+  bool localize(Timestamp t, std::span<const PosedImage> images);
+  /// The packet has become a keyframe, with these images.
+  void keyframe(Timestamp t, std::span<const PosedImage> images);
   /// A keyframe has left the window: kept if it is worth it.
   void take(const KeyframeRecord& record);
 
@@ -48,7 +50,7 @@ class Mapper {
   double dead_reckoning_s() const { return dead_reckoning_s_; }
 
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
-  /// The map matches in the image of that instant.
+  /// The map matches in the images of that instant.
   std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
   /// In M.
   FinalTrajectory final_trajectory() const;
@@ -62,22 +64,26 @@ class Mapper {
   bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
 
  private:
-  /// Points that should be in view, and their matches.
+  /// Points that should be in view, and their matches, in the images where enough of them match.
   struct Search {
     std::vector<Candidate> candidates;
-    SE3 T_B_C;
+    std::vector<SE3> T_B_C;  ///< of all images
     std::vector<MapObservation> observations() const;
   };
   /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
   /// it.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   void begin_start(const OdomState& now);
-  Search search(const MapFilter& filter, const SE3& T_M_O, const TrackedImage& image, const SE3& T_O_C, Period made);
-  bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t);
-  std::optional<SE3> recognised(const TrackedImage& image, const SE3& T_O_C, Period made) const;
-  bool recognise(Timestamp t, const TrackedImage& image, const SE3& T_O_C);
+  Search search(const MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made);
+  std::vector<Candidate> search_in(const TrackedImage& image, const MapFilter& filter, const SE3& T_M_C,
+                                   const SE3& T_B_C, Period made);
+  bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
+              std::span<const PosedImage> images);
+  std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
+  bool recognise(Timestamp t, std::span<const PosedImage> images);
+  bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
-  double covered_share(const TrackedImage& image) const;
+  double covered_share(std::span<const PosedImage> images) const;
   void remove_keyframe(std::size_t keyframe);
 
   MapConfig config_;
@@ -87,7 +93,7 @@ class Mapper {
   TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
-  std::vector<MapMatch> found_;        ///< in the newest image that was matched
+  std::vector<MapMatch> found_;        ///< in the newest images that were matched
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;            ///< newest pose of the odometry
   Timestamp started_;              ///< the estimator's newest start
@@ -96,7 +102,7 @@ class Mapper {
   bool searching_ = false;         ///< since then nothing older has been matched
   /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
   std::optional<Timestamp> unlocated_before_;
-  std::optional<SE3> recognised_;  ///< T_M_O by place recognition in the last image, to be confirmed by another
+  std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
 };
 
 }  // namespace edged

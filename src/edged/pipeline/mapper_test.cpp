@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "edged/frontend/test_scene.hpp"
 #include "edged/options.hpp"
@@ -31,8 +33,9 @@ class MapperBeforeAWall : public testing::Test {
   }
 
   /// The wall lies 2 m before the origin of M. Features lie in a grid, not necessarily on the same points of the wall.
-  TrackedImage image(const SE3& T_M_B) const {
-    TrackedImage image{"cam", scene_.camera(), scene_.image(T_B_C_.inverse() * T_M_B * T_B_C_), {}};
+  TrackedImage image(const SE3& T_M_B) const { return image_at(T_M_B * T_B_C_, "cam"); }
+  TrackedImage image_at(const SE3& T_M_C, const std::string& camera) const {
+    TrackedImage image{camera, scene_.camera(), scene_.image(T_B_C_.inverse() * T_M_C), {}};
     for (int x = 24; x < 220; x += 16) {
       for (int y = 24; y < 160; y += 16) {
         Track track;
@@ -49,7 +52,7 @@ class MapperBeforeAWall : public testing::Test {
   void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B) const {
     const TrackedImage seen = image(SE3());
     mapper.predict(now(t_s, T_O_B));
-    mapper.keyframe(second(t_s), seen, T_O_B * T_B_C_);
+    mapper.keyframe(second(t_s), std::vector{PosedImage{seen, T_O_B * T_B_C_}});
     KeyframeRecord record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
     for (const Track& track : seen.tracks) record.views.front().points.push_back({track.id, track.point, 0.5, 0.005});
     mapper.take(record);
@@ -57,7 +60,7 @@ class MapperBeforeAWall : public testing::Test {
 
   bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B) const {
     mapper.predict(now(t_s, T_O_B));
-    return mapper.localize(second(t_s), image(T_M_B), T_O_B * T_B_C_);
+    return mapper.localize(second(t_s), std::vector{PosedImage{image(T_M_B), T_O_B * T_B_C_}});
   }
 
   PlaneScene scene_{davis_like_pinhole(), 2.0};
@@ -86,7 +89,7 @@ TEST_F(MapperBeforeAWall, KeepsNoKeyframeSoonAfterAStart) {
   add_keyframe(mapper, 5.0, SE3());
   const std::optional<SavedMap> saved = mapper.save();
   ASSERT_EQ(saved->keyframes.size(), 1U);
-  const MapPoint& point = saved->keyframes.front().points.front();
+  const MapPoint& point = saved->keyframes.front().views.front().points.front();
   EXPECT_EQ(point.inverse_depth, 0.5);
   EXPECT_EQ(point.point, scene_.camera().pixel_to_point(point.pixel));
 }
@@ -126,6 +129,91 @@ TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
   EXPECT_TRUE(mapper.save());
 }
 
+class MapperOfTwoCameras : public MapperBeforeAWall {
+ protected:
+  /// The second camera is 10 cm to the right of the first.
+  const SE3 T_B_C2_ = shift(0.0, -0.1, 0.0) * T_B_C_;
+
+  /// covered: that camera has a black image without features.
+  std::vector<PosedImage> images(const SE3& T_O_B, const SE3& T_M_B, const std::string& covered = "") const {
+    std::vector<PosedImage> posed = {{image_at(T_M_B * T_B_C_, "cam"), T_O_B * T_B_C_},
+                                     {image_at(T_M_B * T_B_C2_, "cam2"), T_O_B * T_B_C2_}};
+    for (PosedImage& each : posed) {
+      if (each.image.camera != covered) continue;
+      each.image.image.setTo(0);
+      each.image.tracks.clear();
+    }
+    return posed;
+  }
+
+  /// With keyframes of both cameras, at the origin of M.
+  void map_wall(Mapper& mapper) const {
+    mapper.restart(SE3(), now(0.0, SE3()));
+    const std::vector<PosedImage> seen = images(SE3(), SE3());
+    mapper.predict(now(5.0, SE3()));
+    mapper.keyframe(second(5.0), seen);
+    KeyframeRecord record{second(5.0), SE3(), {{"cam", T_B_C_, {}}, {"cam2", T_B_C2_, {}}}};
+    for (std::size_t camera = 0; camera < 2; ++camera) {
+      for (const Track& track : seen[camera].image.tracks)
+        record.views[camera].points.push_back({track.id, track.point, 0.5, 0.005});
+    }
+    mapper.take(record);
+  }
+
+  bool localize_both(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B,
+                     const std::string& covered = "") const {
+    mapper.predict(now(t_s, T_O_B));
+    return mapper.localize(second(t_s), images(T_O_B, T_M_B, covered));
+  }
+
+  static std::size_t matches_of(const Mapper& mapper, double t_s, const std::string& camera) {
+    const std::vector<MapMatch> all = mapper.map_matches(second(t_s));
+    return static_cast<std::size_t>(std::ranges::count(all, camera, &MapMatch::camera));
+  }
+};
+
+TEST_F(MapperOfTwoCameras, MatchesTheMapInTheImagesOfBoth) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  map_wall(mapper);
+  EXPECT_EQ(mapper.save()->keyframes.size(), 1U);
+  const SE3 T_M_B = shift(0.05, 0.02, 0.0), T_O_B = shift(0.05, 0.03, 0.0);
+  localize_both(mapper, 12.0, T_O_B, T_M_B);
+  EXPECT_GT(matches_of(mapper, 12.0, "cam"), 20U);
+  EXPECT_GT(matches_of(mapper, 12.0, "cam2"), 20U);
+  const Eigen::Vector3d wall_B(2.0, 0.0, 0.0);
+  EXPECT_LT((mapper.odom_to_map().T_M_O() * T_O_B * wall_B - T_M_B * wall_B).norm(), 0.006) << "it was off by 0.01";
+}
+
+TEST_F(MapperOfTwoCameras, GoesOnWithTheOneThatIsNotCovered) {
+  for (const auto& [covered, other] : {std::pair{"cam", "cam2"}, {"cam2", "cam"}}) {
+    Mapper mapper{MapConfig{}, kLostAfter_s};
+    map_wall(mapper);
+    localize_both(mapper, 12.0, shift(0.0, 0.01, 0.0), SE3(), covered);
+    EXPECT_EQ(matches_of(mapper, 12.0, covered), 0U);
+    EXPECT_GT(matches_of(mapper, 12.0, other), 20U) << other;
+    const std::optional<SavedMap> saved = mapper.save();
+    for (const MapView& view : saved->keyframes.front().views)
+      for (const MapPoint& point : view.points)
+        EXPECT_TRUE(view.camera == other || point.tried == 0) << "points do not count as missed under a cover";
+  }
+}
+
+TEST_F(MapperOfTwoCameras, IsRelocalizedByTheOneThatIsNotCovered) {
+  Mapper before{MapConfig{}, kLostAfter_s};
+  map_wall(before);
+  std::optional<SavedMap> saved = before.save();
+  saved->cameras = {{"cam", 240, 180, 200.0}, {"cam2", 240, 180, 200.0}};
+  for (const char* covered : {"", "cam", "cam2"}) {
+    Mapper mapper{MapConfig{}, kLostAfter_s};
+    mapper.load(saved_map_from_bytes(to_bytes(*saved)));
+    const SE3 T_O_B(so3::exp({0, 0, -0.8}), {1.0, 2.0, 0.3});
+    mapper.restart(SE3(), now(0.0, T_O_B));
+    EXPECT_FALSE(localize_both(mapper, 0.3, T_O_B, SE3(), covered)) << "two cameras at one instant are not enough";
+    EXPECT_TRUE(localize_both(mapper, 0.6, T_O_B, SE3(), covered)) << covered;
+    EXPECT_LT((mapper.odom_to_map().T_M_O() * T_O_B).translation().norm(), 0.02) << covered;
+  }
+}
+
 TEST_F(MapperBeforeAWall, GoesOnFromWhereTheBodyIsInANewTime) {
   Mapper mapper{MapConfig{}, kLostAfter_s};
   mapper.restart(SE3(), now(0.0, SE3()));
@@ -142,7 +230,7 @@ double dead_reckoning_of_a_restart(double lost_after_s) {
   OdometryConfig config;
   ConfigFields::of(config).set("status.lost_after_s", std::to_string(lost_after_s));
   SavedMap map;
-  map.keyframes.push_back({timestamp_from_seconds(10), timestamp_from_seconds(10), "camera", {}, {}});
+  map.keyframes.push_back({timestamp_from_seconds(10), timestamp_from_seconds(10), {}});
   map.T_M_K.emplace_back();
   map.covariance = 1e-4 * Eigen::MatrixXd::Identity(6, 6);
   Mapper mapper(config.map, config.status.lost_after_s);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/rig.hpp"
+#include "edged/se3.hpp"
 #include "edged/track.hpp"
 
 namespace edged {
@@ -22,6 +23,12 @@ struct TrackedImage {
 
   /// Effective number of tracks: the number that likely survives the next image.
   double carried() const { return survival_rate * static_cast<double>(tracks.size()); }
+};
+
+/// An image of the packet, at the pose of its camera.
+struct PosedImage {
+  TrackedImage image;
+  SE3 T_O_C;
 };
 
 }  // namespace edged

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "edged/events/expected_frame.hpp"
+
 namespace edged {
 namespace {
 
@@ -40,6 +42,8 @@ void Vision::make_channels() {
     } else {
       channels_.emplace_back(camera, camera.model, config_.frame_tracker, AlignmentConfig{}, config_.health);
     }
+    channels_.back().only_one_of_its_kind =
+        std::ranges::count(rig_.cameras, camera.modality, &RigCamera::modality) == 1;
   }
 }
 
@@ -59,15 +63,16 @@ VisionOutput Vision::process(const VisionInput& input) {
   VisionOutput output;
   output.scene_depth = measure_depth(packet);
   output.event_images = render(input, output.scene_depth);
-  const std::vector<ChannelView> views = views_of(packet, output.event_images);
+  std::vector<ChannelView> views = views_of(packet, output.event_images);
   for (const ChannelView& view : views) track(view, input, output.scene_depth);
   reject(views, input.body);
   output.keyframe = is_keyframe(input, views);
-  if (output.keyframe) mark_keyframe(input, views);
+  if (output.keyframe) mark_keyframe(input, views, output.scene_depth);
   for (const ChannelView& view : views) {
     view.channel->settle(view.channel->T_O_B_now(input.body), output.keyframe);
     output.observations.push_back(view.channel->observations());
   }
+  if (landmarks_) discount_shared(output.observations, views, config_.stereo);  // a start takes three images only
   output.images = images_of(views);
   output.events_quiet = is_quiet(packet);
   output.depth = depth_.for_factor(packet.t);
@@ -220,8 +225,15 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   return keyframe_reason(since, config_.keyframes) != KeyframeReason::None;
 }
 
-void Vision::mark_keyframe(const VisionInput& input, std::span<const ChannelView> views) {
+void Vision::mark_keyframe(const VisionInput& input, std::span<ChannelView> views, double scene_depth) {
   const auto timer = timings_->measure("detect");
+  expect_events(views, input.body, scene_depth);
+  for (const ChannelView& to : views) {
+    for (const ChannelView& from : views) {
+      if (to.channel->camera.modality == Modality::Events && from.channel->camera.modality == Modality::Frames)
+        share(from, to, input.body);
+    }
+  }
   for (auto view = views.begin(); view != views.end(); ++view) {
     for (auto other = views.begin(); other != view; ++other) share(*other, *view, input.body);
     view->channel->tracker.detect(view->detect, next_feature_, features_wanted(*view->channel, input.body.now().t));
@@ -230,6 +242,26 @@ void Vision::mark_keyframe(const VisionInput& input, std::span<const ChannelView
   for (const ChannelView& view : views) view.channel->mark_keyframe(view.channel->T_O_B_now(input.body));
   last_keyframe_ = input.packet.t;
   gyro_saturated_ = false;
+}
+
+/// Frames as the event cameras that can share features with them would see their scene. What these cameras follow
+/// already comes first: features of frames are more accurate than those that an event frame would get of its own.
+void Vision::expect_events(std::span<ChannelView> views, const BodyMotion& body, double scene_depth) const {
+  constexpr Duration kSoon = std::chrono::milliseconds(5);
+  for (ChannelView& view : views) {
+    const Channel& channel = *view.channel;
+    if (channel.camera.modality != Modality::Frames) continue;
+    if (std::ranges::none_of(views, [&](const ChannelView& other) {
+          return other.channel->camera.modality == Modality::Events &&
+                 can_share(channel, *other.channel, config_.stereo);
+        }))
+      continue;
+    std::optional<SE3> T_later_now;
+    if (body.started())
+      T_later_now = channel.T_O_C(body.moved_on(channel.camera.time_offset + kSoon)).inverse() *
+                    channel.T_O_C(channel.T_O_B_now(body));
+    view.as_events = expected_event_frame(view.track, channel.tracker.camera(), T_later_now, scene_depth);
+  }
 }
 
 void Vision::share(const ChannelView& from, const ChannelView& to, const BodyMotion& body) {

@@ -86,7 +86,8 @@ class Vision {
   bool is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const;
   void share(const ChannelView& from, const ChannelView& to, const BodyMotion& body);
   std::optional<double> landmark_depth(const Channel& channel, FeatureId id) const;
-  void mark_keyframe(const VisionInput& input, std::span<const ChannelView> views);
+  void mark_keyframe(const VisionInput& input, std::span<ChannelView> views, double scene_depth);
+  void expect_events(std::span<ChannelView> views, const BodyMotion& body, double scene_depth) const;
   bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
   double carried_by_frames() const;
   bool frames_at_work(Timestamp t) const;

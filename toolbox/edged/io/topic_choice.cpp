@@ -269,7 +269,7 @@ class CameraChooser {
       used.push_back(name);
     }
     if (!named.said.empty()) spdlog::warn(fmt::format("{}; --topic CAMERA=NAME assigns others", named.said));
-    if (named.said.empty() && streams.size() > 1 && !wishes_.all_cameras)
+    if (named.said.empty() && streams.size() > 1)
       spdlog::warn(
           fmt::format("{}: topics of {} are the cameras {} in the order {}; --topic CAMERA=NAME assigns others", file_,
                       kind_name(modality_), fmt::join(named.names, ", "), fmt::join(streams, ", ")));

@@ -34,14 +34,17 @@ std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& re
   return truth;
 }
 
-/// The wanted cameras that exist, or all, in the order of their names; else the first camera.
+/// The wanted cameras that exist, or all that have images, in the order of their names; else the first camera.
 std::set<std::string> find_cameras(const SourcePath& mav0, const RecordingOptions& options) {
   const auto is_there = [&](const std::string& camera) {
     return camera.starts_with("cam") && (mav0 / camera / "data.csv").is_file();
   };
+  const auto has_images = [&](const std::string& camera) {
+    return std::ranges::count((mav0 / camera).names(), "data") > 0 && !(mav0 / camera / "data").names().empty();
+  };
   std::set<std::string> cameras;
   for (const std::string& camera : options.all_cameras ? mav0.names() : options.cameras)
-    if (is_there(camera)) cameras.insert(camera);
+    if (is_there(camera) && (!options.all_cameras || has_images(camera))) cameras.insert(camera);
   if (cameras.empty() && is_there("cam0")) cameras.insert("cam0");
   return cameras;
 }

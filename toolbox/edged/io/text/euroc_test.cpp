@@ -124,5 +124,13 @@ TEST(EuRoC, GivesEveryCameraThatIsAskedFor) {
   EXPECT_EQ(read({"elsewhere"}), "cam0: cam0 cam0; cam0");
 }
 
+/// As where only the images of one camera were downloaded.
+TEST(EuRoC, CountsNoCameraWithoutImages) {
+  TempFolder folder;
+  write_tum_vi(folder);
+  folder.write("mav0/cam1/data.csv", "#timestamp [ns],filename\n1520530308199447626,1520530308199447626.png\n");
+  EXPECT_TRUE(open_recording(folder.path(), nullptr, {.all_cameras = true}).dataset->info().more_cameras.empty());
+}
+
 }  // namespace
 }  // namespace edged
