@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kFewestTracks = 8;
 constexpr double kMemory_s = 5.0;
-constexpr double kUsual_s = 5e-4;  // standard deviation of a coefficient before anything is measured
-// On the unit plane, of the common displacement of all features: 0.05 px of a usual lens.
-constexpr double kSigma = 2.5e-4;
+constexpr double kUsual_s = 1e-3;  // standard deviation of a coefficient before anything is measured
+// On the unit plane, of the common displacement of all features: 0.03 px of a usual lens.
+constexpr double kSigma = 1.5e-4;
 
 /// How far the image is ahead of its prediction, as a time, and the speed of the features [1/s].
 struct Lead {

@@ -30,7 +30,7 @@ TEST(FlickerSurvey, GivesFrequencyEventsAndPartOfTheImage) {
   EXPECT_NEAR(half->hz, 120.0, 0.5);
   EXPECT_NEAR(half->image_share, 0.5, 1e-9);
   EXPECT_NEAR(half->event_share, 0.4, 0.05);  // polarities that swing as a square spread over all phases
-  EXPECT_GT(half->time_share, 0.8);
+  EXPECT_NEAR(half->time_share, 0.75, 0.1);   // one of the eight windows is not enough to be sure, one has not ended
 }
 
 TEST(FlickerSurvey, IsEmptyWithoutALamp) { EXPECT_FALSE(survey_of_lamp(0)); }
