@@ -237,6 +237,12 @@ TEST(Stress, TwoMillionNoiseEventsASecondAreSurvivedFromTheStart) {
   start_and_withstand(flight, Mode::Events, kFromRest_s);
 }
 
+TEST(Stress, ALampOnMainsIsNoMotion) {
+  const Flight flight = flight_of("room", 6.0, {"disturbance.kind=flicker", "disturbance.at_s=0"});
+  for (const Mode mode : {Mode::Events, Mode::Fused})
+    EXPECT_TRUE(stays_good(start_and_withstand(flight, mode, kFromRest_s))) << mode_name(mode);
+}
+
 TEST(Stress, FramesOfTwentyGreyLevelsSuffice) {
   const Flight flight = flight_of("room", 6.0, kDim);
   for (const Mode mode : {Mode::Frames, Mode::Fused})

@@ -65,6 +65,12 @@ std::string events_text(const Survey& s, const std::string& name) {
   text += survey_line(
       "", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
+  if (e.flicker)
+    text +=
+        survey_line("", fmt::format("flicker at {:.1f} Hz for {:.0f} % of the time: about {:.0f} % of the events then, "
+                                    "in {:.0f} % of the image",
+                                    e.flicker->hz, 100 * e.flicker->time_share, 100 * e.flicker->event_share,
+                                    100 * e.flicker->image_share));
   if (!e.hot_known) return text + survey_line("", "too short to detect hot pixels");
   std::string hot = fmt::format("{} hot pixels, {:.1f} % of the events", e.hot_pixels, 100 * e.hot_share);
   for (std::size_t i = 0; i < std::min<std::size_t>(e.hottest.size(), 5); ++i)
@@ -134,6 +140,11 @@ nlohmann::ordered_json events_json(const Survey& s) {
                  {"hot_known", e.hot_known},
                  {"hot_pixels", e.hot_pixels},
                  {"hot_share", e.hot_share}});
+    if (e.flicker)
+      json["flicker"] = {{"hz", e.flicker->hz},
+                         {"time_share", e.flicker->time_share},
+                         {"event_share", e.flicker->event_share},
+                         {"image_share", e.flicker->image_share}};
     for (const HotPixel& pixel : e.hottest)
       json["hottest"].push_back({{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}, {"rate_hz", pixel.rate_hz}});
   }

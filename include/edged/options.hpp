@@ -29,6 +29,7 @@ struct PacketizerConfig {
   double max_age_s = 0.25;             ///< but none older than this: at standstill older ones are noise
   double max_interval_s = 0.04;        ///< longest time between two cuts (at standstill)
   double min_interval_s = 0.03;        ///< shortest time between two cuts, unless a frame arrives
+  bool remove_flicker = true;          ///< leave out events that lamps cause (docs/decisions/044-flicker.md)
   int max_waiting_events = 4'000'000;  ///< in packets that wait for the IMU; 16 bytes each
   void visit(ConfigFields& fields);
 };

@@ -91,6 +91,7 @@ Diagnosis diagnose(const NodeHealth& health) {
   count("packets after the IMU", packets.packets_after_imu);
   count("packets dropped, IMU away too long", packets.packets_overflow);
   count("events late", packets.events_late);
+  count("events of flickering lamps", packets.events_flicker);
   count("events of dropped packets", packets.events_lost);
   count("frames late", packets.frames_late);
   count("IMU samples not finite", packets.imu_not_finite);

@@ -22,10 +22,16 @@ Eigen::Matrix3d Channel::since_keyframe(const SE3& T_O_B) const {
   return R_B_C.transpose() * R_Bkf_B.toRotationMatrix() * R_B_C;
 }
 
-void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction) {
+void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction,
+                    const std::optional<LampCycle>& lamp) {
   prediction.T_cur_prev = T_O_C(T_O_B).inverse() * T_O_C(T_O_Blast);
   prediction.offset_px = alignment_px_;
   const TrackSummary summary = tracker.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
+  if (any_image_ && lamp) {
+    shift_.update(lamp->phase(t), t - last_image_, tracker.tracks(), prediction);
+  } else {
+    shift_.reset();
+  }
   align(summary);
   weigh(summary, t);
   any_image_ = true;
@@ -53,6 +59,7 @@ void Channel::weigh(const TrackSummary& summary, Timestamp t) {
 
 CameraObservations Channel::observations() const {
   CameraObservations observations = tracker.observations();
+  shift_.correct(observations, tracker.tracks());
   if (survival_rate_ < health_.min_survival_rate) observations.features.clear();
   for (FeatureObservation& observation : observations.features) observation.sigma /= survival_rate_;
   return observations;

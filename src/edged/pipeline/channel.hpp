@@ -6,9 +6,11 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 
+#include "edged/events/flicker.hpp"
 #include "edged/frontend/tracker.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/body_motion.hpp"
+#include "edged/pipeline/exposure_shift.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -27,7 +29,9 @@ class Channel {
   Eigen::Matrix3d since_keyframe(const SE3& T_O_B) const;
 
   /// Tracks the features into the image. T_O_B: the predicted pose of the body; prediction: all but pose and offset.
-  void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction);
+  /// lamp: of an image with an exposure, if a lamp flickers.
+  void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction,
+             const std::optional<LampCycle>& lamp);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with the rotation of the gyro.
   void reject(const SE3& T_O_B, bool trust_gyro);
   /// Makes the newest image the keyframe.
@@ -37,8 +41,8 @@ class Channel {
   double survival_rate() const { return survival_rate_; }
   /// Effective number of tracks: the number that likely survives the next image.
   double carried() const { return survival_rate_ * static_cast<double>(tracker.tracks().size()); }
-  /// The observations of the present image, with a sigma that grows as fewer tracks survive; none when the camera is
-  /// ignored.
+  /// The observations at the stamp of the present image, with a sigma that grows as fewer tracks survive; none when the
+  /// camera is ignored.
   CameraObservations observations() const;
 
   bool has_image_of(Timestamp t) const { return any_image_ && last_image_ == t; }
@@ -62,6 +66,7 @@ class Channel {
   double survival_rate_ = 1.0;
   Timestamp last_image_;
   bool any_image_ = false;
+  ExposureShift shift_;
   // delta x_last [px]. The paper shifts the event frame by it, and tracks measured there would have to be shifted back;
   // shifting the search positions instead is equivalent, and keeps the frame consistent with the poses.
   Eigen::Vector2d alignment_px_ = Eigen::Vector2d::Zero();

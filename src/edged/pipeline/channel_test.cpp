@@ -25,7 +25,7 @@ class ChannelHealth : public testing::Test {
   }
 
   static void show(Channel& channel, const cv::Mat& image, int index) {
-    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, {});
+    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, {}, std::nullopt);
   }
 
   /// An image of new noise at every call.

@@ -19,19 +19,23 @@ EventHistory::EventHistory(const RigCamera& camera, const PacketizerConfig& conf
       offset_(camera.time_offset),
       cut_events_(count_of(config.events_per_pixel, camera.model)),
       window_events_(count_of(config.window_per_pixel, camera.model)),
-      max_age_s_(config.max_age_s) {}
+      max_age_s_(config.max_age_s) {
+  if (config.remove_flicker) flicker_.emplace(camera.model.width(), camera.model.height());
+}
 
-std::size_t EventHistory::add(const std::vector<Event>& events, Timestamp last_cut) {
-  std::size_t late = 0;
+EventHistory::Dropped EventHistory::add(const std::vector<Event>& events, Timestamp last_cut) {
+  Dropped dropped;
   for (Event event : events) {
     event.t += offset_;
     if (event.t <= last_cut || (!events_.empty() && event.t < events_.back().t)) {
-      ++late;
+      ++dropped.late;
+    } else if (flicker_ && flicker_->drops(event)) {
+      ++dropped.flicker;
     } else {
       events_.push_back(event);
     }
   }
-  return late;
+  return dropped;
 }
 
 std::optional<Timestamp> EventHistory::complete() const {
@@ -55,6 +59,8 @@ PacketEvents EventHistory::take(Timestamp t, Timestamp last_cut) {
   taken.new_events = end - uncut_begin_;
   taken.window_events = end - window_begin;
   taken.event_rate_hz = static_cast<double>(taken.new_events) / std::max(1e-3, to_seconds(t - last_cut));
+
+  if (flicker_) taken.lamp = flicker_->detector().lamp_at(t);
 
   history_begin_ = window_begin;
   uncut_begin_ = end;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/events/flicker.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/packet.hpp"
 #include "edged/rig.hpp"
@@ -20,9 +21,12 @@ class EventHistory {
 
   const std::string& camera() const { return camera_; }
   Duration offset() const { return offset_; }
-  /// Adds events, converted from the camera clock to the IMU clock. Drops those not after the last cut, or before an
-  /// earlier event; returns how many.
-  std::size_t add(const std::vector<Event>& events, Timestamp last_cut);
+  struct Dropped {
+    std::size_t late = 0;     ///< not after the last cut, or before an earlier event
+    std::size_t flicker = 0;  ///< of lamps
+  };
+  /// Adds events, converted from the camera clock to the IMU clock.
+  Dropped add(const std::vector<Event>& events, Timestamp last_cut);
 
   /// The stamp of the event that completes the count of a packet; nothing while there are fewer.
   std::optional<Timestamp> complete() const;
@@ -39,7 +43,8 @@ class EventHistory {
   Duration offset_;
   std::size_t cut_events_, window_events_;  // per packet
   double max_age_s_;
-  std::vector<Event> events_;  // history, then the uncut ones
+  std::optional<FlickerFilter> flicker_;  // if the option is set
+  std::vector<Event> events_;             // history, then the uncut ones
   std::size_t history_begin_ = 0, uncut_begin_ = 0;
 };
 

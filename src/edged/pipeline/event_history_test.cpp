@@ -57,9 +57,9 @@ TEST(EventHistory, ForgetsWhatIsTooOldForTheWindow) {
 
 TEST(EventHistory, LeavesOutWhatIsLateOnTheClockOfTheImu) {
   EventHistory h = history(std::chrono::milliseconds(5));
-  EXPECT_EQ(h.add(events(1, 11), after_ms(8)), 3U) << "6 to 8 ms are not after the cut";
+  EXPECT_EQ(h.add(events(1, 11), after_ms(8)).late, 3U) << "6 to 8 ms are not after the cut";
   EXPECT_EQ(h.newest(), after_ms(15));
-  EXPECT_EQ(h.add(events(9, 12), after_ms(8)), 1U) << "14 ms is before earlier events";
+  EXPECT_EQ(h.add(events(9, 12), after_ms(8)).late, 1U) << "14 ms is before earlier events";
   EXPECT_EQ(h.give_up(), 9U);
   EXPECT_EQ(h.new_events(), 0U);
 }

@@ -46,6 +46,9 @@ void PacketizerConfig::visit(ConfigFields& fields) {
              {"s", 0.001, 1, "Longest time between two packets, also at standstill."});
   fields.add("min_interval_s", min_interval_s,
              {"s", 0, 1, "Shortest time between two packets without a frame. It bounds the computing time."});
+  fields.add(
+      "remove_flicker", remove_flicker,
+      {.effect = "Leave out events of lamps on mains or PWM, while the events of the whole image swing together."});
   fields.add("max_waiting_events", max_waiting_events,
              {"events", 1000, 1e9,
               "Largest number of events that wait for the IMU. The oldest packets beyond it are dropped."});
@@ -115,7 +118,8 @@ void Packetizer::add_events(const EventBatch& batch) {
   const auto history = std::ranges::find(events_, batch.camera, &EventHistory::camera);
   if (history == events_.end()) return;
   start_at(batch.events.front().t + history->offset());
-  counters_.events_late += history->add(batch.events, last_cut_);
+  const EventHistory::Dropped dropped = history->add(batch.events, last_cut_);
+  counters_.events_late += dropped.late, counters_.events_flicker += dropped.flicker;
 }
 
 void Packetizer::add_frame(Frame frame) {

@@ -194,7 +194,8 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
   // With one reference patch all errors of a track correlate, which the thresholds of initialization do not model: with
   // events alone 3 of 72 initializations have a wrong scale, 1 without.
   prediction.reference_patches = !provisional_;
-  channel.track(view.track, input.packet.t, channel.T_O_B_now(input.body), std::move(prediction));
+  channel.track(view.track, input.packet.t, channel.T_O_B_now(input.body), std::move(prediction),
+                channel.camera.modality == Modality::Frames && landmarks_ ? input.packet.lamp() : std::nullopt);
 }
 
 void Vision::reject(std::span<const ChannelView> views, const BodyMotion& body) {

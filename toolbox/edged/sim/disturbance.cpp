@@ -61,6 +61,8 @@ Usual usual(DisturbanceKind kind) {
       return {10.0, 2.0};  // peak of the knocks [g]
     case DisturbanceKind::EventStorm:
       return {0.3, 20.0};  // million events a second
+    case DisturbanceKind::Flicker:
+      return {kToTheEnd, 0.25};  // modulation
   }
   return {0.0, 0.0};
 }
@@ -130,7 +132,8 @@ void Disturbance::visit(ConfigFields& fields) {
                  {"pure-rotation", DisturbanceKind::PureRotation},
                  {"standstill", DisturbanceKind::Standstill},
                  {"put-down", DisturbanceKind::PutDown},
-                 {"event-storm", DisturbanceKind::EventStorm}},
+                 {"event-storm", DisturbanceKind::EventStorm},
+                 {"flicker", DisturbanceKind::Flicker}},
                 {.effect = "one thing that goes wrong"});
   fields.add("at_s", at_s, {"s", 0, 3600, "when it begins, on the camera's clock"});
   fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: as usual for its kind"});
@@ -139,7 +142,8 @@ void Disturbance::visit(ConfigFields& fields) {
       {"", 0, 1e4,
        "0: as usual. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's range; "
        "shake: peak rate in deg/s; event-storm: million events a second; walkers: share of the view; lamps: their "
-       "light over that of a well lit room; put-down: peak of the knocks in g"});
+       "light over that of a well lit room; put-down: peak of the knocks in g; flicker: its modulation, from 0.05 to "
+       "1, of which flicker.* has the rest"});
 }
 
 Disturbance Disturbance::filled_in(double recording_s) const {

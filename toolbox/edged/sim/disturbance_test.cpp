@@ -67,7 +67,7 @@ TEST(Disturbance, ThereIsNoneByDefaultAndItsTimesThenMeanNothing) {
 }
 
 TEST(Disturbance, HasAUsualLengthAndStrengthForEveryKind) {
-  for (int kind = 1; kind <= static_cast<int>(DisturbanceKind::EventStorm); ++kind) {
+  for (int kind = 1; kind <= static_cast<int>(DisturbanceKind::Flicker); ++kind) {
     Disturbance disturbance;
     disturbance.kind = static_cast<DisturbanceKind>(kind);
     EXPECT_GT(disturbance.filled_in(30.0).length_s, 0.0) << kind;

@@ -103,6 +103,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     beam_.centre = T_C_W * beam_.centre;
     beam_.axis = R_C_W * beam_.axis;
   }
+  if (scene_.flicker) flicker_ = scene_.flicker->at(t_s, T_C_W);
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
     Face face = scene_.faces[i];
     Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();
@@ -173,6 +174,7 @@ void Renderer::shade() {
     const float u = view.u.dot(b) * z, v = view.v.dot(b) * z;
     float light = light_.at(index, u, v);
     if (beam_.power > 0.0 && !face.glows) light += beam_light(beam_, z * b, view.normal);
+    if (flicker_.deviation != 0.0F) light *= flicker_.factor(z * b);
     scratch_[i] = face.brightness * light *
                   texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
   }

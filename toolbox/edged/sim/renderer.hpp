@@ -68,6 +68,7 @@ class Renderer {
   std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, unless wide_
   std::vector<View> views_;
   Beam beam_;              // of the spotlight in the camera frame; dark without one
+  FlickerNow flicker_;     // in the camera frame; none without flicker
   std::vector<int> seen_;  // face at each pixel, -1 for none
   std::vector<float> scratch_;
   Rendering out_;

@@ -202,6 +202,12 @@ Spotlight make_spotlight(std::span<const SE3> path_W_C, const Disturbance& distu
   return spot;
 }
 
+/// Where the one lamp hangs that flickers: before the camera, left above the middle of its view.
+Eigen::Vector3d lamp_place(std::span<const SE3> path_W_C) {
+  const Outlook view = outlook(path_W_C);
+  return view.mean_W + 1.2 * view.ahead_W + 0.4 * view.left_W + 0.4 * Eigen::Vector3d::UnitZ();
+}
+
 void add_room(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random, bool half_blank) {
   Eigen::Vector3d low = path_W_C.front().translation(), high = low;
   for (const SE3& T_W_C : path_W_C) {
@@ -342,7 +348,7 @@ void SceneConfig::visit(ConfigFields& fields) {
 }
 
 Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::uint64_t seed,
-                 const Disturbance& disturbance, const SE3& T_W_C_meeting) {
+                 const Disturbance& disturbance, const SE3& T_W_C_meeting, const FlickerConfig& flicker) {
   Random random(seed, 2);
   Scene scene;
   switch (config.kind) {
@@ -373,6 +379,7 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
     add_walkers(scene, path_W_C, disturbance, config.light, Random(seed, 11));
   if (disturbance.kind == DisturbanceKind::WanderingLamp || disturbance.kind == DisturbanceKind::SwitchingLamp)
     scene.spotlight = make_spotlight(path_W_C, disturbance, scene.lighting ? 1.0 : config.light, Random(seed, 12));
+  if (disturbance.kind == DisturbanceKind::Flicker) scene.flicker = Flicker(flicker, disturbance, lamp_place(path_W_C));
   return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "edged/sim/flicker.hpp"
 #include "edged/sim/light.hpp"
 #include "edged/sim/texture.hpp"
 
@@ -50,6 +51,7 @@ struct Scene {
   std::vector<DynamicObject> dynamic_objects;
   std::optional<Lighting> lighting;    ///< none: light 1 everywhere
   std::optional<Spotlight> spotlight;  ///< in addition
+  std::optional<Flicker> flicker;      ///< of all of this
 };
 
 }  // namespace edged

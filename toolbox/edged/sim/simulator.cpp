@@ -39,6 +39,8 @@ SimulatorConfig checked(SimulatorConfig config) {
         disturbance.end_s(), config.duration_s);
   if (disturbance.kind == DisturbanceKind::BlankWall && config.scene.kind != SceneKind::Boxes)
     throw InputError("option 'disturbance.kind': blank-wall needs a room; set scene.kind to boxes");
+  if (disturbance.kind == DisturbanceKind::Flicker && disturbance.strength > 1.0)
+    throw InputError::format("option 'disturbance.strength': a modulation of {} is above 1", disturbance.strength);
   const FrameCameraConfig& frames = config.frames;
   const auto check = [&frames](const char* key, double exposure_ms) {
     if (exposure_ms * 1e-3 >= 1.0 / frames.rate_hz)
@@ -58,7 +60,8 @@ std::vector<SE3> camera_path(const DisturbedTrajectory& trajectory, const Simula
 
 Scene scene_of(const DisturbedTrajectory& trajectory, const SimulatorConfig& config) {
   return make_scene(config.scene, camera_path(trajectory, config), static_cast<std::uint64_t>(config.seed),
-                    config.disturbance, trajectory.at(config.disturbance.middle_s()).T_W_B * config.T_B_C);
+                    config.disturbance, trajectory.at(config.disturbance.middle_s()).T_W_B * config.T_B_C,
+                    config.flicker);
 }
 
 /// Rotations of the disturbance are about the y axis of the camera, which points down.
@@ -136,6 +139,7 @@ void SimulatorConfig::visit(ConfigFields& fields) {
   fields.group("height", external.height);
   fields.group("velocity", external.velocity);
   fields.group("disturbance", disturbance);
+  fields.group("flicker", flicker);
 }
 
 SE3 SimulatorConfig::davis240c_extrinsics() {
@@ -324,6 +328,8 @@ Timestamp Simulator::Impl::next_render_time() const {
   const Timestamp begin = exposure_begin(), stop = begin + exposure_;
   if (*t_ < begin) t = std::min(t, begin);
   if (*t_ < stop) t = std::min(t, stop);
+  if (const auto& flicker = renderer_.scene().flicker)
+    t = std::min(t, std::max(*t_ + kMicrosecond, whole_microseconds(flicker->next_knot_s(to_seconds(*t_)))));
   return std::min(t, end_);
 }
 

@@ -63,6 +63,17 @@ void judge_sensors(const Survey& s, Findings& out) {
   judge_overlap(s, out);
 }
 
+void judge_flicker(const FlickerSurvey& flicker, Findings& out) {
+  constexpr double kFew = 0.05;
+  const std::string text = fmt::format(
+      "a lamp flickers at {:.0f} Hz: about {:.0f} % of the events, in {:.0f} % of the image, {:.0f} % of the time",
+      flicker.hz, 100 * flicker.event_share, 100 * flicker.image_share, 100 * flicker.time_share);
+  if (flicker.event_share * flicker.time_share < kFew) return out.note(text);
+  out.warn(text,
+           "a run leaves most of them out, but exposures of frames shift by a part of a millisecond: expose for whole "
+           "cycles or very briefly, and prefer daylight or lamps on direct current");
+}
+
 void judge_events(const Survey& s, Findings& out) {
   if (s.events.count == 0) return;
   const EventSurvey& e = s.event_details;
@@ -75,6 +86,7 @@ void judge_events(const Survey& s, Findings& out) {
     out.warn(fmt::format("{} hot pixels send {:.1f} % of all events, most at ({}, {})", e.hot_pixels, 100 * e.hot_share,
                          e.hottest.front().x, e.hottest.front().y),
              "mask them in the camera, or raise its thresholds");
+  if (e.flicker) judge_flicker(*e.flicker, out);
   if (e.positive_share < 0.05 || e.positive_share > 0.95)
     out.warn(fmt::format("{:.1f} % of the events are positive", 100 * e.positive_share),
              "check that both polarities are recorded and distinguished");

@@ -51,6 +51,16 @@ TEST(Diagnosis, OfAHealthyRecordingIsGoodAllOver) {
   for (const Finding& f : diagnose(healthy(), true, {agreeing()})) EXPECT_EQ(f.severity, Severity::Good) << f.text;
 }
 
+TEST(Diagnosis, NamesTheFrequencyOfALampAndWhatItTakes) {
+  Survey s = healthy();
+  s.event_details.flicker = FlickerSurvey{.hz = 100.2, .time_share = 1.0, .event_share = 0.7, .image_share = 0.4};
+  const std::string text =
+      "a lamp flickers at 100 Hz: about 70 % of the events, in 40 % of the image, 100 % of the time";
+  EXPECT_THAT(remedy_of(diagnose(s, false, {}), Severity::Warning, text), HasSubstr("direct current"));
+  s.event_details.flicker->event_share = 0.02;
+  EXPECT_EQ(remedy_of(diagnose(s, false, {}), Severity::Note, "a lamp flickers at 100 Hz"), "");
+}
+
 TEST(Diagnosis, NamesClocksThatDoNotOverlap) {
   Survey s = healthy();
   s.imu = stream(2000, 1000, 1010);

@@ -26,7 +26,8 @@ cv::Size counted_area(cv::Size sensor) {
 
 }  // namespace
 
-EventSurveyor::EventSurveyor(cv::Size sensor) : sensor_(sensor), pixels_(counted_area(sensor)) {}
+EventSurveyor::EventSurveyor(cv::Size sensor)
+    : sensor_(sensor), pixels_(counted_area(sensor)), flicker_(counted_area(sensor)) {}
 
 void EventSurveyor::add(std::span<const Event> events) {
   for (const Event& event : events) {
@@ -38,6 +39,7 @@ void EventSurveyor::add(std::span<const Event> events) {
     extent_.width = std::max(extent_.width, event.x + 1);
     extent_.height = std::max(extent_.height, event.y + 1);
     pixels_.add(event.x, event.y, event.t);
+    flicker_.add(event);
   }
 }
 
@@ -68,6 +70,7 @@ EventSurvey EventSurveyor::result() const {
   std::size_t hot_events = 0;
   for (const HotPixel& pixel : survey.hottest) hot_events += pixel.events;
   survey.hot_share = share(hot_events, events_);
+  survey.flicker = flicker_.result();
   survey.hottest.resize(std::min(survey.hottest.size(), kListedHotPixels));
   return survey;
 }

@@ -5,10 +5,12 @@
 
 #include <array>
 #include <opencv2/core/types.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "edged/measurement.hpp"
+#include "edged/survey/flicker_survey.hpp"
 #include "edged/survey/hot_pixels.hpp"
 
 namespace edged {
@@ -26,9 +28,10 @@ struct EventSurvey {
   std::size_t hot_pixels = 0;
   double hot_share = 0.0;         ///< share of the events from hot pixels
   std::vector<HotPixel> hottest;  ///< at most ten, hottest first
+  std::optional<FlickerSurvey> flicker;
 };
 
-/// Events must be in time order. Memory: that of HotPixelFinder, at most 92 MB.
+/// Events must be in time order. Memory: that of HotPixelFinder and FlickerSurveyor, at most 109 MB.
 class EventSurveyor {
  public:
   /// sensor: events beyond it are counted, but not per pixel; empty if unknown.
@@ -42,6 +45,7 @@ class EventSurveyor {
 
   cv::Size sensor_, extent_;
   HotPixelFinder pixels_;
+  FlickerSurveyor flicker_;
   std::size_t events_ = 0, positive_ = 0, bin_events_ = 0, bins_ = 0, peak_ = 0;
   std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins_{};
   Timestamp bin_end_ = Timestamp::min();

@@ -175,9 +175,9 @@ struct ExternalModelConfig {
 /// Of the sensors: LensCovered, FramesMissing, EventsMissing, ImuGap and EventStorm (noise on the whole array). Of the
 /// scene: LightsOff, Person (walks past right before the camera), Walkers (two people cross the view again and again),
 /// WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the scene; the latter's also
-/// goes on and off) and BlankWall (half of the room is painted white and bare, and the camera turns round to it). Of
-/// the motion: GyroSaturation (a turn beyond the gyro's range and back), Shake, PureRotation, Standstill and PutDown (a
-/// standstill that begins and ends with a knock).
+/// goes on and off), BlankWall (half of the room is painted white and bare, and the camera turns round to it) and
+/// Flicker (lamps on mains or with PWM, FlickerConfig). Of the motion: GyroSaturation (a turn beyond the gyro's range
+/// and back), Shake, PureRotation, Standstill and PutDown (a standstill that begins and ends with a knock).
 enum class DisturbanceKind {
   None,
   LensCovered,
@@ -195,7 +195,8 @@ enum class DisturbanceKind {
   PureRotation,
   Standstill,
   PutDown,
-  EventStorm
+  EventStorm,
+  Flicker
 };
 
 /// Times are seconds on the camera's clock.
@@ -219,6 +220,19 @@ struct Disturbance {
   double light(double t_s) const;
 };
 
+/// Mains: the light follows the power of the rectified mains. Pwm: it is switched.
+enum class FlickerWave { Mains, Pwm };
+
+/// The light of the lamps while the disturbance is Flicker. Its mean is that without flicker.
+struct FlickerConfig {
+  FlickerWave wave = FlickerWave::Mains;
+  double hz = 100.0;
+  double duty = 0.5;
+  double reach_m = 0.0;
+
+  void visit(ConfigFields& fields);
+};
+
 /// Every number of a simulation. The defaults are the preset "room"; simulator_preset gives the others.
 struct SimulatorConfig {
   std::string name = "room";  ///< of the preset it started from; only a label
@@ -233,6 +247,7 @@ struct SimulatorConfig {
   ImuModelConfig imu;
   ExternalModelConfig external;
   Disturbance disturbance;
+  FlickerConfig flicker;
 
   /// Pose of the camera in the body; not an option.
   SE3 T_B_C = davis240c_extrinsics();
