@@ -35,7 +35,7 @@ def _run(*command):
 
 
 def _build(build_dir):
-    """The folder of a build; makes one for this Python unless one is given."""
+    """The folder of a build: the one given, as it is, else one made for this Python."""
     if build_dir:
         return ROOT / build_dir
     build = ROOT / "build" / "wheel"
@@ -43,12 +43,12 @@ def _build(build_dir):
     merged = [] if (build / "CMakeCache.txt").exists() else ["-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=8"]
     _run("cmake", "-S", ROOT, "-B", build, *generator, *merged, "-DCMAKE_BUILD_TYPE=Release", "-DEDGED_TESTS=OFF", "-DEDGED_BENCH=OFF",
          f"-DPython3_EXECUTABLE={sys.executable}")
+    _run("cmake", "--build", build, "--target", "edged_python", "edged_manual", "edged_changelog", "--parallel", os.cpu_count() or 1)
     return build
 
 
 def _install(build, package):
     """Module, program and its data, all below the package, which may lie anywhere."""
-    _run("cmake", "--build", build, "--target", "edged_python", "edged_manual", "edged_changelog", "--parallel", os.cpu_count() or 1)
     with tempfile.TemporaryDirectory() as folder:
         _run("cmake", "--install", build, "--component", "python", "--strip", "--prefix", folder)
         shutil.copytree(next(pathlib.Path(folder).glob("**/edged/__init__.py")).parent, package)
