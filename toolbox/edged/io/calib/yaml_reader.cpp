@@ -40,21 +40,35 @@ std::string hint(const std::string& text, int line) {
   return "; a list begins here where a key should: the rows of a matrix need one pair of brackets around them all";
 }
 
-/// Refuses a template with all lines that are still to be filled in.
+/// The key of a line of yaml; "" of a row of a matrix.
+std::string_view key_of(std::string_view line) {
+  const std::string_view key = line.substr(0, line.find(':'));
+  const std::size_t begin = key.find_first_not_of(" -");
+  return key.size() == line.size() || begin == std::string_view::npos ? "" : key.substr(begin);
+}
+
+/// Refuses a template with all lines, and their keys, that are still to be filled in.
 void check_filled_in(const SourcePath& file, const std::string& text) {
   std::vector<std::size_t> lines;
+  std::vector<std::string_view> keys;
+  std::string_view key;
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    if (line.substr(0, line.find('#')).find("FILL_IN") != std::string_view::npos) lines.push_back(number + 1);
+    std::string_view line = std::string_view(text).substr(begin, end - begin);
+    line = line.substr(0, line.find('#'));
+    if (const std::string_view own = key_of(line); !own.empty()) key = own;
+    if (line.find("FILL_IN") != std::string_view::npos) {
+      lines.push_back(number + 1);
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
     begin = end + 1;
   }
   if (lines.empty()) return;
-  const std::string first = fmt::format("{}:{}: ", file.string(), lines.front());
-  throw InputError(first + (lines.size() == 1 ? "reads FILL_IN; write your number there"
-                                              : fmt::format("{} lines read FILL_IN: {}; write your numbers there",
-                                                            lines.size(), fmt::join(lines, ", "))));
+  const std::string all = lines.size() == 1 ? "reads FILL_IN; write your number there"
+                                            : fmt::format("{} lines read FILL_IN: {}; write your numbers there",
+                                                          lines.size(), fmt::join(lines, ", "));
+  throw InputError::format("{}:{}: {} ({})", file.string(), lines.front(), all, fmt::join(keys, ", "));
 }
 
 YAML::Node parse_file(const SourcePath& file) {
