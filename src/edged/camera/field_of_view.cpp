@@ -53,4 +53,9 @@ bool is_same_lens(const RigCamera& a, const RigCamera& b) {
   return a.model == b.model && a.T_B_C.matrix() == b.T_B_C.matrix();
 }
 
+bool have_baseline(const RigCamera& a, const RigCamera& b) {
+  constexpr double kLeast_m = 0.01;
+  return (a.T_B_C.translation() - b.T_B_C.translation()).norm() >= kLeast_m;
+}
+
 }  // namespace edged

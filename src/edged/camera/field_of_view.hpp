@@ -26,4 +26,8 @@ double shared_view(const RigCamera& a, const RigCamera& b, double distance_m);
 /// Of a DAVIS, whose lens gives events and frames.
 bool is_same_lens(const RigCamera& a, const RigCamera& b);
 
+/// Whether they are far enough apart, 1 cm, to see depth together. An event camera and a frame camera that are nearer
+/// are taken for one lens, a DAVIS, whatever a calibration says of their rotations.
+bool have_baseline(const RigCamera& a, const RigCamera& b);
+
 }  // namespace edged

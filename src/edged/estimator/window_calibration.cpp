@@ -92,7 +92,8 @@ void Window::free_calibration(const CalibrationConfig& config) {
     add_soft_prior(prior_at({BlockKind::Calibration, camera}, of.calibration, sigmas));
     auto beside = std::ranges::find_if(
         cameras_, [&](const WindowCamera& other) { return other.given.modality == of.given.modality; });
-    if (&*beside == &of) beside = cameras_.begin();  // the first frame camera beside the first event camera
+    if (&*beside == &of && have_baseline(of.given, cameras_.front().given))
+      beside = cameras_.begin();  // the first frame camera beside the first event camera, behind another lens
     if (const auto first = static_cast<std::size_t>(beside - cameras_.begin());
         first < camera && config.baseline_sigma_mm > 0.0 &&
         twin == cameras_.begin() + static_cast<std::ptrdiff_t>(camera))  // else the other one behind the lens has it

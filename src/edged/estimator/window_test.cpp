@@ -125,6 +125,10 @@ TEST(Window, KnowsThePoseOfTheFirstFrameCameraToTheFirstEventCamera) {
   const std::vector<BlockKey> both{{BlockKind::Calibration, 0}, {BlockKind::Calibration, 1}};
   EXPECT_EQ((*pair)->blocks(), both);
   EXPECT_EQ(window.soft_priors().size(), 4U);  // each camera, the pair, the IMU
+  rig.cameras[1].T_B_C = SE3(so3::exp({0.03, 0.0, 0.0}), Eigen::Vector3d(0.0, 0.0, 1e-4));
+  Window of_a_davis(rig, 1.0);
+  of_a_davis.free_calibration({});
+  EXPECT_EQ(of_a_davis.soft_priors().size(), 3U) << "of one lens a calibration may have one rotation wrong";
 }
 
 TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "edged/camera/field_of_view.hpp"
 #include "edged/frontend/stereo_matcher.hpp"
 
 namespace edged {
@@ -15,9 +16,6 @@ constexpr double kFollowedSlack = 1.5;
 
 /// Factor on the sigma of a feature in an event camera that a frame camera follows, too.
 constexpr double kDiscount = 3.0;
-
-/// Between an event camera and a frame camera [m]: with less they are taken for one lens, a DAVIS.
-constexpr double kLeastBaseline_m = 0.01;
 
 const cv::Mat& image_for(const ChannelView& partner, const ChannelView& view) {
   const Modality modality = view.channel->camera.modality;
@@ -40,8 +38,7 @@ StereoMatcher matcher_of(const ChannelView& from, const ChannelView& to, const B
 bool can_share(const Channel& one, const Channel& other, const StereoConfig& config) {
   if (!config.enabled) return false;
   if (one.camera.modality == other.camera.modality) return true;
-  const double baseline_m = (one.camera.T_B_C.translation() - other.camera.T_B_C.translation()).norm();
-  return one.only_one_of_its_kind && other.only_one_of_its_kind && baseline_m >= kLeastBaseline_m;
+  return one.only_one_of_its_kind && other.only_one_of_its_kind && have_baseline(one.camera, other.camera);
 }
 
 void share_features(const ChannelView& from, const ChannelView& to, const BodyMotion& body, const DepthOf& depth,
