@@ -23,8 +23,9 @@ struct CalibrationConfig {
   double distortion_sigma =
       0.01;                 ///< of the first coefficient; the second's has the same effect at the rim of the image
   double imu_sigma = 5e-3;  ///< of each entry of the IMU's intrinsics
-  double relative_rotation_sigma_deg = 0.2;  ///< of a camera and the first one of its kind
-  double baseline_sigma_mm = 1.0;            ///< between them
+  /// Of a camera and the first one of its kind, and of the first event camera and a frame camera behind another lens.
+  double relative_rotation_sigma_deg = 0.2;
+  double baseline_sigma_mm = 1.0;  ///< between them
   /// All as given.
   static CalibrationConfig fixed() { return {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}; }
   void visit(ConfigFields& fields);

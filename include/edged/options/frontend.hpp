@@ -69,7 +69,7 @@ struct TemplateConfig {
   void visit(ConfigFields& fields);
 };
 
-/// Landmarks that cameras of one kind share.
+/// Landmarks that several cameras share.
 struct StereoConfig {
   bool enabled = true;
   static constexpr double nearest_m = 0.3;  ///< z-depth from which features of unknown depth are searched
