@@ -243,15 +243,15 @@ bool Mapper::recognise(Timestamp t, std::span<const PosedImage> images) {
 }
 
 /// Whether the points that should then be in view match. Keyframes mapped since, at uncertain poses, are removed.
-bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period before) {
+bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made) {
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
   MapFilter there = filter_;
   there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
-  if (!update(there, T_M_O, search(there, T_M_O, images, before), t, images)) return false;
+  if (!update(there, T_M_O, search(there, T_M_O, images, made), t, images)) return false;
   odom_to_map_.forget_guess();
   if (unlocated_before_) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
-  while (map_.keyframes().back().t >= before.before) remove_keyframe(map_.keyframes().size() - 1);
+  while (map_.keyframes().back().t >= made.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
 }
 
