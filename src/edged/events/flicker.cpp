@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "edged/core/statistics.hpp"
+
 namespace edged {
 namespace {
 
@@ -74,13 +76,11 @@ std::optional<LampCycle> PolaritySpectrum::lamp(Timestamp begin) const {
   std::vector<double> size;  // of the components from first to last
   for (std::size_t k = first; k <= last; ++k) size.push_back(std::abs(component(signal, k)));
   const auto peak = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
-  std::vector<double> sorted = size;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double usual = median(size);
   double noise = 0.0;
   for (std::size_t i = 0; i < kBins; ++i) noise += hann(i) * hann(i) * (positive_[i] + negative_[i]);
   const double power = size[peak] * size[peak];
-  if (size[peak] < kLeastSwing * all || power < kLeastOverNoise * noise || power < kLeastOverMedian * *middle * *middle)
+  if (size[peak] < kLeastSwing * all || power < kLeastOverNoise * noise || power < kLeastOverMedian * usual * usual)
     return std::nullopt;
   // A sine between two components has both of them; by the Hann window their ratio gives its place.
   const double left = peak > 0 ? size[peak - 1] : 0.0, right = peak + 1 < size.size() ? size[peak + 1] : 0.0;

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+
+#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {
@@ -20,12 +23,6 @@ constexpr double kSigma = 1.5e-4;
 struct Lead {
   double seconds = 0.0, speed = 0.0;
 };
-
-double middle(std::vector<double>& values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// By the faster half of the features with a landmark; nothing if there are few.
 std::optional<Lead> lead_of(const std::vector<Track>& tracks, const TrackPrediction& prediction, double dt_s) {
@@ -45,10 +42,10 @@ std::optional<Lead> lead_of(const std::vector<Track>& tracks, const TrackPredict
   if (features.size() < kFewestTracks) return std::nullopt;
   std::vector<double> speeds, leads;
   for (const Feature& feature : features) speeds.push_back(feature.speed);
-  const double speed = middle(speeds);
+  const double speed = median(std::move(speeds));
   for (const Feature& feature : features)
     if (feature.speed >= speed) leads.push_back(feature.lead_s);
-  return Lead{middle(leads), speed};
+  return Lead{median(std::move(leads)), speed};
 }
 
 }  // namespace
