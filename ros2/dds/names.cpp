@@ -104,7 +104,7 @@ Names::Names(std::string name_space, std::string node, const std::vector<std::st
       topics.emplace_back(from, to);
     }
   }
-  if (!name_space_.starts_with('/')) name_space_.insert(0, "/");
+  if (!name_space_.starts_with('/')) name_space_.insert(name_space_.begin(), '/');
   if (name_space_ != "/" && !is_name(std::string_view(name_space_).substr(1)))
     throw InputError::format("'{}' is no namespace: use letters, digits and underscores", name_space_);
   if (!is_name(node_) || node_.find('/') != std::string::npos)
