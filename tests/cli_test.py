@@ -231,8 +231,15 @@ class Eval(WithFolder):
         custom = edged("eval", self.truth, self.truth, "--align", "yaw", "--first", "5", "--json")
         self.assertEqual(json.loads(custom.stdout)["alignment"], "position+yaw")
         table = edged("eval", self.truth, self.truth).stdout
-        self.assertIn("ATE position", table)
+        self.assertRegex(table, r"ATE position +0\.0000 .* mm\n")
         self.assertIn("0.00 mm over 3 s, 0.00 mm over 10 s (18, 3 windows)", table)
+
+    def test_small_errors_are_in_millimetres_and_large_ones_in_metres(self):
+        for shift, row in (("0.04", r"ATE position +40\.0000 .* mm\n"), ("4", r"ATE position +4\.0000 .* m\n")):
+            shifted = self.folder / "shifted.txt"
+            rows = [line.split() for line in self.truth.read_text().splitlines()]
+            shifted.write_text("".join(f"{t} {x} {y} {float(z) + float(shift)} {' '.join(q)}\n" for t, x, y, z, *q in rows))
+            self.assertRegex(edged("eval", self.truth, shifted, "--align", "none").stdout, row)
 
     def test_steps_separated_by_a_comma_are_refused_with_what_to_write(self):
         self.assert_refused(edged("eval", self.truth, self.truth, "--delta", "1,5"), "'1,5'", "blanks", code=2)

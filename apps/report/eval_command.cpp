@@ -109,9 +109,8 @@ Compared compare(const ReadFile& truth, const ReadFile& estimate, const EvalOpti
 }
 
 std::string offset_text(const TimeOffset& offset) {
-  return fmt::format(
-      "  time offset            {:+.1f} ms fits best: ATE {:.4f} m with it (SE3 on all poses, {:.4f} m without)\n",
-      1e3 * offset.offset_s, offset.ate_rmse_m, offset.ate_given_m);
+  return fmt::format("  time offset            {:+.1f} ms fits best: ATE {} with it (SE3 on all poses, {} without)\n",
+                     1e3 * offset.offset_s, error_text(offset.ate_rmse_m), error_text(offset.ate_given_m));
 }
 
 /// The next step for the user.

@@ -19,9 +19,19 @@ const std::map<std::string, AlignmentKind> kAlignments = {{"none", AlignmentKind
                                                           {"se3", AlignmentKind::SE3},
                                                           {"sim3", AlignmentKind::Sim3}};
 
+constexpr double kSmallError_m = 0.1;  ///< Smaller errors are given in millimetres.
+
 std::string row(const char* name, const Statistics& s, const char* unit) {
   return fmt::format("  {:<22} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f}  {}\n", name, s.rmse, s.mean,
                      s.median, s.std, s.min, s.max, unit);
+}
+
+/// Millimetres where the RMSE is below 0.1 m, as everywhere in the output, else metres.
+std::string position_row(const std::string& name, const Statistics& m) {
+  if (!(m.rmse < kSmallError_m)) return row(name.c_str(), m, "m");
+  Statistics mm = m;
+  for (double* value : {&mm.rmse, &mm.mean, &mm.median, &mm.std, &mm.min, &mm.max}) *value *= 1e3;
+  return row(name.c_str(), mm, "mm");
 }
 
 std::string window_text(const TimeWindow& window) {
@@ -66,7 +76,7 @@ Protocol chosen_protocol(const EvaluationOptions& options) {
 }
 
 std::string error_text(double error_m) {
-  return error_m < 0.1 ? fmt::format("{:.2f} mm", 1e3 * error_m) : fmt::format("{:.3f} m", error_m);
+  return error_m < kSmallError_m ? fmt::format("{:.2f} mm", 1e3 * error_m) : fmt::format("{:.3f} m", error_m);
 }
 
 std::string local_error_text(const std::vector<LocalError>& local) {
@@ -93,12 +103,12 @@ std::string to_table(const Evaluation& e) {
   }
   table += fmt::format("  {:<22} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "rmse", "mean", "median", "std",
                        "min", "max");
-  table += row("ATE position", e.ate_m, "m");
+  table += position_row("ATE position", e.ate_m);
   table += row("ATE rotation", e.rotation_deg, "deg");
   table += row("ATE yaw", e.yaw_deg, "deg");
   for (const RelativeError& relative : e.relative) {
     if (relative.translation_m.count == 0) continue;
-    table += row(fmt::format("RPE position, {} s", relative.delta_s).c_str(), relative.translation_m, "m");
+    table += position_row(fmt::format("RPE position, {} s", relative.delta_s), relative.translation_m);
     table += row(fmt::format("RPE rotation, {} s", relative.delta_s).c_str(), relative.rotation_deg, "deg");
   }
   if (timed) table += fmt::format("  local error            {}\n", local_error_text(e.local));
