@@ -10,22 +10,22 @@
 namespace edged {
 namespace {
 
-/// Adds events of weight one to an image that has a border of one pixel on each side.
+/// Adds events of weight one to the image of their polarity; both have a border of one pixel on each side.
 class BilinearSplat {
  public:
-  explicit BilinearSplat(cv::Mat& padded)
-      : data_(padded.ptr<float>()),
-        stride_(static_cast<std::ptrdiff_t>(padded.step1())),
-        max_x_(static_cast<float>(padded.cols - 1)),
-        max_y_(static_cast<float>(padded.rows - 1)) {}
+  BilinearSplat(cv::Mat& positive, cv::Mat& negative)
+      : data_{negative.ptr<float>(), positive.ptr<float>()},
+        stride_(static_cast<std::ptrdiff_t>(positive.step1())),
+        max_x_(static_cast<float>(positive.cols - 1)),
+        max_y_(static_cast<float>(positive.rows - 1)) {}
 
   /// x, y [px] in the image without its border.
-  void operator()(float x, float y) const {
+  void operator()(float x, float y, bool positive) const {
     const float px = x + 1.0F, py = y + 1.0F;
     if (!(px >= 0.0F && py >= 0.0F && px < max_x_ && py < max_y_)) return;
     const int column = static_cast<int>(px), row = static_cast<int>(py);
     const float fx = px - static_cast<float>(column), fy = py - static_cast<float>(row);
-    float* top = data_ + row * stride_ + column;
+    float* top = data_[positive] + row * stride_ + column;
     float* bottom = top + stride_;
     const float lower = fx * fy, right = fx - lower, left = fy - lower;
     top[0] += 1.0F - fx - left;
@@ -35,7 +35,7 @@ class BilinearSplat {
   }
 
  private:
-  float* data_;
+  float* data_[2];
   std::ptrdiff_t stride_;
   float max_x_, max_y_;
 };
@@ -63,41 +63,55 @@ void EventFrameConfig::visit(ConfigFields& fields) {
 }
 
 EventFrameRenderer::EventFrameRenderer(UndistortTable table, const EventFrameConfig& config)
-    : table_(std::move(table)), config_(config), padded_(table_.height() + 2, table_.width() + 2, CV_32FC1) {
+    : table_(std::move(table)),
+      config_(config),
+      positive_(table_.height() + 2, table_.width() + 2, CV_32FC1),
+      negative_(positive_.size(), CV_32FC1) {
   EDGED_CHECK(config_.saturation_events > 0.0, "saturation_events is {}", config_.saturation_events);
 }
 
 cv::Mat EventFrameRenderer::accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
                                        const DepthGrid* depths) {
-  padded_.setTo(0.0F);
+  positive_.setTo(0.0F);
+  negative_.setTo(0.0F);
   if (!events.empty()) {
     const WarpSettings settings{config_.interpolation, depth};
     const EventWarp warp(table_.ideal(), motion, settings, events.front().t, events.back().t);
+    const BilinearSplat splat(positive_, negative_);
     if (depths != nullptr) {
-      warp.for_each(events, table_, *depths, BilinearSplat(padded_));
+      warp.for_each(events, table_, *depths, splat);
     } else {
-      warp.for_each(events, table_, BilinearSplat(padded_));
+      warp.for_each(events, table_, splat);
     }
   }
-  return padded_(cv::Rect(1, 1, table_.width(), table_.height()));
+  cv::add(positive_, negative_, sum_);
+  return sum_(cv::Rect(1, 1, table_.width(), table_.height()));
 }
 
-cv::Mat EventFrameRenderer::render(std::span<const Event> events, const CameraMotion& motion, double depth,
-                                   const DepthGrid* depths, double weight) {
-  cv::Mat sum = accumulate(events, motion, depth, depths);
+EventFrame EventFrameRenderer::render(std::span<const Event> events, const CameraMotion& motion, double depth,
+                                      const DepthGrid* depths, double weight) {
+  const cv::Mat sum = accumulate(events, motion, depth, depths);
+  cv::subtract(positive_, negative_, difference_);
+  const double scale = weight * 255.0 / config_.saturation_events;
+  const cv::Mat difference = difference_(cv::Rect(1, 1, table_.width(), table_.height()));
+  return {finish(sum, scale, 0.0), finish(difference, 0.5 * scale, 128.0)};
+}
+
+cv::Mat EventFrameRenderer::finish(const cv::Mat& sum, double scale, double zero) {
+  cv::Mat finished;
   if (config_.blur_sigma_px > 0.0) {
     cv::GaussianBlur(sum, blurred_, cv::Size(), config_.blur_sigma_px, config_.blur_sigma_px,
                      cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
-    sum = blurred_;
+    blurred_.convertTo(finished, CV_8U, scale, zero);
+  } else {
+    sum.convertTo(finished, CV_8U, scale, zero);
   }
-  cv::Mat frame;
-  sum.convertTo(frame, CV_8U, weight * 255.0 / config_.saturation_events);
-  return frame;
+  return finished;
 }
 
 cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
                            const UndistortTable& table, const EventFrameConfig& config) {
-  return EventFrameRenderer(table, config).render(events, motion, depth);
+  return EventFrameRenderer(table, config).render(events, motion, depth).image;
 }
 
 }  // namespace edged

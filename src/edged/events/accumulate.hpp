@@ -11,33 +11,41 @@
 
 namespace edged {
 
-/// Renders event frames of one camera, reusing its buffers. Polarity is ignored. The scaling does not depend on the
-/// content, so that brightness is constant from frame to frame.
+/// Both images of the same motion-compensated events, undistorted. The scaling does not depend on the content, so that
+/// brightness is constant from frame to frame.
+struct EventFrame {
+  cv::Mat image;       ///< the events of either polarity, CV_8UC1
+  cv::Mat increments;  ///< positive less negative events: the change of the log brightness, CV_8UC1, 128 where none is
+};
+
+/// Renders event frames of one camera, reusing its buffers.
 class EventFrameRenderer {
  public:
   EventFrameRenderer(UndistortTable table, const EventFrameConfig& config);
 
-  /// The sum of the bilinear weights of the warped events, CV_32FC1, undistorted, size of the table. Valid until the
-  /// next call. depth: z-depth of the scene [m]; depths: that of every event, in its place.
+  /// The sum of the bilinear weights of the warped events of either polarity, CV_32FC1, undistorted, size of the table.
+  /// Valid until the next call. depth: z-depth of the scene [m]; depths: that of every event, in its place.
   cv::Mat accumulate(std::span<const Event> events, const CameraMotion& motion, double depth,
                      const DepthGrid* depths = nullptr);
 
-  /// accumulate, then blur and scale to CV_8UC1; a new image each time. weight: the number of events that each one
-  /// represents.
-  cv::Mat render(std::span<const Event> events, const CameraMotion& motion, double depth,
-                 const DepthGrid* depths = nullptr, double weight = 1.0);
+  /// accumulate, then blur and scale; new images each time. weight: the number of events that each one represents.
+  EventFrame render(std::span<const Event> events, const CameraMotion& motion, double depth,
+                    const DepthGrid* depths = nullptr, double weight = 1.0);
 
   /// The undistorted camera of the images.
   const CameraModel& camera() const { return table_.ideal(); }
 
  private:
+  /// Blurred and scaled.
+  cv::Mat finish(const cv::Mat& sum, double scale, double zero);
+
   UndistortTable table_;
   EventFrameConfig config_;
-  cv::Mat padded_;  ///< CV_32FC1, one pixel of border for the weights of events just outside
-  cv::Mat blurred_;
+  cv::Mat positive_, negative_;  ///< CV_32FC1, one pixel of border for the weights of events just outside
+  cv::Mat sum_, difference_, blurred_;
 };
 
-/// One event frame, for a single use.
+/// The image of an event frame, for a single use.
 cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
                            const UndistortTable& table, const EventFrameConfig& config);
 

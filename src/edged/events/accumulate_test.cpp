@@ -86,16 +86,32 @@ TEST(EventFrame, BlurKeepsTheSumAndLowersThePeak) {
 
 TEST(EventFrame, IsBlackWithoutEvents) {
   EventFrameRenderer renderer(UndistortTable(kCamera, kCamera), EventFrameConfig());
-  EXPECT_EQ(cv::countNonZero(renderer.render({}, CameraMotion(), 1.0)), 0);
+  EXPECT_EQ(cv::countNonZero(renderer.render({}, CameraMotion(), 1.0).image), 0);
+}
+
+TEST(EventFrame, ShowsTheIncrementsOfTheBrightnessBesideTheEvents) {
+  EventFrameConfig config;
+  config.saturation_events = 4.0;
+  config.blur_sigma_px = 0.0;
+  EventFrameRenderer renderer(UndistortTable(kCamera, kCamera), config);
+  const Event on{at_us(0), 10, 50, true}, off{at_us(0), 20, 50, false};
+  const EventFrame frame = renderer.render(
+      std::vector<Event>{on, on, off, {at_us(0), 30, 50, true}, {at_us(0), 30, 50, false}}, CameraMotion(), 1.0);
+  ASSERT_EQ(frame.increments.type(), CV_8UC1);
+  EXPECT_EQ(frame.increments.at<unsigned char>(50, 10), 192);
+  EXPECT_EQ(frame.increments.at<unsigned char>(50, 20), 96);
+  EXPECT_EQ(frame.increments.at<unsigned char>(50, 30), 128);
+  EXPECT_EQ(frame.image.at<unsigned char>(50, 30), 128);
+  EXPECT_EQ(frame.increments.at<unsigned char>(0, 0), 128);
 }
 
 TEST(EventFrame, StartsAfreshAtEachCallAndKeepsEarlierImages) {
   EventFrameRenderer renderer(UndistortTable(kCamera, kCamera), EventFrameConfig());
   const std::vector<Event> events(4, Event{at_us(0), 60, 45, true});
-  const cv::Mat first = renderer.render(events, CameraMotion(), 1.0);
+  const cv::Mat first = renderer.render(events, CameraMotion(), 1.0).image;
   const cv::Mat copy = first.clone();
   renderer.render({}, CameraMotion(), 1.0);
-  const cv::Mat again = renderer.render(events, CameraMotion(), 1.0);
+  const cv::Mat again = renderer.render(events, CameraMotion(), 1.0).image;
   EXPECT_EQ(cv::countNonZero(first != copy), 0);
   EXPECT_EQ(cv::countNonZero(again != copy), 0);
 }

@@ -90,6 +90,7 @@ class EventWarp {
     float a[kMost];            ///< time in the bin, from 0 to 1
     float nearer[kMost];       ///< inverse depth less the one that H holds
     float w[kMost];            ///< depth after the warp over depth before it
+    bool positive[kMost];
     std::size_t count = 0;
   };
   static void warp(const Bin& bin, Block& block);
@@ -111,12 +112,13 @@ class EventWarp {
           if (std::isnan(p.x())) continue;
           block.x[block.count] = p.x();
           block.y[block.count] = p.y();
+          block.positive[block.count] = event.positive;
           block.a[block.count] = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
           block.nearer[block.count++] = nearer(p);
         }
         warp(bin, block);
         for (std::size_t k = 0; k < block.count; ++k) {
-          if (!(block.w[k] < kMinDepthRatio)) sink(block.x[k], block.y[k]);
+          if (!(block.w[k] < kMinDepthRatio)) sink(block.x[k], block.y[k], block.positive[k]);
         }
       }
     }

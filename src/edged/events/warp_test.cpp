@@ -47,7 +47,7 @@ std::vector<Eigen::Vector2d> warp_all(const std::vector<Event>& events, const Un
                                       const CameraMotion& motion, const WarpSettings& settings) {
   const EventWarp warp(table.ideal(), motion, settings, events.front().t, events.back().t);
   std::vector<Eigen::Vector2d> warped;
-  warp.for_each(events, table, [&](float x, float y) { warped.emplace_back(x, y); });
+  warp.for_each(events, table, [&](float x, float y, bool) { warped.emplace_back(x, y); });
   return warped;
 }
 
@@ -187,7 +187,7 @@ TEST(EventWarp, MovesEveryEventAtItsOwnDepth) {
   const DepthGrid depths(240, 180, {8, 1000.0}, samples, 2.0);
   const EventWarp warp(table.ideal(), motion, {WarpInterpolation::Piecewise, 2.0}, first, last);
   std::vector<Eigen::Vector2d> warped;
-  warp.for_each(events, table, depths, [&](float x, float y) { warped.emplace_back(x, y); });
+  warp.for_each(events, table, depths, [&](float x, float y, bool) { warped.emplace_back(x, y); });
   ASSERT_EQ(warped.size(), events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Eigen::Vector2f p = table.at(events[i].x, events[i].y);

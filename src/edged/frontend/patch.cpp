@@ -126,15 +126,18 @@ void PatchConfig::visit(ConfigFields& fields) {
              {"", 0, 1, "Least normalized cross correlation of a stored patch with the image for a match."});
 }
 
-std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner) {
-  const Eigen::Vector2d first = corner.array() - 0.5 * (Patch::kSize - 1);
-  if (!(first.minCoeff() >= 0.0) || !(first.x() + Patch::kSize < image.cols) ||
-      !(first.y() + Patch::kSize < image.rows))
+std::optional<Patch> cut_patch(const cv::Mat& image, const PatchPlace& place) {
+  constexpr double kHalf = 0.5 * (Patch::kSize - 1);
+  const Eigen::Vector2d reach = kHalf * place.A.cwiseAbs().rowwise().sum();
+  const Eigen::Vector2d first = place.pixel - place.A * Eigen::Vector2d::Constant(kHalf);
+  if (!((place.pixel - reach).minCoeff() >= 0.0) || !(place.pixel.x() + reach.x() < image.cols - 1) ||
+      !(place.pixel.y() + reach.y() < image.rows - 1))
     return std::nullopt;
   Patch patch;
   for (int y = 0, i = 0; y < Patch::kSize; ++y) {
     for (int x = 0; x < Patch::kSize; ++x, ++i) {
-      patch.pixels[i] = static_cast<std::uint8_t>(std::lround(bilinear(image, first.x() + x, first.y() + y)));
+      const Eigen::Vector2d at = first + place.A * Eigen::Vector2d(x, y);
+      patch.pixels[i] = static_cast<std::uint8_t>(std::lround(bilinear(image, at.x(), at.y())));
     }
   }
   return patch;

@@ -24,14 +24,14 @@ struct Patch {
   std::uint8_t middle() const { return pixels[(kSize / 2) * kSize + kSize / 2]; }
 };
 
-/// Nothing where it would reach beyond the image. image: CV_8UC1.
-std::optional<Patch> cut_patch(const cv::Mat& image, const Eigen::Vector2d& corner);
-
-/// Where a patch is looked for: its middle [px], and pixels of the image by pixels of the patch.
+/// Where a patch lies in an image: its middle [px], and pixels of the image by pixels of the patch.
 struct PatchPlace {
   Eigen::Vector2d pixel;
-  Eigen::Matrix2d A;
+  Eigen::Matrix2d A = Eigen::Matrix2d::Identity();
 };
+
+/// Nothing where it would reach beyond the image. image: CV_8UC1.
+std::optional<Patch> cut_patch(const cv::Mat& image, const PatchPlace& place);
 
 /// Normalised cross correlation of the patch at each place; -1 where it leaves the image or is uniform.
 std::vector<double> correlations(const Patch& patch, const cv::Mat& image, std::span<const PatchPlace> places);

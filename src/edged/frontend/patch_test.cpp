@@ -30,7 +30,7 @@ const Eigen::Matrix2d kSame = Eigen::Matrix2d::Identity();
 
 TEST(Patch, IsFoundWhereItHasGoneToAFractionOfAPixel) {
   const cv::Mat then = scene(kSame, {80, 60});
-  const auto patch = cut_patch(then, {80.3, 59.8});
+  const auto patch = cut_patch(then, {{80.3, 59.8}});
   ASSERT_TRUE(patch);
   for (const Eigen::Vector2d& moved :
        {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.4, -0.7), Eigen::Vector2d(-3.2, 2.6)}) {
@@ -45,7 +45,7 @@ TEST(Patch, IsFoundWhereItHasGoneToAFractionOfAPixel) {
 
 TEST(Patch, IsFoundTurnedNearerAndInOtherLight) {
   const cv::Mat then = scene(kSame, {80, 60});
-  const auto patch = cut_patch(then, {80, 60});
+  const auto patch = cut_patch(then, {{80, 60}});
   Eigen::Matrix2d A;
   A << 1.2, -0.4, 0.3, 1.1;
   const auto match = match_patch(*patch, scene(A, {81.3, 58.9}, 0.6, 50.0), {80, 60}, A, 4.0, {});
@@ -54,7 +54,7 @@ TEST(Patch, IsFoundTurnedNearerAndInOtherLight) {
 }
 
 TEST(Patch, IsNotFoundInWhatLooksOtherwiseNorInOneGrey) {
-  const auto patch = cut_patch(scene(kSame, {80, 60}), {80, 60});
+  const auto patch = cut_patch(scene(kSame, {80, 60}), {{80, 60}});
   cv::Mat noise(120, 160, CV_8UC1);
   cv::theRNG().state = 7;
   cv::randu(noise, 0, 255);
@@ -65,10 +65,10 @@ TEST(Patch, IsNotFoundInWhatLooksOtherwiseNorInOneGrey) {
 
 TEST(Patch, NeverReachesBeyondTheImage) {
   const cv::Mat image = scene(kSame, {80, 60});
-  EXPECT_FALSE(cut_patch(image, {5.0, 60.0}));
-  EXPECT_FALSE(cut_patch(image, {80.0, 119.0}));
-  EXPECT_FALSE(cut_patch(image, {std::nan(""), 60.0}));
-  const auto patch = cut_patch(image, {80, 60});
+  EXPECT_FALSE(cut_patch(image, {{5.0, 60.0}}));
+  EXPECT_FALSE(cut_patch(image, {{80.0, 119.0}}));
+  EXPECT_FALSE(cut_patch(image, {{std::nan(""), 60.0}}));
+  const auto patch = cut_patch(image, {{80, 60}});
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(-50, 20), Eigen::Vector2d(159, 119), Eigen::Vector2d(1e9, 0)}) {
     EXPECT_FALSE(match_patch(*patch, image, place, kSame, 3.0, {}));
   }

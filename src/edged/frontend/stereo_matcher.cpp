@@ -64,14 +64,14 @@ std::optional<PatchPlace> StereoMatcher::search(const Patch& patch, const PatchO
 /// Whether the match, followed back, ends where it began.
 bool StereoMatcher::returns(const Eigen::Vector2d& found, const PatchPlace& place,
                             const Eigen::Vector2d& corner) const {
-  const std::optional<Patch> patch = cut_patch(to_.pixels, found);
+  const std::optional<Patch> patch = cut_patch(to_.pixels, {found});
   if (!patch) return false;
   const auto back = match_patch(*patch, from_.pixels, corner, place.A.inverse(), 0.0, config_.patch);
   return back && (back->pixel - corner).norm() < kReturn_px;
 }
 
 std::optional<Eigen::Vector2d> StereoMatcher::match(const Eigen::Vector2d& corner, std::optional<double> depth) const {
-  const std::optional<Patch> patch = cut_patch(from_.pixels, corner);
+  const std::optional<Patch> patch = cut_patch(from_.pixels, {corner});
   if (!patch) return std::nullopt;
   const PatchOutline outline(from_.camera, corner);
   const std::optional<PatchPlace> place = search(*patch, outline, depth);

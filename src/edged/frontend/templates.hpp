@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "edged/frontend/gradient_patch.hpp"
 #include "edged/frontend/patch.hpp"
 #include "edged/frontend/patch_outline.hpp"
 #include "edged/options/frontend.hpp"
@@ -17,6 +18,19 @@
 
 namespace edged {
 
+/// What the reference patches are compared with.
+struct PatchView {
+  cv::Mat image;                    ///< CV_8UC1
+  BrightnessIncrements increments;  ///< of an event frame
+};
+
+/// Where a corner is, and where it was expected.
+struct CornerMotion {
+  Eigen::Vector2d pixel;
+  Eigen::Vector2d moved;  ///< since the image before [px]
+  Eigen::Vector3d p_C;    ///< expected position in the camera [m]; its neighbourhood is assumed at the same depth
+};
+
 class Templates {
  public:
   Templates(const CameraModel& camera, const PatchConfig& config) : camera_(camera), config_(config) {}
@@ -25,12 +39,13 @@ class Templates {
   void move(const SE3& T_cur_prev);
   /// Takes reference patches from the newest image for tracks without one or whose patch no longer matches; drops those
   /// of ended tracks.
-  void take(const cv::Mat& image, std::span<const Track> tracks);
-  /// The position near `pixel` where the newest image matches the reference patch, independent of gain and offset;
-  /// nothing without a reference patch or a match. p_C: the expected position of the corner in the camera [m]; its
-  /// neighbourhood is assumed at the same depth.
-  std::optional<Eigen::Vector2d> align(FeatureId id, const cv::Mat& image, const Eigen::Vector2d& pixel,
-                                       const Eigen::Vector3d& p_C) const;
+  void take(const PatchView& view, std::span<const Track> tracks);
+  /// The position near that of the corner where the newest image matches the reference patch, independent of gain and
+  /// offset; nothing without a reference patch or a match. On event frames the gradient patch comes first, which no
+  /// change of direction spoils.
+  std::optional<Eigen::Vector2d> align(FeatureId id, const PatchView& view, const CornerMotion& corner) const;
+  /// The gradient patch learns from the newest image, where the corner has been found. confirmed: by align.
+  void learn(FeatureId id, const PatchView& view, const CornerMotion& corner, bool confirmed);
   /// Whether the newest image matches the reference patch.
   void note(FeatureId id, bool fits);
   void clear() { looks_.clear(); }
@@ -40,8 +55,10 @@ class Templates {
     Patch patch;
     SE3 T_cur_look;  ///< camera at the reference patch to camera now
     PatchOutline outline;
+    GradientPatch gradient;
     bool fits = true;  ///< at the last call of match
   };
+  std::optional<PatchPlace> place_of(const Look& look, const CornerMotion& corner) const;
 
   CameraModel camera_;
   PatchConfig config_;

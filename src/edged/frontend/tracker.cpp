@@ -90,6 +90,7 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   }
   check_image(image);
   current_.build(image, config_.klt);
+  increments_ = prediction ? prediction->increments : BrightnessIncrements();
   if (prediction && prediction->reference_patches) {
     templates_.move(prediction->T_cur_prev);
   } else {
@@ -168,7 +169,7 @@ void FeatureTracker::mark_keyframe() {
     track.in_keyframe = true;
   }
   keyframe_tracks_ = static_cast<int>(tracks_.size());
-  if (config_.templates.enabled) templates_.take(previous_.image(), tracks_);
+  if (config_.templates.enabled) templates_.take({previous_.image(), increments_}, tracks_);
 }
 
 KeyframeTracks FeatureTracker::since_keyframe(const Eigen::Matrix3d& R_kf_cur) const {
@@ -230,11 +231,16 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   return seeds;
 }
 
-/// expected_C: of each track, for the warp of its reference patch [m]; empty where that is not known.
+CornerMotion FeatureTracker::corner_of(const Track& track, std::size_t i, const Matches& matches) {
+  const Eigen::Vector2d pixel = to_eigen(matches.points[i]);
+  return {pixel, pixel - track.pixel, matches.expected_C[i]};
+}
+
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
-                                              std::span<const Eigen::Vector3d> expected_C) const {
-  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0)};
+                                              std::vector<Eigen::Vector3d> expected_C) const {
+  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0),
+                  std::move(expected_C)};
   std::vector<std::size_t> alive;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
@@ -249,9 +255,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
     matches.fates[i] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
     if (matches.fates[i] != Fate::Kept) continue;
     std::optional<Eigen::Vector2d> aligned;
-    if (!expected_C.empty()) {
-      aligned = templates_.align(tracks_[i].id, current_.image(), to_eigen(forward.points[k]), expected_C[i]);
-    }
+    if (!matches.expected_C.empty())
+      aligned = templates_.align(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches));
     if (aligned && camera_.contains(*aligned, config_.border_px)) {
       matches.points[i] = to_cv(*aligned);
       matches.as_at_first[i] = 1;
@@ -286,9 +291,9 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
   for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
   if (!prediction) return match(from, from, {});
 
-  const std::vector<Eigen::Vector3d> expected_C = expected(*prediction);
+  std::vector<Eigen::Vector3d> expected_C = expected(*prediction);
   const std::vector<cv::Point2f> seeds = projected(expected_C, prediction->offset_px);
-  Matches matches = match(from, seeds, expected_C);
+  Matches matches = match(from, seeds, std::move(expected_C));
   const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
   const auto all = static_cast<double>(from.size());
   if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
@@ -342,6 +347,10 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
         continue;
     }
     templates_.note(tracks_[i].id, matches.as_at_first[i]);
+    if (!matches.expected_C.empty()) {
+      templates_.learn(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches),
+                       matches.as_at_first[i]);
+    }
     Track track = tracks_[i];
     track.previous_pixel = track.pixel;
     track.previous_point = track.point;

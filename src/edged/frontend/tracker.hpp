@@ -31,6 +31,7 @@ struct TrackPrediction {
   std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to the position predicted by the poses
   bool reference_patches = true;                          ///< compare corners with their reference patches
+  BrightnessIncrements increments = {};                   ///< of an event frame, for these patches
 };
 
 /// What happened to the tracks in one image.
@@ -100,6 +101,8 @@ class FeatureTracker {
     std::vector<cv::Point2f> points;
     std::vector<Fate> fates;
     std::vector<char> as_at_first;  ///< set to the position that matches the reference patch
+    std::vector<Eigen::Vector3d>
+        expected_C;  ///< of each track, for the warp of its reference patch [m]; empty: unknown
   };
 
   void check_image(const cv::Mat& image) const;
@@ -108,8 +111,10 @@ class FeatureTracker {
   std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
                                      const Eigen::Vector2d& offset_px) const;
   Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds,
-                std::span<const Eigen::Vector3d> expected_C) const;
+                std::vector<Eigen::Vector3d> expected_C) const;
   Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
+  /// The i-th track in the newest image.
+  static CornerMotion corner_of(const Track& track, std::size_t i, const Matches& matches);
   void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
   void apply(const Matches& matches, TrackSummary& summary);
@@ -122,6 +127,7 @@ class FeatureTracker {
   Timestamp now_;
   int keyframe_tracks_ = 0;
   Templates templates_;
+  BrightnessIncrements increments_;  // of the newest image
   ImagePyramid previous_, current_;  // current_ is the newest only while track runs
 };
 

@@ -3,6 +3,7 @@
 // The tracks of one camera of the rig, and the poses of the body at its last image and last keyframe.
 #pragma once
 
+#include <limits>
 #include <opencv2/core/mat.hpp>
 #include <span>
 
@@ -46,6 +47,10 @@ class Channel {
   CameraObservations observations() const;
 
   bool has_image_of(Timestamp t) const { return any_image_ && last_image_ == t; }
+  /// Infinite before the first one.
+  double since_last_image_s(Timestamp t) const {
+    return any_image_ ? to_seconds(t - last_image_) : std::numeric_limits<double>::infinity();
+  }
   /// Sets the estimated pose of the body at the present image (and keyframe).
   void settle(const SE3& T_O_B, bool keyframe);
   /// Transforms all stored poses to another odometry frame.
@@ -76,6 +81,8 @@ class Channel {
 struct ChannelView {
   Channel* channel;
   cv::Mat track, detect;
+  cv::Mat increments = {};  ///< of an event frame (EventImage)
+  Duration covered = {};
   cv::Mat as_events = {};  ///< of a frame in a keyframe: as event cameras behind other lenses would see its scene
 };
 

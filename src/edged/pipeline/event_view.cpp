@@ -62,7 +62,10 @@ EventImage EventView::render(const EventsToRender& rendered, const RigCamera& ca
   const CameraMotion motion = camera_motion(poses, body.moved_on(camera.time_offset), camera.T_B_C, camera.time_offset);
   EventImage image;
   image.rendered = rendered.events.size();
-  image.frame = renderer_.render(events, motion, scene_depth, depths, rendered.every);
+  const EventFrame rendered_frame = renderer_.render(events, motion, scene_depth, depths, rendered.every);
+  image.frame = rendered_frame.image;
+  image.increments = rendered_frame.increments;
+  image.covered = events.back().t - events.front().t;
   const cv::Mat enhanced = enhance(image.frame, enhance_);
   image.track = enhance_track_ ? enhanced : image.frame;
   image.detect = enhance_detect_ ? enhanced : image.frame;

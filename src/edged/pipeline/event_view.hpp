@@ -17,6 +17,8 @@ namespace edged {
 /// One event frame. All images are empty when there were too few events for one.
 struct EventImage {
   cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
+  cv::Mat increments;     ///< of the brightness (EventFrame)
+  Duration covered = {};  ///< from the first to the last of its events
   cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): features are tracked on one, detected on the other
   std::size_t rendered = 0;  ///< events that it is rendered from, the newest of the packet
 };

@@ -282,7 +282,7 @@ void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
     const std::vector<std::optional<Descriptor>> descriptors = descriptors_of(image, T_O_C);
     for (std::size_t i = 0; i < image.tracks.size(); ++i) {
       const Track& track = image.tracks[i];
-      if (const auto patch = cut_patch(image.image, track.pixel))
+      if (const auto patch = cut_patch(image.image, {track.pixel}))
         view.points.push_back({.id = track.id, .patch = *patch, .descriptor = descriptors[i], .pixel = track.pixel});
     }
   }

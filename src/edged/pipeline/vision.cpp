@@ -173,7 +173,8 @@ std::vector<ChannelView> Vision::views_of(const Packet& packet, std::span<const 
   std::vector<ChannelView> views;
   for (std::size_t i = 0; i < event_images.size(); ++i) {
     const EventImage& image = event_images[i];
-    if (!image.frame.empty()) views.push_back({&channels_[i], image.track, image.detect});
+    if (!image.frame.empty())
+      views.push_back({&channels_[i], image.track, image.detect, image.increments, image.covered});
   }
   for (std::size_t i = event_images.size(); i < channels_.size(); ++i) {
     const Frame* frame = packet.find_frame(channels_[i].camera.name);
@@ -194,6 +195,7 @@ void Vision::track(const ChannelView& view, const VisionInput& input, double sce
   // With one reference patch all errors of a track correlate, which the thresholds of initialization do not model: with
   // events alone 3 of 72 initializations have a wrong scale, 1 without.
   prediction.reference_patches = !provisional_;
+  prediction.increments = {view.increments, to_seconds(view.covered) / channel.since_last_image_s(input.packet.t)};
   channel.track(view.track, input.packet.t, channel.T_O_B_now(input.body), std::move(prediction),
                 channel.camera.modality == Modality::Frames && landmarks_ ? input.packet.lamp() : std::nullopt);
 }
