@@ -47,10 +47,13 @@ class JumpGate {
 
   /// Of many items, the number of leading ones that pass unchanged.
   std::size_t push_first(std::span<const T> items) {
+    if (items.empty() || waiting_ || is_far_ahead(time_of(items.front()))) return 0;
+    Timestamp newest = newest_.value_or(time_of(items.front()));  // a copy stays in a register
+    const Timestamp heard = heard_;
     std::size_t count = 0;
-    for (; count < items.size() && !waiting_ && !is_far_ahead(time_of(items[count])); ++count) {
-      newest_ = std::max(newest_.value_or(time_of(items[count])), time_of(items[count]));
-    }
+    for (; count < items.size() && time_of(items[count]) - std::max(newest, heard) <= kJump; ++count)
+      newest = std::max(newest, time_of(items[count]));
+    newest_ = newest;
     return count;
   }
 

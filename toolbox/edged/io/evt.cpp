@@ -34,11 +34,15 @@ std::int64_t continued(std::int64_t last, std::uint32_t counter, unsigned width)
 
 }  // namespace
 
-/// Collects decoded events within the sensor.
+/// Collects decoded events within the sensor, some at a time: to append each to a vector takes longer than to decode
+/// it.
 class EvtDecoder::Sink {
  public:
   Sink(std::uint32_t width, std::uint32_t height, Counts& counts, std::vector<Event>& events)
       : width_(width), height_(height), counts_(counts), events_(events) {}
+  ~Sink() { flush(); }
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
 
   void add(const State& state, std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool positive) {
     if (x >= width_ || y >= height_) [[unlikely]] {
@@ -46,8 +50,10 @@ class EvtDecoder::Sink {
     } else if (!state.timed) [[unlikely]] {
       ++counts_.untimed;
     } else {
-      events_.push_back(
-          {timestamp_from_ns(t_us * 1000), static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), positive});
+      some_[count_++] = {timestamp_from_ns(t_us * 1000), static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                         positive};
+      if (count_ == some_.size()) [[unlikely]]
+        flush();
     }
   }
 
@@ -73,9 +79,16 @@ class EvtDecoder::Sink {
   }
 
  private:
-  std::uint32_t width_, height_;
+  [[gnu::noinline]] void flush() {
+    events_.insert(events_.end(), some_.begin(), some_.begin() + static_cast<std::ptrdiff_t>(count_));
+    count_ = 0;
+  }
+
+  const std::uint32_t width_, height_;
   Counts& counts_;
   std::vector<Event>& events_;
+  std::array<Event, 512> some_;
+  std::size_t count_ = 0;
 };
 
 EvtDecoder::EvtDecoder(EvtFormat format, int width, int height)
@@ -90,33 +103,30 @@ void EvtDecoder::reset() {
 
 void EvtDecoder::decode(std::span<const std::uint8_t> bytes, std::vector<Event>& events) {
   Sink sink(width_, height_, counts_, events);
-  State state = state_;  // a local copy, which the output of events cannot alias
   switch (format_) {
     case EvtFormat::Evt2:
-      each_word<std::uint32_t>(bytes, [&](std::uint32_t word) { evt2(word, state, sink); });
-      break;
+      return each_word<std::uint32_t>(bytes, [&](auto word, State& state) { evt2(word, state, sink); });
     case EvtFormat::Evt21:
-      each_word<std::uint64_t>(bytes, [&](std::uint64_t word) { evt21(word, state, sink); });
-      break;
+      return each_word<std::uint64_t>(bytes, [&](auto word, State& state) { evt21(word, state, sink); });
     case EvtFormat::Evt21Legacy:
-      each_word<std::uint64_t>(bytes, [&](std::uint64_t word) { evt21(std::rotl(word, 32), state, sink); });
-      break;
+      return each_word<std::uint64_t>(bytes, [&](auto word, State& state) { evt21(std::rotl(word, 32), state, sink); });
     case EvtFormat::Evt3:
-      each_word<std::uint16_t>(bytes, [&](std::uint16_t word) { evt3(word, state, sink); });
-      break;
+      return each_word<std::uint16_t>(bytes, [&](auto word, State& state) { evt3(word, state, sink); });
     case EvtFormat::Dat:
-      each_word<std::uint64_t>(bytes, [&](std::uint64_t word) { dat(word, state, sink); });
-      break;
+      return each_word<std::uint64_t>(bytes, [&](auto word, State& state) { dat(word, state, sink); });
   }
-  state_ = state;
 }
 
 template <typename Word, typename Step>
 void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step) {
-  const auto word_at = [](const std::uint8_t* p) {
-    Word word;
-    std::memcpy(&word, p, sizeof word);
-    return word;
+  const auto each_of = [this, &step](const std::uint8_t* p, std::size_t size) {
+    State state = state_;  // a local copy, which stays in registers
+    for (const std::uint8_t* const end = p + size; p < end; p += sizeof(Word)) {
+      Word word;
+      std::memcpy(&word, p, sizeof word);
+      step(word, state);
+    }
+    state_ = state;
   };
   const auto keep = [this, &bytes](std::size_t count) {
     std::copy_n(bytes.begin(), count, cut_.begin() + static_cast<std::ptrdiff_t>(cut_bytes_));
@@ -126,16 +136,16 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
   if (cut_bytes_ > 0) {
     keep(std::min(bytes.size(), sizeof(Word) - cut_bytes_));
     if (cut_bytes_ < sizeof(Word)) return;
-    step(word_at(cut_.data()));
+    each_of(cut_.data(), sizeof(Word));
     cut_bytes_ = 0;
   }
   const std::size_t whole = bytes.size() / sizeof(Word) * sizeof(Word);
-  for (std::size_t i = 0; i < whole; i += sizeof(Word)) step(word_at(bytes.data() + i));
+  each_of(bytes.data(), whole);
   bytes = bytes.subspan(whole);
   keep(bytes.size());
 }
 
-void EvtDecoder::evt2(std::uint32_t word, State& state, Sink& sink) {
+[[gnu::always_inline]] inline void EvtDecoder::evt2(std::uint32_t word, State& state, Sink& sink) {
   switch (const std::uint32_t type = bits(word, 28, 4)) {
     case 0x0:  // darker
     case 0x1:  // brighter
@@ -149,7 +159,7 @@ void EvtDecoder::evt2(std::uint32_t word, State& state, Sink& sink) {
   }
 }
 
-void EvtDecoder::evt21(std::uint64_t word, State& state, Sink& sink) {
+[[gnu::always_inline]] inline void EvtDecoder::evt21(std::uint64_t word, State& state, Sink& sink) {
   switch (const std::uint32_t type = bits(word, 60, 4)) {
     case 0x0:
     case 0x1:
@@ -164,7 +174,7 @@ void EvtDecoder::evt21(std::uint64_t word, State& state, Sink& sink) {
   }
 }
 
-void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
+[[gnu::always_inline]] inline void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
   const auto vector = [&](unsigned columns) {
     sink.add_row(state, state.high << 12 | state.low, state.base_x, state.row, state.positive, bits(word, 0, columns));
     state.base_x += columns;
@@ -202,7 +212,7 @@ void EvtDecoder::evt3(std::uint16_t word, State& state, Sink& sink) {
   }
 }
 
-void EvtDecoder::dat(std::uint64_t word, State& state, Sink& sink) {
+[[gnu::always_inline]] inline void EvtDecoder::dat(std::uint64_t word, State& state, Sink& sink) {
   sink.time_high(state, bits(word, 0, 32), 32, 0);
   sink.add(state, state.high, bits(word, 32, 14), bits(word, 46, 14), bits(word, 60, 4) != 0);
 }

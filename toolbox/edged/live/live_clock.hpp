@@ -20,6 +20,9 @@ class LiveClock {
   /// the one that waited.
   double since_due_s(Timestamp t) const;
 
+  /// The stamp that is due now; the least one before the first wait_for.
+  Timestamp now() const { return first_ ? *first_ + (Clock::now() - begin_) : Timestamp::min(); }
+
  private:
   using Clock = std::chrono::steady_clock;
 

@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording played in real time by a thread of its own, as by sensors: a slow consumer loses events.
+// A recording played in real time by a thread of its own, as by sensors: for a slow consumer events are thinned.
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "edged/dataset.hpp"
+#include "edged/live/event_thinner.hpp"
 #include "edged/live/live_clock.hpp"
 #include "edged/live/read_ahead.hpp"
 #include "edged/live/shed_report.hpp"
@@ -14,6 +18,10 @@
 
 namespace edged {
 
+/// While something waits for longer than a small part of the allowed age, or the reader is that late, of new events the
+/// share (that part / delay) stays: the delay settles where the consumer keeps pace, the events become fewer in the
+/// whole image, and there is no gap in time. A small share always stays: where reading itself is too slow, to leave out
+/// all would not help.
 class LiveSource {
  public:
   /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
@@ -36,16 +44,23 @@ class LiveSource {
 
   /// From the due time of a measurement to its result.
   const StageTiming& latency() const { return latency_; }
-  ShedCounters shed() const { return reader_.queue().shed(); }
+  /// By the queue, and those that were thinned out before it.
+  ShedCounters shed() const;
   const StageTiming& reading() const { return reader_.reading(); }
   QueuePeaks peaks() const { return reader_.queue().peaks(); }
 
  private:
+  void pace(Measurement& measurement, const std::function<bool()>& stopped);
+  void thin(EventBatch& batch);
+
+  const double free_age_s_;  // without thinning
   std::function<void(const Measurement&)> on_due_;
   LiveClock clock_;
   StageTiming latency_;
   ShedReport report_;
-  ReadAhead reader_;  // last member: its thread uses the clock and on_due_
+  std::map<std::string, EventThinner> thinners_;  // by camera, of the thread
+  std::atomic<std::size_t> thinned_ = 0;
+  ReadAhead reader_;  // last member: its thread uses the others
 };
 
 }  // namespace edged

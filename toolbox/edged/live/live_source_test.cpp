@@ -69,6 +69,26 @@ TEST(LiveSource, WhoIsTooSlowMissesTheOldestEventsAndNoImuSample) {
   EXPECT_LE(source.peaks().age_s, 0.1);
 }
 
+TEST(LiveSource, WhoHaltsMissesSomeOfTheLaterEventsAndFindsNoGap) {
+  EventStorm storm = breeze(400);
+  LiveSource source(storm, {.max_age_s = 2.0}, kNotInterrupted);
+  while (source.peaks().imu < storm.imu_samples()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::size_t kept = 0;
+  Timestamp before = Timestamp();
+  while (const auto m = source.next()) {
+    const auto* batch = std::get_if<EventBatch>(&*m);
+    if (batch == nullptr) continue;
+    kept += batch->events.size();
+    for (const Event& event : batch->events) {
+      EXPECT_LT(event.t - before, std::chrono::milliseconds(5));
+      before = event.t;
+    }
+  }
+  EXPECT_GT(source.shed().events, storm.events() / 10);
+  EXPECT_EQ(kept + source.shed().events, storm.events());
+  EXPECT_EQ(source.shed().frames, 0U);
+}
+
 TEST(LiveSource, AnErrorOfTheRecordingComesAfterAllThatCameBeforeIt) {
   BrokenStorm broken(breeze(20), "imu.txt:7: rubbish");
   LiveSource source(broken, kRoomy, kNotInterrupted);

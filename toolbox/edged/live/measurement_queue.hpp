@@ -66,6 +66,9 @@ class MeasurementQueue {
   /// Aborts: queued measurements are dropped, and both sides return at once.
   void interrupt();
 
+  /// The stamp of the oldest measurement that waits.
+  std::optional<Timestamp> waits_since() const;
+
   ShedCounters shed() const;
   QueuePeaks peaks() const;
 

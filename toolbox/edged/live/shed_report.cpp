@@ -17,7 +17,7 @@ std::optional<std::string> ShedReport::update(const ShedCounters& total, Clock::
     if (telling_ || (said_ && now - *said_ < kBetweenBouts)) return std::nullopt;
     telling_ = true;
     said_ = now;
-    return "too slow for these sensors: the oldest events are dropped";
+    return "too slow for these sensors: events are thinned, the oldest events are dropped";
   }
   if (!telling_ || now - last_shed_ < kQuiet) return std::nullopt;
   telling_ = false;

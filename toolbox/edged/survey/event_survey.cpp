@@ -29,11 +29,16 @@ cv::Size counted_area(cv::Size sensor) {
 EventSurveyor::EventSurveyor(cv::Size sensor)
     : sensor_(sensor), pixels_(counted_area(sensor)), flicker_(counted_area(sensor)) {}
 
-void EventSurveyor::add(std::span<const Event> events) {
+void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
   for (const Event& event : events) {
     if (bin_end_ == Timestamp::min()) bin_end_ = event.t + kBin;
     if (event.t >= bin_end_) close_bin(static_cast<std::size_t>((event.t - bin_end_) / kBin) + 1);
     ++bin_events_;
+    if (skipped_ + 1 < every) {
+      ++skipped_;
+      continue;
+    }
+    skipped_ = 0;
     ++events_;
     positive_ += event.positive;
     extent_.width = std::max(extent_.width, event.x + 1);

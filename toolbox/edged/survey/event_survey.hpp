@@ -37,7 +37,9 @@ class EventSurveyor {
   /// sensor: events beyond it are counted, but not per pixel; empty if unknown.
   explicit EventSurveyor(cv::Size sensor);
 
-  void add(std::span<const Event> events);
+  /// every: pixels, polarities and flicker of each n-th event only, which is cheaper; their shares and frequencies
+  /// remain the same, the rates of hot pixels are n times lower.
+  void add(std::span<const Event> events, std::size_t every = 1);
   EventSurvey result() const;
 
  private:
@@ -46,7 +48,9 @@ class EventSurveyor {
   cv::Size sensor_, extent_;
   HotPixelFinder pixels_;
   FlickerSurveyor flicker_;
-  std::size_t events_ = 0, positive_ = 0, bin_events_ = 0, bins_ = 0, peak_ = 0;
+  std::size_t skipped_ = 0;                // since the last one whose pixel was surveyed
+  std::size_t events_ = 0, positive_ = 0;  // whose pixels were surveyed
+  std::size_t bin_events_ = 0, bins_ = 0, peak_ = 0;
   std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins_{};
   Timestamp bin_end_ = Timestamp::min();
 };

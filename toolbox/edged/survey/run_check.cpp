@@ -22,7 +22,9 @@ constexpr double kNewest = 0.05;                             // weight of a samp
 constexpr double kUnexplained = 0.5;                         // above it the comparison is unreliable
 constexpr Duration kEnough = std::chrono::seconds(3);        // duration of rotation after which more data adds little
 constexpr Duration kBurst = std::chrono::milliseconds(500);  // tracking runs for this time, then pauses for it
-constexpr int kOneOf = 4;  // share 1 / kOneOf of the bursts of events and frames is surveyed
+constexpr Duration kCounted = std::chrono::milliseconds(10);
+constexpr double kMostSurveyed = 5e6;  // events a second of a burst whose pixels are surveyed
+constexpr int kOneOf = 4;              // share 1 / kOneOf of the bursts of events and frames is surveyed
 constexpr Duration kPatience = std::chrono::seconds(6);  // with frames; then the events of the same lens are used, too
 constexpr Duration kFirstUnits = std::chrono::seconds(5);  // before it, units are checked by a camera only
 
@@ -124,7 +126,8 @@ void RunCheck::add(const Measurement& measurement) {
   const std::string* name = camera_of(measurement);
   if (name && std::ranges::none_of(cameras_, [&](const Camera& camera) { return camera.given.name == *name; })) return;
   using Detail = Surveyor::Detail;
-  surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps);
+  surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps,
+                surveyed_every(measurement));
   const auto first = first_stamp(measurement), last = last_stamp(measurement);
   if (!first) return;
   const auto note = [&](std::optional<Timestamp>& begin, Duration& length) {
@@ -146,6 +149,23 @@ void RunCheck::add(const Measurement& measurement) {
     if (visual_ > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;
   }
   if (!looked_ && std::min(imu_, visual_) >= kFirstUnits) look_ = true;
+}
+
+/// By the rate of the last kCounted, so that a burst costs the same at any rate above kMostSurveyed.
+std::size_t RunCheck::surveyed_every(const Measurement& measurement) {
+  const auto* batch = std::get_if<EventBatch>(&measurement);
+  if (batch == nullptr || batch->events.empty()) return 1;
+  const Timestamp begin = batch->events.front().t;
+  if (begin - counted_from_ >= kCounted || begin < counted_from_) {
+    const bool first = counted_from_ == Timestamp::min();
+    every_ = first ? 1
+                   : 1 + static_cast<std::size_t>(static_cast<double>(counted_) /
+                                                  (kMostSurveyed * to_seconds(begin - counted_from_)));
+    counted_from_ = begin;
+    counted_ = 0;
+  }
+  counted_ += batch->events.size();
+  return every_;
 }
 
 void RunCheck::follow(Camera& camera, const Measurement& measurement) {

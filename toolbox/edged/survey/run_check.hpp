@@ -48,6 +48,7 @@ class RunCheck {
     std::optional<GyroAgreement> agreement = std::nullopt;
   };
 
+  std::size_t surveyed_every(const Measurement& measurement);
   void follow(Camera& camera, const Measurement& measurement);
   void compare(Camera& camera);
   std::vector<Finding> judge(const Survey& survey) const;
@@ -60,7 +61,9 @@ class RunCheck {
   std::vector<Camera> cameras_;
   std::optional<Timestamp> first_imu_, first_visual_;  ///< first stamps
   Duration imu_{0}, visual_{0};                        ///< duration of each stream
-  bool look_ = false, looked_ = false;                 ///< state of the checks of the IMU
+  Timestamp counted_from_ = Timestamp::min();
+  std::size_t counted_ = 0, every_ = 1;  ///< events since then; one of so many is surveyed in detail
+  bool look_ = false, looked_ = false;   ///< state of the checks of the IMU
   std::vector<std::string> told_;
 };
 

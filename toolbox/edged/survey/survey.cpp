@@ -73,15 +73,15 @@ Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence
   for (const RecordedCamera& camera : info.more_cameras) more_.emplace_back(info_of(camera, info));
 }
 
-void Surveyor::add(const Measurement& measurement, Detail detail) {
+void Surveyor::add(const Measurement& measurement, Detail detail, std::size_t every) {
   if (const std::string* camera = camera_of(measurement); camera && !more_.empty())
     for (std::size_t i = 0; i < more_.size(); ++i)
-      if (info_.more_cameras[i].name == *camera) return more_[i].add(measurement, detail);
+      if (info_.more_cameras[i].name == *camera) return more_[i].add(measurement, detail, every);
   if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
     if (batch->events.empty()) return;
     events_.add(batch->events.front().t, batch->events.back().t, batch->events.size());
     if (detail != Detail::All) return;
-    event_details_.add(batch->events);
+    event_details_.add(batch->events, every);
     watch_image(*batch);
   } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
     frames_.add(frame->t, frame->t);

@@ -58,7 +58,8 @@ class Surveyor {
     All,
     Stamps,  ///< only the stamps of events and frames: cheap, if a part of them is surveyed with All
   };
-  void add(const Measurement& measurement, Detail detail = Detail::All);
+  /// every: that of EventSurveyor::add.
+  void add(const Measurement& measurement, Detail detail = Detail::All, std::size_t every = 1);
   /// The survey of the measurements so far, without ground truth and repairs.
   Survey so_far() const;
   /// The complete survey, after the last measurement. truth: that of the dataset, which is slow to read.

@@ -54,13 +54,16 @@ void VisualTurns::add(const Measurement& measurement) {
 
 void VisualTurns::add_events(std::span<const Event> events) {
   constexpr int kGrey = 60;  // grey level of one event; a few add up to white
+  const CameraModel& camera = tracker_.camera();
+  const bool is_masked = camera.is_masked();
+  const int width = event_image_.cols, height = event_image_.rows;
+  std::uint8_t* const pixels = event_image_.ptr();
   for (const Event& event : events) {
-    if (event.x < event_image_.cols && event.y < event_image_.rows && tracker_.camera().uses(event.x, event.y)) {
-      auto& pixel = event_image_.at<std::uint8_t>(event.y, event.x);
-      pixel = cv::saturate_cast<std::uint8_t>(pixel + kGrey);
-    }
-    ++events_;
+    if (event.x >= width || event.y >= height || (is_masked && !camera.uses(event.x, event.y))) continue;
+    std::uint8_t& pixel = pixels[event.y * width + event.x];
+    pixel = static_cast<std::uint8_t>(std::min(pixel + kGrey, 255));
   }
+  events_ += events.size();
   if (events.empty()) return;
   if (!image_begin_) image_begin_ = events.front().t;
   if (events_ < events_per_image_) return;

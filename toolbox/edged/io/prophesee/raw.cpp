@@ -118,11 +118,11 @@ class PropheseeDataset final : public StreamedDataset {
     const Bytes bytes = file_.read(at_, kEventBlockBytes);
     at_ += bytes.size();
     const EvtDecoder::Counts before = decoder_.counts();
-    std::vector<Event> events;
-    decoder_.decode(bytes, events);
-    for (Event& event : events) event.t += time_offset_;
-    decoded_ += events.size();
-    push_events(events);
+    events_.clear();
+    decoder_.decode(bytes, events_);
+    for (Event& event : events_) event.t += time_offset_;
+    decoded_ += events_.size();
+    push_events(events_);
     count_left_out(before, decoder_.counts());
     return !bytes.empty();
   }
@@ -153,6 +153,7 @@ class PropheseeDataset final : public StreamedDataset {
   std::uint64_t at_;
   Duration time_offset_;
   EvtDecoder decoder_;
+  std::vector<Event> events_;  // of the last block
   std::size_t decoded_ = 0;
 };
 

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "edged/core/check.hpp"
 
@@ -18,6 +20,9 @@ constexpr std::size_t kMaxHeld = 200'000;                     // events kept bac
 constexpr std::uint64_t kMaxSeconds = kMaxStampNs / 1'000'000'000 - 1;
 constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,       10'000,
                                                   100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+
+static_assert(std::endian::native == std::endian::little,
+              "parse_digits() takes the first character as the lowest byte");
 
 unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsigned>('0'); }
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -40,6 +45,59 @@ const char* parse_pixel(const char* p, std::uint16_t& value) {
   if (p == start || !is_separator(*p) || v > 65535) return nullptr;
   value = static_cast<std::uint16_t>(v);
   return p;
+}
+
+/// Leading digits, at most eight, and their value.
+struct Digits {
+  int count;
+  std::uint64_t value;
+};
+
+/// Eight characters at once, each in its byte of a word: those of a number are at p.
+Digits parse_digits(const char* p) {
+  std::uint64_t word;
+  std::memcpy(&word, p, sizeof word);
+  word ^= 0x3030'3030'3030'3030;  // digits are 0 to 9 now
+  // The lowest byte above 9 ends the number. It may carry into later bytes, which no longer matter.
+  const std::uint64_t others = ((word + 0x7676'7676'7676'7676) | word) & 0x8080'8080'8080'8080;
+  const int count = std::countr_zero(others) / 8;
+  if (count == 0) return {0, 0};
+  word <<= 64 - 8 * count;          // zeros lead
+  word = word * 10 + (word >> 8U);  // pairs, in every second byte
+  constexpr std::uint64_t kBytes = 0x0000'00FF'0000'00FF;
+  const std::uint64_t value = (word & kBytes) * (100 + (std::uint64_t{1'000'000} << 32U)) +
+                              ((word >> 16U) & kBytes) * (1 + (std::uint64_t{10'000} << 32U));
+  return {count, value >> 32U};
+}
+
+constexpr std::ptrdiff_t kCommonLine = 64;  // parse_common_line() reads less than that
+
+/// As parse_event_line() for the lines that programs write: fields of digits with one blank or comma between them, up
+/// to 10 digits of seconds, 9 decimals and 4 digits of a pixel. Null for other lines. kCommonLine bytes must be
+/// readable.
+const char* parse_common_line(const char* p, Event& event) {
+  const auto separates = [](char c) { return c == ' ' || c == ','; };
+  Digits part = parse_digits(p);
+  p += part.count;
+  std::uint64_t seconds = part.value;
+  if (part.count == 8)
+    for (int i = 0; i < 2 && digit(*p) < 10; ++i) seconds = seconds * 10 + digit(*p++);
+  if (part.count == 0 || *p != '.' || seconds > kMaxSeconds) return nullptr;
+  part = parse_digits(++p);
+  if (part.count != 8 || digit(p[8]) > 9 || !separates(p[9])) return nullptr;
+  event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds * kPow10[9] + part.value * 10 + digit(p[8])));
+  p += 10;
+  for (std::uint16_t* const pixel : {&event.x, &event.y}) {
+    part = parse_digits(p);
+    p += part.count;
+    if (part.count == 0 || part.count > 4 || !separates(*p)) return nullptr;
+    ++p;
+    *pixel = static_cast<std::uint16_t>(part.value);
+  }
+  if (digit(*p) > 1) return nullptr;
+  event.positive = *p++ == '1';
+  p += *p == '\r';
+  return *p == '\n' ? p + 1 : nullptr;
 }
 
 std::optional<std::uint16_t> whole_number(std::string_view field) {
@@ -162,7 +220,8 @@ void EventTextStream::parse_block(std::string_view block) {
   while (p < end) {
     ++line_;
     Event event;
-    const char* next = plain_ ? parse_event_line(p, event) : nullptr;
+    const char* next = plain_ && end - p >= kCommonLine ? parse_common_line(p, event) : nullptr;
+    if (!next && plain_) next = parse_event_line(p, event);
     if (!next) {
       next = p + std::string_view(p, static_cast<std::size_t>(end - p)).find('\n') + 1;
       const std::string_view line(p, static_cast<std::size_t>(next - p) - 1);

@@ -71,6 +71,41 @@ TEST(EventLine, OfAnotherWriterIsReadFieldByField) {
   EXPECT_EQ(e, (Event{timestamp_from_ns(1'468'939'993'067'416'019), 96, 133, false}));
 }
 
+/// A pixel of up to five digits, one in a hundred too large.
+std::string any_pixel(std::mt19937& random) {
+  constexpr std::array<unsigned, 5> kBelow{10, 100, 1000, 10'000, 65'536};
+  return std::to_string(random() % 100 == 0 ? 100'000 : random() % kBelow.at(random() % kBelow.size()));
+}
+
+TEST(EventStream, ReadsEachLineAsFieldByFieldHoweverManyDigitsItHas) {
+  std::mt19937 random(11);
+  const std::array<std::string, 6> separators{" ", " ", ",", ";", "\t", " , "};
+  const std::array<std::string, 4> ends{"\n", "\n", "\r\n", " \n"};
+  std::string text;
+  std::vector<Event> expected;
+  for (std::int64_t s = 0; s < 20'000; ++s) {
+    const std::string& by = separators.at(random() % separators.size());
+    const std::string number = std::string(random() % 5, '0') + std::to_string(1'000'000 + s / 10);
+    const std::string decimals =
+        random() % 2 == 0 ? fmt::format("{:09}", s % 10 * 100'000'007) : std::to_string(s % 10);
+    const std::string x = any_pixel(random), y = any_pixel(random);
+    const std::string line = fmt::format("{}.{}{}{}{}{}{}{}", number, decimals, by, x, by, y, by, random() % 2);
+    text += line + ends.at(random() % ends.size());
+    Event event;
+    if (parse_event_fields(line, {}, event)) expected.push_back(event);
+  }
+  TempFolder folder;
+  Repairs repairs;
+  EventTextStream stream(folder.write("events.txt", text), {}, 65536, 65536, repairs);
+  std::vector<Event> events;
+  while (const Event* first = stream.peek()) {
+    const auto batch = stream.take_before(first->t + std::chrono::seconds(100));
+    events.insert(events.end(), batch.begin(), batch.end());
+  }
+  EXPECT_GT(expected.size(), 10'000U);
+  EXPECT_EQ(events, expected);
+}
+
 /// 5000 events every 10 us, as text.
 std::string steady_events(int n = 5000) {
   std::string text;

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/live/event_thinner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <random>
+
+namespace edged {
+namespace {
+
+/// Random pixels and polarities, 1 us apart.
+std::vector<Event> flood(std::size_t count, cv::Size size) {
+  std::mt19937 random(3);
+  std::vector<Event> events(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    events[i].t = Timestamp() + std::chrono::microseconds(i);
+    events[i].x = static_cast<std::uint16_t>(random() % static_cast<unsigned>(size.width));
+    events[i].y = static_cast<std::uint16_t>(random() % static_cast<unsigned>(size.height));
+    events[i].positive = random() % 3 == 0;
+  }
+  return events;
+}
+
+bool is_same(const Event& a, const Event& b) {
+  return a.t == b.t && a.x == b.x && a.y == b.y && a.positive == b.positive;
+}
+
+TEST(EventThinner, KeepsTheShareOfEachBlockAndPolarityInOrder) {
+  const cv::Size size(64, 48);
+  for (const double share : {0.9, 0.5, 0.2}) {
+    const std::vector<Event> all = flood(200'000, size);
+    std::vector<Event> some = all;
+    EventThinner thinner;
+    const std::size_t left_out = thinner.thin(some, share);
+    EXPECT_EQ(some.size() + left_out, all.size());
+    using Block = std::array<int, 3>;
+    const auto block_of = [](const Event& e) { return Block{e.x / 8, e.y / 8, e.positive ? 1 : 0}; };
+    std::map<Block, double> wanted;
+    for (const Event& event : all) wanted[block_of(event)] += share;
+    for (const Event& event : some) wanted[block_of(event)] -= 1.0;
+    for (const auto& [block, off] : wanted) EXPECT_LT(std::abs(off), 1.1) << block[0] << " " << block[1];
+    for (std::size_t i = 1; i < some.size(); ++i) EXPECT_LT(some[i - 1].t, some[i].t);
+  }
+}
+
+TEST(EventThinner, SpreadsTheEventsThatStayOverTime) {
+  std::vector<Event> some = flood(100'000, {64, 48});
+  EventThinner().thin(some, 0.1);
+  std::array<int, 10> tenths{};
+  for (const Event& event : some)
+    ++tenths.at(static_cast<std::size_t>(event.t.time_since_epoch().count() / 10'000'000));
+  for (const int count : tenths) EXPECT_NEAR(count, 1000, 100);
+}
+
+TEST(EventThinner, KeepsTheSameWhateverTheBatches) {
+  std::vector<Event> whole = flood(10'000, {1280, 720}), parts;
+  EventThinner once, often;
+  for (std::size_t i = 0; i < whole.size(); i += 100) {
+    std::vector<Event> part(whole.begin() + static_cast<std::ptrdiff_t>(i),
+                            whole.begin() + static_cast<std::ptrdiff_t>(i) + 100);
+    often.thin(part, 0.3);
+    parts.insert(parts.end(), part.begin(), part.end());
+  }
+  once.thin(whole, 0.3);
+  EXPECT_TRUE(std::equal(whole.begin(), whole.end(), parts.begin(), parts.end(), is_same));
+}
+
+TEST(EventThinner, KeepsAllOrNothingOfAnySensor) {
+  std::vector<Event> events = flood(1000, {65536, 65536});
+  EventThinner thinner;
+  EXPECT_EQ(thinner.thin(events, 1.0), 0U);
+  EXPECT_EQ(events.size(), 1000U);
+  EXPECT_EQ(thinner.thin(events, 0.0), 1000U);
+  EXPECT_EQ(thinner.thin(events, 0.5), 0U);
+}
+
+}  // namespace
+}  // namespace edged
