@@ -27,6 +27,7 @@ namespace {
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   RunConfig config = load_config(options.config);
+  config.odometry.map.localize_only = config.odometry.map.localize_only || options.map.localize_only;
   const bool by_default = config.odometry.cameras.empty() && config.odometry.stereo.enabled;
   if (config.odometry.cameras != kFirstCameras) options.source.cameras = camera_names(config.odometry.cameras);
   Source source = by_default ? open_run_source(options.source) : open_source(options.source);

@@ -14,6 +14,7 @@ namespace edged {
 
 struct MapOptions {
   std::filesystem::path load, save;  ///< "": none
+  bool localize_only = false;        ///< option map.localize_only
 };
 
 struct RunOptions {
