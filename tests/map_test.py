@@ -26,7 +26,7 @@ class Maps(WithFlight):
         return edged("run", self.flight, "--mode", "frames", "--map", the_map, "--out", self.folder / "run", "--quiet", *more)
 
     def test_a_run_goes_on_in_the_map_of_another(self):
-        self.assertEqual(self.first["map"], {"loaded": "", "found_s": None, "saved": str(self.map)})
+        self.assertEqual(self.first["map"], {"loaded": "", "localize_only": False, "found_s": None, "relocalized": 0, "saved": str(self.map)})
         later = self.folder / "later.map"
         result = self.run_in(self.map, "--start", "4", "--save-map", later, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -34,6 +34,37 @@ class Maps(WithFlight):
         self.assertLess(summary["map"]["found_s"], 2.0)
         self.assertLess(summary["ate_rmse_m"], 0.05)  # of the poses in the map's frame
         self.assertGreaterEqual(self.about(later)["keyframes"], self.about(self.map)["keyframes"])
+
+    def test_a_run_only_localizes_in_the_map_of_another(self):
+        before = self.map.read_bytes()
+        result = self.run_in(self.map, "--start", "4", "--localize-only", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads(result.stdout)
+        self.assertTrue(summary["map"]["localize_only"])
+        self.assertLess(summary["map"]["found_s"], 2.0)
+        self.assertGreaterEqual(summary["map"]["relocalized"], 1)
+        self.assertLess(summary["ate_rmse_m"], 0.05)
+        self.assertEqual(self.map.read_bytes(), before)
+        rows = (self.folder / "run" / "states.csv").read_text().splitlines()[2:]
+        statuses = [row.split(",")[1] for row in rows]
+        self.assertEqual(statuses[0], "Initializing")
+        self.assertEqual(statuses[-1], "Good")
+        self.assertTrue(all(row.split(",")[2] == "" for row in rows if row.split(",")[1] == "Initializing"))
+        poses = [line for line in (self.folder / "run" / "trajectory.tum").read_text().splitlines() if not line.startswith("#")]
+        self.assertEqual(len(poses), sum(status in ("Good", "Degraded") for status in statuses))
+
+    def test_elsewhere_a_run_that_only_localizes_has_no_poses(self):
+        result = edged("run", "sim:poster:3", "--duration", "8", "--mode", "frames", "--map", self.map, "--localize-only", "--out",
+                       self.folder / "run", "--quiet", "--json")
+        summary = json.loads(result.stdout)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual((summary["poses"], summary["status"], summary["map"]["found_s"]), (0, "never good", None))
+        self.assertTrue(any("map: never matched" in finding for finding in map(str, summary["findings"])), summary)
+
+    def test_a_map_that_is_only_localized_in_is_not_saved(self):
+        self.assert_refused(self.run_in(self.map, "--localize-only", "--save-map", self.folder / "later.map"), "--save-map", "--localize-only")
+        self.assert_refused(edged("run", self.flight, "--localize-only", "--out", self.folder / "run", "--quiet"), "--localize-only", "--map")
+        self.assert_refused(edged("run", self.flight, "map.localize_only=true", "--out", self.folder / "run", "--quiet"), "--map FILE")
 
     def about(self, the_map):
         result = edged("map", "info", the_map, "--json")

@@ -22,8 +22,14 @@ struct MappedRun {
   std::optional<std::string> map;  ///< as it is in the end
 };
 
-MappedRun run_with(const Flight& flight, Mode mode, const std::string& map) {
-  Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, {}, {kInOrder});
+OdometryConfig only_localizing() {
+  OdometryConfig config;
+  config.map.localize_only = true;
+  return config;
+}
+
+MappedRun run_with(const Flight& flight, Mode mode, const std::string& map, const OdometryConfig& config = {}) {
+  Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});
   if (!map.empty()) odometry.load_map(map);
   MappedRun run;
   auto next = flight.measurements.begin();
@@ -31,6 +37,7 @@ MappedRun run_with(const Flight& flight, Mode mode, const std::string& map) {
       odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
       [&](const Step& step) {
         if (step.relocalized && !run.found) {
+          EXPECT_TRUE(run.poses.empty() || !config.map.localize_only);
           run.found = step.t;
           run.poses.clear();
         }
@@ -41,10 +48,11 @@ MappedRun run_with(const Flight& flight, Mode mode, const std::string& map) {
   return run;
 }
 
-Flight flight_of(const std::string& preset, double begin_s, double end_s) {
+Flight flight_of(const std::string& preset, double begin_s, double end_s, const Disturbance& disturbance = {}) {
   SimulatorConfig config = simulator_preset(preset);
   config.seed = 5;
   config.duration_s = end_s;
+  config.disturbance = disturbance;
   auto simulator = std::make_unique<Simulator>(config);
   const Calibration calibration = simulator->calibration();
   RecordingPiece piece(std::move(simulator), {begin_s, std::nullopt});
@@ -95,6 +103,45 @@ TEST_F(SavedMaps, AreNotFoundWhereTheyAreNot) {
     const MappedRun alone = run_with(*elsewhere, mode, "");
     ASSERT_EQ(now.poses.size(), alone.poses.size());
     EXPECT_EQ(now.poses.back().T.matrix(), alone.poses.back().T.matrix());
+  }
+}
+
+TEST_F(SavedMaps, AreOnlyLocalizedIn) {
+  for (const Mode mode : kAllModes) {
+    const MappedRun before = run_with(*first, mode, "");
+    const MappedRun now = run_with(*dark, mode, *before.map, only_localizing());
+    ASSERT_TRUE(now.found) << mode_name(mode);
+    EXPECT_EQ(now.poses.front().t, *now.found);
+    EXPECT_EQ(now.map, before.map) << "not a bit of it has changed";
+    const double error = error_in_frame_of(associate(first->truth->trajectory, before.poses).pairs,
+                                           associate(dark->truth->trajectory, now.poses).pairs);
+    std::cout << mode_name(mode) << ": localized at " << to_seconds(*now.found - Timestamp()) << " s, then "
+              << 1e3 * error << " mm off in the map's frame\n";
+    EXPECT_LT(error, mode == Mode::Events ? 0.15 : 0.05);
+
+    const MappedRun other = run_with(*elsewhere, mode, *before.map, only_localizing());
+    EXPECT_TRUE(other.poses.empty()) << mode_name(mode) << " in another room";
+    EXPECT_EQ(other.map, before.map);
+  }
+}
+
+TEST_F(SavedMaps, AreOnlyLocalizedInWithOpenEyes) {
+  constexpr double kCovered_s = 1.5, kSilent_s = 0.5, kAgain_s = 2.0;
+  const Disturbance cover{DisturbanceKind::LensCovered, 9.5, kCovered_s};
+  const Flight covered = flight_of("room", 5.0, 14.0, cover);
+  for (const Mode mode : kAllModes) {
+    const MappedRun now = run_with(covered, mode, *run_with(*first, mode, "").map, only_localizing());
+    std::optional<double> last_s, again_s;
+    for (const StampedPose& pose : now.poses) {
+      const double t_s = to_seconds(pose.t - Timestamp());
+      if (t_s < cover.at_s + kSilent_s) last_s = t_s;
+      if (t_s >= cover.at_s + kSilent_s && !again_s) again_s = t_s;
+    }
+    ASSERT_TRUE(last_s && again_s) << mode_name(mode);
+    std::cout << mode_name(mode) << ": silent " << *last_s - cover.at_s << " s after the cover, again "
+              << *again_s - cover.end_s() << " s after it\n";
+    EXPECT_GT(*again_s, cover.end_s()) << mode_name(mode) << ": not silent under the cover";
+    EXPECT_LT(*again_s, cover.end_s() + kAgain_s) << mode_name(mode);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "common/run_source.hpp"
 #include "live/live_page.hpp"
 #include "run/run.hpp"
+#include "run/run_export.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_many.hpp"
 #include "run/run_map.hpp"
@@ -27,6 +28,7 @@ namespace {
 int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   RunConfig config = load_config(options.config);
+  config.odometry.map.localize_only = config.odometry.map.localize_only || options.map.localize_only;
   const bool by_default = config.odometry.cameras.empty() && config.odometry.stereo.enabled;
   if (config.odometry.cameras != kFirstCameras) options.source.cameras = camera_names(config.odometry.cameras);
   Source source = by_default ? open_run_source(options.source) : open_source(options.source);
@@ -58,6 +60,8 @@ int run_all(const RunOptions& given, const CLI::App& app) {
   if (recordings.size() > 1 && !options.archive.empty() && options.archive != kArchiveBeside)
     throw CLI::ValidationError("--archive",
                                "is one file, the recordings are several; leave =FILE out for one beside each folder");
+  if (recordings.size() > 1 && !options.exports.folder.empty())
+    throw CLI::ValidationError("--export", "is for one recording; each would replace the folder of the one before");
   if (recordings.size() > 1 && !options.mavlink.empty())
     throw CLI::ValidationError("--mavlink", "is for one recording: an autopilot flies one vehicle");
   if (recordings.size() > 1 && !options.serve.empty())
@@ -104,6 +108,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
   run_app->add_flag("--mcap", options->mcap,
                     "Also write results.mcap: poses, path, map, images and numbers for Foxglove, Lichtblick "
                     "and others (about 10 MB per minute)");
+  add_export_options(*run_app, options->exports);
   add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);
   run_app->add_option(

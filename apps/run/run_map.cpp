@@ -43,6 +43,9 @@ class RunMap : public RunObserver {
   explicit RunMap(RunContext& run) : run_(run), options_(run.options.map) {
     if (!run.config.odometry.map.enabled)
       throw InputError("--map and --save-map need the map: leave out map.enabled=false");
+    if (!options_.save.empty() && localize_only())
+      throw InputError(
+          "--save-map with --localize-only (map.localize_only): the map never changes; leave one of them out");
     if (!options_.save.empty()) check_writable(options_.save, "--save-map");
     if (!options_.load.empty())
       read_map_file(options_.load, [&](const std::string& bytes) {
@@ -54,13 +57,16 @@ class RunMap : public RunObserver {
   }
 
   void on_step(const Step& step) override {
+    // Until localized, --localize-only has no poses, but an estimate that has started.
+    if (!first_pose_ && (is_tracking(step.status) || !step.started.empty())) first_pose_ = step.t;
     if (!is_tracking(step.status)) return;
-    if (!first_pose_) first_pose_ = step.t;
+    if (step.relocalized) ++relocalized_;
     if (!options_.load.empty() && !found_ && !run_.odometry.awaiting_relocalization()) found_ = step.t;
   }
 
   void on_summary(RunEnd& end) override {
-    MapSummary& summary = end.summary.map.emplace(MapSummary{options_.load.string(), {}, {}});
+    MapSummary& summary =
+        end.summary.map.emplace(MapSummary{options_.load.string(), localize_only(), {}, relocalized_, {}});
     end.in_map_since = found_;
     if (found_) summary.found_s = to_seconds(*found_ - *first_pose_);
     if (!options_.load.empty() && !found_) end.summary.verdict.findings.push_back(not_found());
@@ -86,8 +92,10 @@ class RunMap : public RunObserver {
   }
 
  private:
+  bool localize_only() const { return run_.config.odometry.map.localize_only; }
   /// Keyframes are matched within one camera.
   Finding not_found() const {
+    const std::string poses = localize_only() ? "there are no poses" : "the poses are in a frame of their own";
     const auto used = [this](const std::string& name) {
       return std::ranges::count(run_.used.cameras, name, &RigCamera::name) > 0;
     };
@@ -95,15 +103,16 @@ class RunMap : public RunObserver {
       return {Severity::Error,
               fmt::format("map: never matched in {}: it was built with {}, which mode {} does not use",
                           options_.load.string(), fmt::join(made_by_, " and "), mode_name(run_.mode)),
-              "build it in the same --mode; the poses are in a frame of their own"};
+              "build it in the same --mode; " + poses};
     return {Severity::Error, fmt::format("map: never matched in {}", options_.load.string()),
-            "the poses are in a frame of their own: start where the map was made, facing the same way"};
+            poses + ": start where the map was made, facing the same way"};
   }
 
   const RunContext& run_;
   MapOptions options_;
   std::set<std::string> made_by_;  ///< cameras of the map's keyframes
   std::optional<Timestamp> first_pose_, found_;
+  std::size_t relocalized_ = 0;
   std::optional<std::string> map_;  ///< to be written
 };
 
@@ -113,6 +122,9 @@ void add_map_options(CLI::App& app, MapOptions& options) {
   app.add_option("--map", options.load,
                  "Relocalize in a map of --save-map: poses are in its frame once "
                  "relocalized");
+  app.add_flag("--localize-only", options.localize_only,
+               "With --map: never change the map, and write poses only while localized in it (option "
+               "map.localize_only)");
   app.add_option("--save-map", options.save, "Save the map to this file, which may be that of --map");
 }
 
@@ -120,6 +132,8 @@ SavedMap read_map(const std::filesystem::path& file) { return read_map_file(file
 
 std::unique_ptr<RunObserver> observe_map(RunContext& run) {
   const MapOptions& map = run.options.map;
+  if (run.config.odometry.map.localize_only && map.load.empty())
+    throw InputError("--localize-only (map.localize_only) needs the map to localize in: add --map FILE");
   return map.load.empty() && map.save.empty() ? nullptr : std::make_unique<RunMap>(run);
 }
 

@@ -25,6 +25,7 @@ constexpr std::array kObservers = {
     observe_summary,  // before large outputs, and those that `edged report` can write again
     observe_album,    // which those below use
     observe_final_trajectory,
+    observe_export,
     observe_overview,
     observe_report,  // of the files of those above
     observe_mcap,

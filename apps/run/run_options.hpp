@@ -14,12 +14,20 @@ namespace edged {
 
 struct MapOptions {
   std::filesystem::path load, save;  ///< "": none
+  bool localize_only = false;        ///< option map.localize_only
+};
+
+/// A folder for programs that reconstruct from images.
+struct ExportOptions {
+  std::filesystem::path folder;  ///< "": none
+  double rate_hz = 0.0;          ///< of its images; 0: those of the keyframes
 };
 
 struct RunOptions {
   SourceOptions source;
   ConfigSource config;
   MapOptions map;
+  ExportOptions exports;
   std::string mode = "auto";
   std::string frame = "auto";
   std::filesystem::path out;

@@ -214,7 +214,11 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
   if (!s.archive.empty()) json["archive"] = s.archive;
   if (!s.unwritten.empty()) json["unwritten"] = s.unwritten;
   if (s.map)
-    json["map"] = {{"loaded", s.map->loaded}, {"found_s", number_or_null(s.map->found_s)}, {"saved", s.map->saved}};
+    json["map"] = {{"loaded", s.map->loaded},
+                   {"localize_only", s.map->localize_only},
+                   {"found_s", number_or_null(s.map->found_s)},
+                   {"relocalized", s.map->relocalized},
+                   {"saved", s.map->saved}};
   json["calibration"] = nlohmann::ordered_json::array();
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
@@ -290,8 +294,9 @@ std::string to_table(const RunSummary& s) {
   }
   if (s.map && !s.map->loaded.empty()) {
     table += line("map", s.map->found_s ? fmt::format("{:.1f} s", *s.map->found_s) : "not found",
-                  s.map->found_s ? "from the first pose until found in " + s.map->loaded
-                                 : "again: poses are in a frame of their own");
+                  s.map->found_s         ? "from the start until found in " + s.map->loaded
+                  : s.map->localize_only ? "again: there are no poses"
+                                         : "again: poses are in a frame of their own");
   }
   if (s.map && !s.map->saved.empty()) table += line("map kept", s.map->saved);
   if (!s.archive.empty()) table += line("archive", s.archive);

@@ -34,7 +34,9 @@ struct LiveSummary {
 /// The results of --map and --save-map.
 struct MapSummary {
   std::string loaded;             ///< file; empty: none was given
-  std::optional<double> found_s;  ///< from the first pose until relocalization in it
+  bool localize_only = false;     ///< there are poses only while localized in it
+  std::optional<double> found_s;  ///< from the start of the estimate until the first relocalization in it
+  std::size_t relocalized = 0;    ///< how many times, also after losses: the pose has jumped so often
   std::string saved;              ///< file; empty: not requested, or there is nothing to save
 };
 

@@ -112,15 +112,19 @@ void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
                    "check its axes, scale and unit, and the pose of the cameras to it"});
 }
 
-void judge_losses(const RunStatistics& run, std::vector<Finding>& out) {
+/// With --localize-only a loss is silence: no pose depends on dead reckoning.
+void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Finding>& out) {
   constexpr double kMostLost = 0.1;
+  const Severity severe = localize_only ? Severity::Warning : Severity::Error;
   const double lost_s = run.time_in_s(TrackingStatus::Lost);
   const std::string why = run.lost_because().empty() ? "" : ", the last time as " + run.lost_because();
-  const std::string remedy = "after a loss position and yaw are those of dead reckoning: see states.csv and run.log";
+  const std::string remedy =
+      localize_only ? "there are no poses while the body is not localized in the map: see states.csv and run.log"
+                    : "after a loss position and yaw are those of dead reckoning: see states.csv and run.log";
   if (run.last_status() == TrackingStatus::Lost)
-    out.push_back({Severity::Error, fmt::format("lost at the end{}", why), remedy});
+    out.push_back({severe, fmt::format("lost at the end{}", why), remedy});
   else if (run.lost_share() > kMostLost)
-    out.push_back({Severity::Error,
+    out.push_back({severe,
                    fmt::format("lost for {:.1f} s, {:.0f} % of the time{}", lost_s, 100 * run.lost_share(), why),
                    remedy});
   else if (run.times_lost() > 0)
@@ -353,7 +357,7 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
       judge_lens_and_position(found, verdict.findings);
     }
   if (ever_good) {
-    judge_losses(statistics, verdict.findings);
+    judge_losses(statistics, s.map && s.map->localize_only, verdict.findings);
     if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);
   }
   if (s.live) judge_live(*s.live, statistics, verdict.findings);

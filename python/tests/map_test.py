@@ -31,6 +31,21 @@ def test_a_map_of_one_odometry_is_gone_on_in_by_another():
         second.load_map(first.save_map())
 
 
+def test_a_map_that_is_only_localized_in_never_changes():
+    first, _ = follow(edged.simulate("room", 5, duration_s=9))
+    the_map = first.save_map()
+    recording = edged.simulate("room", 5, duration_s=9, begin_s=4)
+    odometry = edged.Odometry(recording.calibration, "frames", {"map.localize_only": True}, in_order=True)
+    odometry.load_map(the_map)
+    steps = []
+    for measurement in recording:
+        odometry.add(measurement)
+        steps += odometry
+    localized = next(i for i, step in enumerate(steps) if step.relocalized)
+    assert not any(step.is_tracking for step in steps[:localized]) and all(step.is_tracking for step in steps[localized:])
+    assert odometry.save_map() == the_map
+
+
 def test_what_is_no_map_is_refused():
     odometry = edged.Odometry("davis240c_ecd")
     with pytest.raises(edged.InputError, match="no map"):

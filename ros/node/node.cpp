@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -79,6 +81,21 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
   for (const Role role : {Role::Imu, Role::Height, Role::Velocity})
     subscribe(kRoleNames[static_cast<std::size_t>(role)], role, "");
   outputs_.publish_cameras(transport.now(), used);
+  load_map(config);
+}
+
+void Node::load_map(const NodeConfig& config) {
+  if (config.map_file.empty()) {
+    if (config.options.map.localize_only)
+      throw InputError("map.localize_only needs the map to localize in: set map_file, too");
+    return;
+  }
+  std::ifstream in(config.map_file, std::ios::binary);
+  try {
+    odometry_.load_map(std::string(std::istreambuf_iterator<char>(in), {}));
+  } catch (const InputError& e) {
+    throw InputError::format("map_file {}: {}", config.map_file, in.is_open() ? e.what() : "cannot be read");
+  }
 }
 
 void Node::subscribe(const std::string& topic, Role role, const std::string& camera) {

@@ -34,6 +34,7 @@ class Node {
   Diagnosis run(const std::function<bool()>& stop);
 
  private:
+  void load_map(const NodeConfig& config);
   void subscribe(const std::string& topic, Role role, const std::string& camera);
   void receive(const std::function<bool()>& stop);
   void on_message(const std::string& topic, SensorInput& input, const WireMessage& message);

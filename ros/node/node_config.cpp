@@ -11,6 +11,8 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("rig", rig, {"", 0, 0, "name of a rig that ships, or a calibration file"});
   fields.choice("mode", mode, {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}},
                 {"", 0, 0, "which cameras beside the IMU"});
+  fields.add("map_file", map_file,
+             {"", 0, 0, "map of `edged run --save-map`, to relocalize in; option map.localize_only: only that"});
   fields.add("world_frame", frames.world, {"", 0, 0, "name of the world in tf and headers"});
   fields.add("body_frame", frames.body,
              {"", 0, 0, "name of the body, which is the IMU; cameras have those of the rig"});

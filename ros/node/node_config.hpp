@@ -21,6 +21,7 @@ struct FrameNames {
 struct NodeConfig {
   std::string rig;
   Mode mode = Mode::Fused;
+  std::string map_file;  ///< of `edged run --save-map`, to relocalize in; "": none
   FrameNames frames;
   bool publish_tf = true;
   SensorDelays delays;

@@ -27,6 +27,17 @@ TEST(Node, TwoSensorsOnOneTopicAreRefused) {
               ThrowsMessage<InputError>("/all is to be both imu and velocity: remap one of them"));
 }
 
+TEST(Node, AMapThatCannotBeUsedIsRefused) {
+  KeptTransport transport(Wire::Cdr);
+  NodeConfig config = davis_config();
+  config.options.map.localize_only = true;
+  EXPECT_THAT([&] { Node(config, load_node_rig(config), transport); },
+              ThrowsMessage<InputError>("map.localize_only needs the map to localize in: set map_file, too"));
+  config.map_file = "/nowhere/lab.map";
+  EXPECT_THAT([&] { Node(config, load_node_rig(config), transport); },
+              ThrowsMessage<InputError>("map_file /nowhere/lab.map: cannot be read"));
+}
+
 TEST(Node, StopsTheTransportWhenItFails) {
   KeptTransport transport(Wire::Cdr);
   Node node(davis_config(), load_node_rig(davis_config()), transport);

@@ -95,7 +95,8 @@ double MapFilter::expected_error(const MapObservation& observation, const SE3& T
 SE3 MapFilter::correct(const VectorXd& error) {
   const SE3 T_M_O = corrected(T_M_B_, error.head<6>()) * T_O_B_.inverse();
   T_M_B_ = T_M_O * T_O_B_;
-  for (std::size_t k = 0; k < T_M_K_.size(); ++k) T_M_K_[k] = corrected(T_M_K_[k], error.segment<6>(block_of(k)));
+  for (std::size_t k = 0; k < T_M_K_.size() && !fixed_keyframes_; ++k)
+    T_M_K_[k] = corrected(T_M_K_[k], error.segment<6>(block_of(k)));
   return T_M_O;
 }
 
@@ -170,12 +171,13 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
   return correct(error);
 }
 
-/// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that.
+/// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that. Of fixed keyframes only their
+/// correlation with the body, which comes first.
 void MapFilter::shrink(std::span<const Eigen::Index> m, const MatrixXd& P_m, const MatrixXd& A) {
   const auto n = static_cast<Eigen::Index>(m.size());
   MatrixXd less(n, n);
   less.triangularView<Eigen::Lower>() = (P_m * A).eval() * P_m.transpose();
-  for (Eigen::Index j = 0; j < n; ++j) {
+  for (Eigen::Index j = 0; j < n && (!fixed_keyframes_ || m[j] < 6); ++j) {
     for (Eigen::Index i = j; i < n; ++i) P_(m[j], m[i]) = P_(m[i], m[j]) -= less(i, j);
   }
 }

@@ -22,7 +22,9 @@ namespace edged {
 /// T_M_O is OdomToMap's: the filter takes it and returns its correction.
 class MapFilter {
  public:
-  explicit MapFilter(const MapFilterConfig& config) : config_(config) {}
+  /// fixed_keyframes: their poses never change; their covariance counts in each update all the same (a Schmidt filter).
+  explicit MapFilter(const MapFilterConfig& config, bool fixed_keyframes = false)
+      : config_(config), fixed_keyframes_(fixed_keyframes) {}
 
   /// A new frame O of the odometry: its pose in M is uncertain, with these sigmas [m], [rad] of position and yaw.
   void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
@@ -63,6 +65,7 @@ class MapFilter {
   void shrink(std::span<const Eigen::Index> m, const Eigen::MatrixXd& P_m, const Eigen::MatrixXd& A);
 
   MapFilterConfig config_;
+  bool fixed_keyframes_;
   SE3 T_O_B_, T_M_B_;
   Timestamp t_;
   std::vector<SE3> T_M_K_;

@@ -202,6 +202,25 @@ TEST_F(OneKeyframe, ForgetsAKeyframeAndKeepsTheOthers) {
   EXPECT_TRUE(filter_.update(observations, observations.size(), {world_.T_B_C}));
 }
 
+TEST(MapFilter, LeavesFixedKeyframesAsTheyAreAndTheBodyAsUncertainAsWithThem) {
+  const std::vector<SE3> keyframes = {World::truth(0.0), World::truth(1.0)};
+  const Eigen::MatrixXd covariance = 1e-4 * Eigen::MatrixXd::Identity(12, 12);
+  MapFilter moving(config_of_world()), fixed(config_of_world(), true);
+  for (MapFilter* filter : {&moving, &fixed}) {
+    World world(3);
+    filter->load(keyframes, covariance);
+    filter->restart(SE3(), World::truth(4.0) * SE3(so3::exp({0.0, 0.0, 0.01}), {0.02, 0.0, 0.01}),
+                    timestamp_from_seconds(4.0), 0.1, 0.05);
+    const std::vector<MapObservation> observations = world.observations(keyframes, 1, 4.0, 0.2);
+    ASSERT_TRUE(filter->update(observations, observations.size(), {world.T_B_C}));
+  }
+  EXPECT_NE(moving.keyframes()[1].translation(), keyframes[1].translation());
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(fixed.keyframes()[k].matrix(), keyframes[k].matrix());
+  EXPECT_EQ(fixed.keyframe_covariance(), covariance);
+  EXPECT_EQ(fixed.T_M_B().matrix(), moving.T_M_B().matrix());
+  EXPECT_EQ(fixed.covariance(), moving.covariance());
+}
+
 /// A camera that points backwards adds what the first cannot separate: movement to the side and rotation.
 TEST(MapFilter, TakesEachObservationByTheCameraOfItsImage) {
   const SE3 front = World(1).T_B_C, rear = SE3(so3::exp({0.0, 0.0, M_PI}), Eigen::Vector3d::Zero()) * front;

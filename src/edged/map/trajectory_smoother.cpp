@@ -40,6 +40,7 @@ class TrajectorySmoother::Fit {
         odom_to_map_(odom_to_map),
         of_(of),
         together_(together),
+        loaded_fixed_(record.loaded_fixed_),
         keyframes_(record.keyframes_) {
     config_.drift_m *= kFinalDriftScale;
     config_.drift_yaw_deg *= kFinalDriftScale;
@@ -61,7 +62,9 @@ class TrajectorySmoother::Fit {
 
  private:
   void add_loaded(std::size_t k, std::span<const SE3> T_M_K) {
-    keyframes_[k] = together_ ? graph_.add_known_pose(together_->keyframe(k)) : graph_.add_pose(T_M_K[k]);
+    keyframes_[k] = together_       ? graph_.add_known_pose(together_->keyframe(k))
+                    : loaded_fixed_ ? graph_.add_known_pose(T_M_K[k])
+                                    : graph_.add_pose(T_M_K[k]);
     if (k > 0) graph_.add_step(k - 1, k, T_M_K[k - 1].inverse() * T_M_K[k], kRigid * kRigid * Matrix6d::Identity());
   }
 
@@ -115,6 +118,7 @@ class TrajectorySmoother::Fit {
   const OdomToMap& odom_to_map_;
   std::size_t of_;
   const Fit* together_;
+  bool loaded_fixed_;
   PoseGraph graph_;
   std::vector<std::size_t> keyframes_;  ///< their numbers in the graph
   std::vector<Nodes> nodes_;            ///< by session
@@ -133,8 +137,9 @@ SE3 TrajectorySmoother::between(const Trajectory& moved, Timestamp t) {
   return interpolate(before->T, after->T, to_seconds(t - before->t) / to_seconds(after->t - before->t));
 }
 
-void TrajectorySmoother::load(std::span<const SE3> T_M_K) {
+void TrajectorySmoother::load(std::span<const SE3> T_M_K, bool fixed) {
   loaded_.assign(T_M_K.begin(), T_M_K.end());
+  loaded_fixed_ = fixed;
   keyframes_ = loaded_.size();
 }
 

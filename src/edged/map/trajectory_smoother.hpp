@@ -25,8 +25,9 @@ class TrajectorySmoother {
   /// Nothing has started yet.
   bool empty() const { return sessions_.empty(); }
 
-  /// The map has keyframes of another run, numbered from zero on. Their poses are fixed.
-  void load(std::span<const SE3> T_M_K);
+  /// The map has keyframes of another run, numbered from zero on. Their poses relative to one another are fixed; with
+  /// `fixed` all of them are.
+  void load(std::span<const SE3> T_M_K, bool fixed = false);
   /// The odometry starts in a new O, whose pose in M has these sigmas of position and yaw [m], [rad].
   void restart(const StampedPose& T_O_B, double position_sigma, double yaw_sigma);
   /// A published pose: one of the path.
@@ -76,6 +77,7 @@ class TrajectorySmoother {
 
   MapFilterConfig config_;
   std::vector<SE3> loaded_;  ///< T_M_K
+  bool loaded_fixed_ = false;
   std::vector<Session> sessions_;
   std::size_t keyframes_ = 0;  ///< number of keyframes that have a number
 };

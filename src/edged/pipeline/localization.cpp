@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/pipeline/localization.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -90,15 +92,16 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet, seen.depth, std::move(external)},
       output.correction);
-  const TrackingStatus status = judge_.judge(result, estimator_.initialized(), t);
+  const TrackingStatus of_odometry = judge_.judge(result, estimator_.initialized(), t);
   const bool relocalized = follow_map(t, seen, result);
+  const TrackingStatus status = status_in_map(of_odometry);
   update_covariance(t);
   if (is_tracking(status)) mapper_.note(body_.now());
   output.step = describe(t, status, std::move(result));
   output.step.keyframe = seen.keyframe;
   output.step.scene_depth = seen.scene_depth;
   output.step.relocalized = relocalized;
-  output.correction.ended = status == TrackingStatus::Lost && estimator_.initialized();
+  output.correction.ended = of_odometry == TrackingStatus::Lost && estimator_.initialized();
   if (output.correction.ended) {
     begin_estimate();
     dead_reckoning_until_ = judge_.vision_lost() ? t + kDeadReckoning : t;
@@ -116,13 +119,15 @@ Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult 
   step.covariance = covariance_;
   if (status == TrackingStatus::Initializing && attitude_) step.attitude = attitude_->attitude();
   step.waiting_for = std::move(result.waiting_for);
+  if (status == TrackingStatus::Initializing && estimator_.initialized()) step.waiting_for = missing_localization();
   step.started = std::move(result.started);
   if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
   step.T_M_O = odom_to_map.T_M_O();
+  step.ln_depth_scale = estimator_.depth_scale();
+  if (config_.map.localize_only && !is_tracking(status)) return step;  // what follows would be in another frame
   step.map_matches = mapper_.map_matches(t);
   step.landmarks = odom_to_map.in_map(std::move(result.landmarks));
   step.marginalized_keyframes = in_map(odom_to_map.T_M_O(), std::move(result.marginalized_keyframes));
-  step.ln_depth_scale = estimator_.depth_scale();
   return step;
 }
 
@@ -206,7 +211,9 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
   if (!estimator_.initialized() || !config_.map.enabled) return false;
   const auto timer = timings_->measure("map");
   bool relocalized = false;
-  mapper_.predict(body_.now());
+  if (config_.map.localize_only && mapper_.localized() && judge_.unsupported_s() > config_.map.silent_after_s)
+    mapper_.doubt(body_.now());
+  mapper_.predict(body_.now(), result.standstill);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
   if (!images.empty()) {
     relocalized = mapper_.localize(t, images);
@@ -214,6 +221,23 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
   }
   for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
   return relocalized;
+}
+
+std::string Localization::missing_localization() const {
+  return fmt::format("localization in the map, {:.1f} s without a match", mapper_.unmatched_s());
+}
+
+/// With map.localize_only there is a pose only while it is localized in the map.
+TrackingStatus Localization::status_in_map(TrackingStatus of_odometry) {
+  if (!config_.map.localize_only) return of_odometry;
+  if (is_tracking(of_odometry)) {
+    if (mapper_.localized()) {
+      localized_ = true;
+      return of_odometry;
+    }
+    judge_.lose("no " + missing_localization());
+  }
+  return localized_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
 }
 
 void Localization::load_map(std::string_view bytes) {

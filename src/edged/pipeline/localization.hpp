@@ -61,6 +61,8 @@ class Localization {
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
+  TrackingStatus status_in_map(TrackingStatus of_odometry);
+  std::string missing_localization() const;
   std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void take_calibrations();
   const CameraModel& image_model(std::size_t camera, const CameraModel& given);
@@ -92,6 +94,7 @@ class Localization {
   std::optional<AttitudeFilter> attitude_;  ///< until the first start
   bool gyro_clipped_ = false;               ///< in this packet
   bool turned_unseen_ = false;              ///< it was until this packet
+  bool localized_ = false;                  ///< with map.localize_only: a pose in the map has been published
   std::optional<StateCovariance> covariance_;
   Timestamp covariance_at_;
   Timestamp dead_reckoning_until_ = Timestamp::min();  ///< without an estimate: end of dead reckoning

@@ -109,6 +109,20 @@ TEST_F(LocalizationInTheTestWorld, EndsTheEstimateWhenAClockWasSetBackButKeepsTh
   EXPECT_EQ(output.step.lost_because, "a clock was set back");
 }
 
+TEST_F(LocalizationInTheTestWorld, HasNoPoseWithoutAMapIfItOnlyLocalizes) {
+  OdometryConfig config;
+  config.map.localize_only = true;
+  localization_ = Localization(world_.rig(), world_.noise(), config, timings_);
+  for (LocalizationOutput output = step(); t() < 4.0; output = step()) {
+    EXPECT_EQ(output.step.status, TrackingStatus::Initializing);
+    EXPECT_TRUE(output.step.landmarks.empty());
+  }
+  const LocalizationOutput output = step();
+  EXPECT_FALSE(output.correction.ended) << "the odometry goes on";
+  EXPECT_EQ(output.step.waiting_for.substr(0, 23), "localization in the map");
+  EXPECT_TRUE(localization_.final_trajectory().poses.empty());
+}
+
 TEST_F(LocalizationInTheTestWorld, TakesNoMapAfterTheFirstPose) {
   run(4.0);
   EXPECT_THROW(localization_.load_map(""), InputError);

@@ -52,7 +52,7 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
     : config_(config),
       lost_after_s_(lost_after_s),
       map_(config.keyframes),
-      filter_(config.filter),
+      filter_(config.filter, config.localize_only),
       record_(config.filter) {}
 
 void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
@@ -70,6 +70,7 @@ void Mapper::begin_start(const OdomState& now) {
   const double position_sigma = first ? 0.0 : kRestartPosition_m, yaw_sigma = first ? 0.0 : kRestartYaw_rad;
   T_M_O_guess_ = odom_to_map_.T_M_O();
   filter_.restart(T_M_O_guess_, now.T_O_B, now.t, position_sigma, yaw_sigma);
+  if (record_.empty()) matched_ = now.t;
   record_.restart({now.t, now.T_O_B}, kRestartPosition_m, kRestartYaw_rad);
   started_ = now.t;
   dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
@@ -82,8 +83,10 @@ void Mapper::begin_start(const OdomState& now) {
 void Mapper::begin_time() {
   OdomToMap odom_to_map = std::move(odom_to_map_);
   odom_to_map.forget_history();
+  const std::optional<SavedMap> fixed = config_.localize_only ? save() : std::nullopt;
   *this = Mapper(config_, lost_after_s_);
   odom_to_map_ = std::move(odom_to_map);
+  if (fixed) load(*fixed);
 }
 
 void Mapper::load(const SavedMap& map) {
@@ -93,20 +96,24 @@ void Mapper::load(const SavedMap& map) {
     keyframe.number = k;
     map_.add(std::move(keyframe));
   }
-  record_.load(map.T_M_K);
+  record_.load(map.T_M_K, config_.localize_only);
   filter_.load(map.T_M_K, map.covariance);
   if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
-  if (unlocated_before_) return std::nullopt;
+  if (unlocated_before_ && !config_.localize_only) return std::nullopt;
   return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
 }
 
-void Mapper::predict(const OdomState& now) {
+void Mapper::predict(const OdomState& now, bool at_rest) {
   const bool young = dead_reckoning_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
   filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
+  if (at_rest) matched_ = now.t;
+  if (!config_.localize_only || unlocated_before_ || unmatched_s() <= config_.forget_after_s) return;
+  unlocated_before_ = Timestamp();
+  doubt(now);
 }
 
 std::vector<MapObservation> Mapper::Search::observations() const {
@@ -167,9 +174,10 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
   const std::optional<SE3> corrected = filter.update(observations, search.candidates.size(), search.T_B_C);
   if (!corrected) return false;
   odom_to_map_.correct(t, *corrected);
+  matched_ = t;
   found_.clear();
   for (const Candidate& candidate : search.candidates) {
-    map_.note(candidate, t);
+    if (!config_.localize_only) map_.note(candidate, t);
     if (!candidate.found) continue;
     const MapObservation& observation = candidate.observation;
     found_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
@@ -249,7 +257,8 @@ bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage
   there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
   if (!update(there, T_M_O, search(there, T_M_O, images, made), t, images)) return false;
   odom_to_map_.forget_guess();
-  if (unlocated_before_) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
+  // Where the map never changes, all poses so far were published in its frame.
+  if (unlocated_before_ && !config_.localize_only) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= made.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
@@ -274,7 +283,7 @@ double Mapper::covered_share(std::span<const PosedImage> images) const {
 }
 
 void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
-  if (to_seconds(t - started_) < config_.keyframes.min_known_s) return;
+  if (config_.localize_only || to_seconds(t - started_) < config_.keyframes.min_known_s) return;
   if (!map_.wants(covered_share(images))) return;
   MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, {}});
   for (const auto& [image, T_O_C] : images) {

@@ -31,10 +31,10 @@ class Mapper {
   void restart(const SE3& T_new_old, const OdomState& now);
   /// O continues, but the rotation until now is unknown: its pose in M is uncertain, as after a start.
   void doubt(const OdomState& now);
-  /// A new time begins: the map is discarded, the body continues from its pose.
+  /// A new time begins: the map is discarded, unless it never changes, and the body continues from its pose.
   void begin_time();
-  /// The odometry has reached `now`.
-  void predict(const OdomState& now);
+  /// The odometry has reached `now`; at_rest: it is known to stand still.
+  void predict(const OdomState& now, bool at_rest = false);
   /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
   /// by place recognition: true when it has just been relocalized.
   bool localize(Timestamp t, std::span<const PosedImage> images);
@@ -58,10 +58,14 @@ class Mapper {
   /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
   void load(const SavedMap& map);
   bool started() const { return !record_.empty(); }
-  /// All but the cameras. Nothing while awaiting relocalization in a loaded map: keyframes of this run are in another
-  /// frame than that.
+  /// All but the cameras. Nothing while awaiting relocalization in a loaded map, unless that never changes: keyframes
+  /// of this run are in another frame than that.
   std::optional<SavedMap> save() const;
   bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
+  /// With localize_only: the body has been relocalized in the loaded map, and no loss has followed.
+  bool localized() const { return !searching_ && !unlocated_before_ && !map_.keyframes().empty(); }
+  /// Since the last map match or rest [s].
+  double unmatched_s() const { return to_seconds(predicted_ - matched_); }
 
  private:
   /// Points that should be in view, and their matches, in the images where enough of them match.
@@ -96,6 +100,7 @@ class Mapper {
   std::vector<MapMatch> found_;        ///< in the newest images that were matched
   std::optional<Timestamp> looked_at_;
   Timestamp predicted_;            ///< newest pose of the odometry
+  Timestamp matched_;              ///< the last map match or rest
   Timestamp started_;              ///< the estimator's newest start
   SE3 T_M_O_guess_;                ///< there, by dead reckoning
   double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes

@@ -129,6 +129,85 @@ TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
   EXPECT_TRUE(mapper.save());
 }
 
+class MapperThatOnlyLocalizes : public MapperBeforeAWall {
+ protected:
+  MapperThatOnlyLocalizes() {
+    Mapper before{MapConfig{}, kLostAfter_s};
+    before.restart(SE3(), now(0.0, SE3()));
+    add_keyframe(before, 5.0, SE3());
+    SavedMap saved = *before.save();
+    saved.cameras = {{"cam", 240, 180, 200.0}};
+    map_ = to_bytes(saved);
+    MapConfig config;
+    config.localize_only = true;
+    mapper_ = Mapper(config, kLostAfter_s);
+    mapper_.load(saved_map_from_bytes(map_));
+  }
+  std::string map_now() const {
+    SavedMap saved = *mapper_.save();
+    saved.cameras = {{"cam", 240, 180, 200.0}};
+    return to_bytes(saved);
+  }
+  /// At rest at the origin of M.
+  void relocalize(double t_s) {
+    EXPECT_FALSE(localize(mapper_, t_s, T_O_B_, SE3()));
+    EXPECT_FALSE(mapper_.localized());
+    EXPECT_TRUE(localize(mapper_, t_s + 0.3, T_O_B_, SE3()));
+    EXPECT_TRUE(mapper_.localized());
+  }
+
+  const SE3 T_O_B_{so3::exp({0, 0, -0.8}), {1.0, 2.0, 0.3}};
+  std::string map_;
+  Mapper mapper_{MapConfig{}, kLostAfter_s};
+};
+
+TEST_F(MapperThatOnlyLocalizes, NeverChangesTheMap) {
+  EXPECT_EQ(map_now(), map_) << "awaiting relocalization";
+  mapper_.restart(SE3(), now(0.0, T_O_B_));
+  relocalize(0.3);
+  const SE3 T_O_M = T_O_B_;
+  for (double t = 5.0; t < 8.0; t += 0.5) {
+    add_keyframe(mapper_, t, T_O_M);
+    const SE3 T_M_B = shift(0.0, 0.02 * (t - 5.0), 0.0), drift = shift(0.01, 0.0, 0.0);
+    localize(mapper_, t + 0.25, drift * T_O_M * T_M_B, T_M_B);
+    EXPECT_GT(mapper_.map_matches(second(t + 0.25)).size(), 20U);
+  }
+  EXPECT_EQ(map_now(), map_);
+  EXPECT_EQ(mapper_.final_trajectory().keyframes.size(), 1U);
+}
+
+TEST_F(MapperThatOnlyLocalizes, ForgetsThePlaceWithoutMatchesButNotAtRest) {
+  mapper_.restart(SE3(), now(0.0, T_O_B_));
+  relocalize(0.3);
+  for (double t = 1.0; t < 20.0; t += 1.0) mapper_.predict(now(t, T_O_B_), true);
+  EXPECT_TRUE(mapper_.localized());
+  mapper_.predict(now(23.0, T_O_B_));
+  EXPECT_TRUE(mapper_.localized());
+  mapper_.predict(now(25.0, T_O_B_));
+  EXPECT_FALSE(mapper_.localized());
+  EXPECT_NEAR(mapper_.unmatched_s(), 6.0, 1e-9);
+  relocalize(25.3);
+}
+
+TEST_F(MapperThatOnlyLocalizes, IsRelocalizedNearWhereItWasAfterADoubt) {
+  mapper_.restart(SE3(), now(0.0, T_O_B_));
+  relocalize(0.3);
+  mapper_.doubt(now(1.0, T_O_B_));
+  EXPECT_FALSE(mapper_.localized());
+  EXPECT_TRUE(localize(mapper_, 1.1, T_O_B_, SE3())) << "one image is enough near dead reckoning";
+  EXPECT_TRUE(mapper_.localized());
+}
+
+TEST_F(MapperThatOnlyLocalizes, KeepsTheMapInANewTime) {
+  mapper_.restart(SE3(), now(0.0, T_O_B_));
+  relocalize(0.3);
+  mapper_.begin_time();
+  EXPECT_FALSE(mapper_.localized());
+  EXPECT_EQ(map_now(), map_);
+  mapper_.restart(SE3(), now(0.0, T_O_B_));
+  relocalize(0.3);
+}
+
 class MapperOfTwoCameras : public MapperBeforeAWall {
  protected:
   /// The second camera is 10 cm to the right of the first.

@@ -58,6 +58,9 @@ constexpr std::string_view kForEveryone[] = {
     "estimator.landmarks.max_depth_m",
     "estimator.landmarks.max_per_camera",
     "map.enabled",
+    "map.localize_only",
+    "map.silent_after_s",
+    "map.forget_after_s",
     "map.keyframes.max_keyframes",
     "status.degraded_after_s",
     "status.lost_after_s",
@@ -131,6 +134,8 @@ void OdometryConfig::validate() const {
     return std::ranges::find_if(fields.all(), [&key](const ConfigField& field) { return field.key.ends_with(key); })
         ->key;
   });
+  if (map.localize_only && !map.enabled)
+    throw InputError("map.localize_only with map.enabled off: there would never be a pose; turn one of them round");
   if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
     throw InputError(
         "enhance.method with enhance.detect and enhance.track both off: nothing would use the enhanced frame; turn one "

@@ -37,8 +37,8 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
   ever_started_ = true;
   if (result.standstill || result.landmarks_seen >= config_.min_landmarks || !last_supported_) last_supported_ = t;
   if (result.velocity_observed) last_velocity_ = t;
-  const double alone_s = to_seconds(t - *last_supported_);
-  const double drifting_s = last_velocity_ ? std::min(alone_s, to_seconds(t - *last_velocity_)) : alone_s;
+  alone_s_ = to_seconds(t - *last_supported_);
+  const double drifting_s = last_velocity_ ? std::min(alone_s_, to_seconds(t - *last_velocity_)) : alone_s_;
   reason_.clear();
   if (!result.plausible) {
     reason_ = "the solution has diverged";
@@ -50,9 +50,9 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
     patience_ *= kMorePatience;
   }
   vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
-  if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s);
+  if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s_);
   if (!reason_.empty()) return TrackingStatus::Lost;
-  const bool doubtful = result.provisional || alone_s > config_.degraded_after_s ||
+  const bool doubtful = result.provisional || alone_s_ > config_.degraded_after_s ||
                         result.imu_strain > patience_ * config_.degraded_strain;
   return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
 }

@@ -27,6 +27,8 @@ class StatusJudge {
   void lose(std::string reason) { reason_ = std::move(reason); }
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
+  /// Time without enough landmarks or rest until the last packet [s].
+  double unsupported_s() const { return alone_s_; }
   /// The last loss was only a loss of vision: the estimate was valid until then.
   bool vision_lost() const { return vision_lost_; }
 
@@ -36,6 +38,7 @@ class StatusJudge {
   double patience_ = 1.0;                    ///< multiplies the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or standstill, since the start
   std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
+  double alone_s_ = 0.0;
   std::string reason_;
   bool vision_lost_ = false;
 };

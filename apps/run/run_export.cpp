@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// --export of `edged run`: a folder from which programs for reconstruction start.
+#include "run/run_export.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "common/files.hpp"
+#include "edged/camera/undistort.hpp"
+#include "edged/core/check.hpp"
+#include "run/reconstruction.hpp"
+#include "run/run_observer.hpp"
+
+namespace edged {
+namespace {
+
+/// Frames at keyframes, or at a rate, are written at once, undistorted by the lens as the run knows it then. The model
+/// is made at the end, with the final trajectory.
+class RunExport : public RunObserver {
+ public:
+  explicit RunExport(RunContext& run) : run_(run), folder_(run.options.exports.folder) {
+    std::error_code ignored;
+    if (std::filesystem::exists(folder_, ignored) && !std::filesystem::is_empty(folder_, ignored) && !run.options.force)
+      throw InputError::format("--export {}: is there already and not empty; choose another, or add --force",
+                               folder_.string());
+    for (const RigCamera& camera : run.used.cameras)
+      if (camera.modality == Modality::Frames) model_.cameras.push_back({camera.name, ideal_pinhole(camera.model)});
+    if (model_.cameras.empty())
+      throw InputError::format("--export: needs a frame camera; mode {} uses none", mode_name(run.mode));
+    make_picture_folder(folder_ / "images");
+  }
+
+  void on_step(const Step& step) override {
+    if (!is_tracking(step.status) || !due(step)) return;
+    const Rig rig = run_.odometry.rig();
+    for (std::size_t camera = 0; camera < model_.cameras.size(); ++camera) {
+      const CameraStep* seen = step.find(model_.cameras[camera].name);
+      if (!seen || seen->image.empty()) continue;
+      add(step.t, camera, *seen, rig.camera(seen->name).model);
+      last_ = step.t;
+    }
+  }
+
+  void on_end(const RunEnd& end) override {
+    place(end.known.poses);
+    triangulate(model_);
+    write_colmap(folder_, model_);
+    write_file(folder_ / "transforms.json", transforms_json(model_));
+    write_file(folder_ / "points.ply", points_ply(model_));
+  }
+
+ private:
+  bool due(const Step& step) const {
+    const double rate_hz = run_.options.exports.rate_hz;
+    if (rate_hz == 0.0) return step.keyframe;
+    constexpr double kEarly = 0.1;  // of the period: frames come in a rhythm of their own
+    return !last_ || to_seconds(step.t - *last_) * rate_hz > 1.0 - kEarly;
+  }
+
+  void add(Timestamp t, std::size_t camera, const CameraStep& seen, const CameraModel& lens) {
+    const CameraModel& pinhole = model_.cameras[camera].pinhole;
+    cv::Mat map(pinhole.height(), pinhole.width(), CV_32FC2), undistorted;
+    for (int y = 0; y < map.rows; ++y) {
+      for (int x = 0; x < map.cols; ++x) {
+        const Eigen::Vector2d at = lens.distort_to_pixel(pinhole.pixel_to_point({x, y}));
+        map.at<cv::Vec2f>(y, x) = {static_cast<float>(at.x()), static_cast<float>(at.y())};
+      }
+    }
+    cv::remap(seen.image, undistorted, map, cv::noArray(), cv::INTER_LINEAR);
+    Reconstruction::Image image;
+    image.file = fmt::format("{}_{:06d}.png", seen.name, model_.images.size());
+    image.camera = camera;
+    for (const Track& track : seen.tracks) {
+      const Eigen::Vector2d pixel = pinhole.distort_to_pixel(lens.pixel_to_point(track.pixel));
+      if (!pinhole.contains(pixel)) continue;
+      const cv::Point nearest(cvRound(pixel.x()), cvRound(pixel.y()));
+      image.observations.push_back({track.id, pixel, undistorted.at<std::uint8_t>(nearest)});
+    }
+    write_picture(folder_ / "images" / image.file, undistorted);
+    model_.images.push_back(std::move(image));
+    times_.push_back(t);
+  }
+
+  /// Where the images were taken, by the final trajectory and calibration. Those without a final pose are left out.
+  void place(const Trajectory& poses) {
+    const Rig rig = run_.odometry.rig();
+    std::vector<Reconstruction::Image> placed;
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      const auto pose = std::ranges::lower_bound(poses, times_[i], {}, &StampedPose::t);
+      if (pose == poses.end() || pose->t != times_[i]) continue;
+      Reconstruction::Image& image = model_.images[i];
+      image.T_W_C = pose->T * rig.camera(model_.cameras[image.camera].name).T_B_C;
+      placed.push_back(std::move(image));
+    }
+    model_.images = std::move(placed);
+  }
+
+  const RunContext& run_;
+  std::filesystem::path folder_;
+  Reconstruction model_;
+  std::vector<Timestamp> times_;  ///< of its images
+  std::optional<Timestamp> last_;
+};
+
+}  // namespace
+
+void add_export_options(CLI::App& app, ExportOptions& options) {
+  CLI::Option* folder = app.add_option(
+      "--export", options.folder,
+      "Also write a folder for reconstruction: undistorted frames with poses and points as a COLMAP model (sparse/0; "
+      "as text in sparse_text/0), nerfstudio's transforms.json, and points.ply");
+  app.add_option("--export-hz", options.rate_hz, "Frames a second that --export writes [those of the keyframes]")
+      ->check(CLI::Range(0.01, 10'000.0))
+      ->needs(folder);
+}
+
+std::unique_ptr<RunObserver> observe_export(RunContext& run) {
+  return run.options.exports.folder.empty() ? nullptr : std::make_unique<RunExport>(run);
+}
+
+}  // namespace edged
