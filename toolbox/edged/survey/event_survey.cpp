@@ -32,8 +32,12 @@ EventSurveyor::EventSurveyor(cv::Size sensor)
 void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
   for (const Event& event : events) {
     if (bin_end_ == Timestamp::min()) bin_end_ = event.t + kBin;
-    if (event.t >= bin_end_) close_bin(static_cast<std::size_t>((event.t - bin_end_) / kBin) + 1);
-    ++bin_events_;
+    if (event.t >= bin_end_) {
+      const Duration::rep bins = (event.t - bin_end_) / kBin + 1;
+      rates_.close(static_cast<std::size_t>(bins));
+      bin_end_ += bins * kBin;
+    }
+    ++rates_.bin_events;
     if (skipped_ + 1 < every) {
       ++skipped_;
       continue;
@@ -48,25 +52,23 @@ void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
   }
 }
 
-/// Ends the current bin. The remaining bins of `bins` are empty.
-void EventSurveyor::close_bin(std::size_t bins) {
-  const double rate = static_cast<double>(bin_events_) / to_seconds(kBin);
+void EventSurveyor::Rates::close(std::size_t ended) {
+  const double rate = static_cast<double>(bin_events) / to_seconds(kBin);
   const auto band = std::ranges::upper_bound(EventSurvey::kRateBands, rate) - EventSurvey::kRateBands.begin();
-  ++band_bins_[static_cast<std::size_t>(band)];
-  band_bins_[0] += bins - 1;
-  peak_ = std::max(peak_, std::exchange(bin_events_, 0));
-  bins_ += bins;
-  bin_end_ += static_cast<Duration::rep>(bins) * kBin;
+  ++band_bins[static_cast<std::size_t>(band)];
+  band_bins[0] += ended - 1;
+  peak = std::max(peak, std::exchange(bin_events, 0));
+  bins += ended;
 }
 
 EventSurvey EventSurveyor::result() const {
-  EventSurveyor ended = *this;
-  if (bin_events_ > 0) ended.close_bin(1);
+  Rates rates = rates_;
+  if (rates.bin_events > 0) rates.close(1);
   EventSurvey survey;
   survey.positive_share = share(positive_, events_);
-  survey.peak_rate_hz = static_cast<double>(ended.peak_) / to_seconds(kBin);
+  survey.peak_rate_hz = static_cast<double>(rates.peak) / to_seconds(kBin);
   for (std::size_t i = 0; i < survey.rate_shares.size(); ++i)
-    survey.rate_shares[i] = share(ended.band_bins_[i], ended.bins_);
+    survey.rate_shares[i] = share(rates.band_bins[i], rates.bins);
   survey.extent = extent_;
   survey.active_share = share(pixels_.active(), area(sensor_.empty() ? extent_ : sensor_));
   survey.hot_known = pixels_.known();

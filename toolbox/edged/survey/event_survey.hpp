@@ -31,7 +31,8 @@ struct EventSurvey {
   std::optional<FlickerSurvey> flicker;
 };
 
-/// Events must be in time order. Memory: that of HotPixelFinder and FlickerSurveyor, at most 109 MB.
+/// Events must be in time order. Memory: that of HotPixelFinder and FlickerSurveyor, at most 109 MB, none before the
+/// first event.
 class EventSurveyor {
  public:
   /// sensor: events beyond it are counted, but not per pixel; empty if unknown.
@@ -43,15 +44,20 @@ class EventSurveyor {
   EventSurvey result() const;
 
  private:
-  void close_bin(std::size_t bins);
+  /// Of the whole image, over bins of 10 ms.
+  struct Rates {
+    std::size_t bin_events = 0, bins = 0, peak = 0;
+    std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins{};
+    /// Ends the current bin. The remaining ones are empty.
+    void close(std::size_t ended);
+  };
 
   cv::Size sensor_, extent_;
   HotPixelFinder pixels_;
   FlickerSurveyor flicker_;
   std::size_t skipped_ = 0;                // since the last one whose pixel was surveyed
   std::size_t events_ = 0, positive_ = 0;  // whose pixels were surveyed
-  std::size_t bin_events_ = 0, bins_ = 0, peak_ = 0;
-  std::array<std::size_t, EventSurvey::kRateBands.size() + 1> band_bins_{};
+  Rates rates_;
   Timestamp bin_end_ = Timestamp::min();
 };
 

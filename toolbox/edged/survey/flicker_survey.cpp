@@ -15,8 +15,10 @@ constexpr double kFullSwing = 0.8;
 
 }  // namespace
 
-FlickerSurveyor::FlickerSurveyor(cv::Size grid) : grid_(grid), columns_((grid.width >> kCellBits) + 1) {
-  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>((grid.height >> kCellBits) + 1));
+FlickerSurveyor::FlickerSurveyor(cv::Size grid) : grid_(grid), columns_((grid.width >> kCellBits) + 1) {}
+
+void FlickerSurveyor::make_cells() {
+  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>((grid_.height >> kCellBits) + 1));
 }
 
 void FlickerSurveyor::end_window() {

@@ -27,6 +27,7 @@ class FlickerSurveyor {
   /// Stamps should not decrease.
   void add(const Event& event) {
     if (event.x >= grid_.width || event.y >= grid_.height) return;
+    if (cells_.empty()) make_cells();
     if (detector_.add(event.t, event.positive)) end_window();
     cells_[static_cast<std::size_t>((event.y >> kCellBits) * columns_ + (event.x >> kCellBits))].add(
         detector_.since_begin(event.t), event.positive);
@@ -37,6 +38,7 @@ class FlickerSurveyor {
  private:
   static constexpr int kCellBits = 5;
 
+  void make_cells();
   void end_window();
 
   cv::Size grid_;

@@ -17,39 +17,35 @@ constexpr float kTextureSpread = 0.5F;
 
 }  // namespace
 
-HotPixelFinder::HotPixelFinder(cv::Size grid) : grid_(grid) {
-  const std::size_t pixels = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-  total_.resize(pixels), window_.resize(pixels), excess_.resize(pixels);
-}
-
 /// Windows without any event are ignored: the recording probably has a gap there.
 void HotPixelFinder::end_window(Timestamp t) {
   if (window_end_ == Timestamp::min()) {
+    const std::size_t pixels = place(0, grid_.height);
+    total_.resize(pixels), window_.resize(pixels), excess_.resize(pixels);
     window_end_ = t + kWindow;
     first_ = t;
     return;
   }
-  judge_window(to_seconds(kWindow));
+  const double seconds = to_seconds(kWindow);
+  for (int y = 0; y < extent_.height; ++y)
+    for (int x = 0; x < extent_.width; ++x) excess_[place(x, y)] = excess_with_window(x, y, seconds);
+  judged_ = extent_;
+  silent_weight_ += static_cast<float>(seconds * seconds);
+  std::ranges::fill(window_, std::uint16_t{0});
   window_end_ += ((t - window_end_) / kWindow + 1) * kWindow;
 }
 
-void HotPixelFinder::judge_window(double seconds) {
+HotPixelFinder::Excess HotPixelFinder::excess_with_window(int x, int y, double seconds) const {
   const auto dt = static_cast<float>(seconds);
-  for (int y = 0; y < extent_.height; ++y)
-    for (int x = 0; x < extent_.width; ++x) {
-      const auto beside = static_cast<float>(neighbours(x, y));
-      const float variance = 1.0F + beside + kTextureSpread * kTextureSpread * beside * beside;
-      Excess& excess = excess_[place(x, y)];
-      if (x >= judged_.width || y >= judged_.height) excess.weight = silent_weight_;
-      const float sum = dt * (static_cast<float>(window_[place(x, y)]) - beside) / variance,
-                  weight = dt * dt / variance;
-      excess.sum += sum;
-      excess.weight += weight;
-      if (sum > excess.most_sum) excess.most_sum = sum, excess.most_weight = weight;
-    }
-  judged_ = extent_;
-  silent_weight_ += dt * dt;
-  std::ranges::fill(window_, std::uint16_t{0});
+  const auto beside = static_cast<float>(neighbours(x, y));
+  const float variance = 1.0F + beside + kTextureSpread * kTextureSpread * beside * beside;
+  Excess excess = excess_[place(x, y)];
+  if (x >= judged_.width || y >= judged_.height) excess.weight = silent_weight_;
+  const float sum = dt * (static_cast<float>(window_[place(x, y)]) - beside) / variance, weight = dt * dt / variance;
+  excess.sum += sum;
+  excess.weight += weight;
+  if (sum > excess.most_sum) excess.most_sum = sum, excess.most_weight = weight;
+  return excess;
 }
 
 /// Events of the second most active of the eight neighbours: an edge or moving object has two or more of them, and a
@@ -70,14 +66,13 @@ int HotPixelFinder::neighbours(int x, int y) const {
 }
 
 std::vector<HotPixel> HotPixelFinder::result() const {
-  HotPixelFinder ended = *this;
-  // The last window is a part of one: a tenth is enough to count.
-  if (last_ != Timestamp::min())
-    ended.judge_window(std::max(to_seconds(last_ - (window_end_ - kWindow)), 0.1 * to_seconds(kWindow)));
   std::vector<HotPixel> hot;
+  if (last_ == Timestamp::min()) return hot;
+  // The last window is a part of one: a tenth is enough to count.
+  const double seconds = std::max(to_seconds(last_ - (window_end_ - kWindow)), 0.1 * to_seconds(kWindow));
   for (int y = 0; y < extent_.height; ++y)
     for (int x = 0; x < extent_.width; ++x) {
-      const Excess& excess = ended.excess_[place(x, y)];
+      const Excess excess = excess_with_window(x, y, seconds);
       const double rate_hz = excess.sum / excess.weight, sigmas = excess.sum / std::sqrt(excess.weight);
       const std::uint32_t events = total_[place(x, y)];
       const bool flood = events > kFlood * static_cast<double>(events_);

@@ -25,8 +25,8 @@ class HotPixelFinder {
  public:
   static constexpr double kLeastHz = 5.0;  ///< lower rates are harmless
 
-  /// Needs 22 bytes per pixel of `grid`. Pixels outside are ignored.
-  explicit HotPixelFinder(cv::Size grid);
+  /// Needs 22 bytes per pixel of `grid`, from the first event on. Pixels outside are ignored.
+  explicit HotPixelFinder(cv::Size grid) : grid_(grid) {}
 
   /// Stamps must not decrease.
   void add(int x, int y, Timestamp t) {
@@ -62,7 +62,8 @@ class HotPixelFinder {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x);
   }
   void end_window(Timestamp t);
-  void judge_window(double seconds);
+  /// Of a pixel, if a window of that length ended now.
+  Excess excess_with_window(int x, int y, double seconds) const;
   int neighbours(int x, int y) const;
 
   cv::Size grid_, extent_, judged_;  ///< judged_: extent_ at the last window
