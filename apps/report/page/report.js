@@ -103,7 +103,7 @@ function verdictCard(run, i) {
                   make('p', {}, '→ ' + finding.remedy));
     }
     if (m.waiting_for) card.append(make('p', {}, 'What was missing last: ' + m.waiting_for));
-    if (m.next) card.append(make('p', {}, 'Next: ', make('code', {}, m.next)));
+    if (m.next && !m.next.startsWith('open ')) card.append(make('p', {}, 'Next: ', make('code', {}, m.next)));
     for (const [what, count] of Object.entries(m.repairs || {})) card.append(make('p', {}, 'repaired: ' + count + ' × ' + what));
   }
   card.append(make('dl', {class: 'facts'}, ...facts(run).flatMap(([name, value]) => value === null ? [] : [make('div', {}, make('dt', {}, name), make('dd', {}, value))])));
