@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "edged/frontend/test_scene.hpp"
 
 namespace edged {
@@ -83,6 +85,31 @@ TEST_F(ReferencePatches, AreForgottenWithTheirTracksAndNeverGuessed) {
   const Track rim = corner({3.0, 3.0});
   take(image, rim);
   EXPECT_FALSE(align(rim, image, rim.pixel, SE3()));
+}
+
+TEST_F(ReferencePatches, OnEventFramesAreWhatTheMotionShows) {
+  const Eigen::Vector2d moved(2.0, 0.5);
+  // The increments of the scene that moves; the event frame itself shows nothing.
+  const auto view = [&](const SE3& T_W_C) {
+    const cv::Mat image = scene_.image(T_W_C);
+    cv::Mat right, down, increments;
+    cv::Sobel(image, right, CV_32F, 1, 0, 3, 0.125);
+    cv::Sobel(image, down, CV_32F, 0, 1, 3, 0.125);
+    cv::Mat(-moved.x() * right - moved.y() * down).convertTo(increments, CV_8U, 2.0, 128.0);
+    return PatchView{cv::Mat(image.size(), CV_8UC1, cv::Scalar(90)), {increments, 1.0}};
+  };
+  const Track track = corner({130.4, 88.7});
+  templates_.take(view(SE3()), std::span(&track, 1));
+  const CornerMotion there{track.pixel, moved, in_camera(track, SE3())};
+  EXPECT_FALSE(templates_.align(track.id, view(SE3()), there));
+  templates_.learn(track.id, view(SE3()), there, true);
+  const SE3 T_W_C(so3::exp(Eigen::Vector3d(0.004, -0.01, 0.1)), Eigen::Vector3d(0.02, 0.0, 0.05));
+  templates_.move(T_W_C.inverse());
+  const Eigen::Vector2d truth = *scene_.moved(track.pixel, SE3(), T_W_C);
+  const auto found =
+      templates_.align(track.id, view(T_W_C), {truth + Eigen::Vector2d(0.4, -0.3), moved, in_camera(track, T_W_C)});
+  ASSERT_TRUE(found);
+  EXPECT_LT((*found - truth).norm(), 0.15);
 }
 
 TEST_F(ReferencePatches, OfMuchOtherSizeAreNotComparedWith) {
