@@ -40,8 +40,6 @@ struct MapFilterConfig {
 struct MapConfig {
   bool enabled = true;
   bool localize_only = false;    ///< poses only in a loaded map, which never changes
-  double silent_after_s = 0.2;   ///< with localize_only: without enough landmarks or rest
-  double forget_after_s = 5.0;   ///< with localize_only: without a map match or rest
   double min_interval_s = 0.24;  ///< between images that are matched against the map
   int max_observations = 80;     ///< map points that are searched for in an image
   double search_px = 6.0;        ///< largest search radius; a point is searched within three sigmas of its prediction

@@ -56,8 +56,6 @@ void EventFrameConfig::visit(ConfigFields& fields) {
                 {.effect = "Depth for the motion compensation: one for the scene, or that of the nearest landmark."});
   fields.add("depth_cell_px", depth_grid.cell_px,
              {"px", 1, 64, "Side length of a cell of equal depth (depth = landmarks)."});
-  fields.add("depth_reach_px", depth_grid.reach_px,
-             {"px", 0, 1000, "Cells farther than this from every landmark use the scene depth (depth = landmarks)."});
   fields.add("blur_sigma_px", blur_sigma_px,
              {"px", 0, 10, "Gaussian blur of the event frame, which gives the tracker smoother gradients. 0: off."});
 }

@@ -39,15 +39,6 @@ void MapConfig::visit(ConfigFields& fields) {
   fields.add("localize_only", localize_only,
              {.effect = "Only localize in a loaded map, which never changes: the status is Initializing until the body "
                         "is relocalized in it, and Lost from a loss on until it is again."});
-  fields.add(
-      "silent_after_s", silent_after_s,
-      {"s", 0.05, 60,
-       "With localize_only: after this time without enough landmarks (status.min_landmarks) the status is Lost."});
-  fields.add(
-      "forget_after_s", forget_after_s,
-      {"s", 0.5, 3600,
-       "With localize_only: after this time without a map match, rest aside, the status is Lost, and the body is "
-       "searched for in all of the map."});
   fields.add("min_interval_s", min_interval_s, {"s", 0, 10, "Time between images that are matched with the map."});
   fields.add("max_observations", max_observations,
              {"", 8, 1000, "Largest number of points that are matched in an image. More cost time."});

@@ -14,6 +14,8 @@ namespace edged {
 namespace {
 
 /// The covariance of the pose changes slowly, and costs a third of an optimisation.
+// With localize_only: without enough landmarks or rest. An event frame holds events of up to 0.25 s before.
+constexpr double kSilentAfter_s = 0.2;
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
 /// With fewer features on frames than this the map uses event frames.
@@ -211,7 +213,7 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
   if (!estimator_.initialized() || !config_.map.enabled) return false;
   const auto timer = timings_->measure("map");
   bool relocalized = false;
-  if (config_.map.localize_only && mapper_.localized() && judge_.unsupported_s() > config_.map.silent_after_s)
+  if (config_.map.localize_only && mapper_.localized() && judge_.unsupported_s() > kSilentAfter_s)
     mapper_.doubt(body_.now());
   mapper_.predict(body_.now(), result.standstill);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);

@@ -18,7 +18,8 @@ constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are 
 constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // bound on the error of dead reckoning
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
-constexpr double kYoungDrift = 5.0;  // of an odometry that has just started, whose scale is still inaccurate
+constexpr double kYoungDrift = 5.0;     // of an odometry that has just started, whose scale is still inaccurate
+constexpr double kForgetAfter_s = 5.0;  // with localize_only: in motion without a map match
 constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to measure how much of it the map covers
 
 /// Replaces the points by those that the window has estimated.
@@ -111,7 +112,7 @@ void Mapper::predict(const OdomState& now, bool at_rest) {
   filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
   if (at_rest) matched_ = now.t;
-  if (!config_.localize_only || unlocated_before_ || unmatched_s() <= config_.forget_after_s) return;
+  if (!config_.localize_only || unlocated_before_ || unmatched_s() <= kForgetAfter_s) return;
   unlocated_before_ = Timestamp();
   doubt(now);
 }

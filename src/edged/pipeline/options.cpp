@@ -59,8 +59,6 @@ constexpr std::string_view kForEveryone[] = {
     "estimator.landmarks.max_per_camera",
     "map.enabled",
     "map.localize_only",
-    "map.silent_after_s",
-    "map.forget_after_s",
     "map.keyframes.max_keyframes",
     "status.degraded_after_s",
     "status.lost_after_s",

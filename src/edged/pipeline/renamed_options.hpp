@@ -27,6 +27,7 @@ inline constexpr ConfigFields::Renamed kRenamedOptions[] = {
     {"expert.event_tracker.", "expert.tracker."},
     {"expert.frame_tracker.", "expert.tracker.frames."},
     {"expert.frame_tracker.", "expert.tracker."},
+    {"expert.event_frame.depth_reach_px", ""},
     {"expert.event_tracker.klt.iterations", ""},
     {"expert.frame_tracker.klt.iterations", ""},
     {"expert.event_tracker.klt.epsilon_px", ""},

@@ -156,11 +156,12 @@ std::size_t RunCheck::surveyed_every(const Measurement& measurement) {
   const auto* batch = std::get_if<EventBatch>(&measurement);
   if (batch == nullptr || batch->events.empty()) return 1;
   const Timestamp begin = batch->events.front().t;
-  if (begin - counted_from_ >= kCounted || begin < counted_from_) {
-    const bool first = counted_from_ == Timestamp::min();
-    every_ = first ? 1
-                   : 1 + static_cast<std::size_t>(static_cast<double>(counted_) /
-                                                  (kMostSurveyed * to_seconds(begin - counted_from_)));
+  // Before the first batch, and where the stamps go back, nothing has passed.
+  const bool goes_on = counted_from_ != Timestamp::min() && begin >= counted_from_;
+  const Duration passed = goes_on ? begin - counted_from_ : Duration(0);
+  if (!goes_on || passed >= kCounted) {
+    const double most = kMostSurveyed * to_seconds(passed);
+    every_ = goes_on ? 1 + static_cast<std::size_t>(static_cast<double>(counted_) / most) : 1;
     counted_from_ = begin;
     counted_ = 0;
   }
