@@ -53,7 +53,7 @@ class Maps(WithFlight):
         poses = [line for line in (self.folder / "run" / "trajectory.tum").read_text().splitlines() if not line.startswith("#")]
         self.assertEqual(len(poses), sum(status in ("Good", "Degraded") for status in statuses))
 
-    def test_elsewhere_a_run_that_only_localizes_has_no_poses(self):
+    def test_in_another_room_a_run_that_only_localizes_has_no_poses(self):
         result = edged("run", "sim:poster:3", "--duration", "8", "--mode", "frames", "--map", self.map, "--localize-only", "--out",
                        self.folder / "run", "--quiet", "--json")
         summary = json.loads(result.stdout)
