@@ -16,11 +16,13 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -168,14 +170,16 @@ class Collector final : public dds::DataReaderListener {
 };
 
 /// With unicast discovery on this machine: as ROS_LOCALHOST_ONLY of Humble has it (the loopback interface only) or as
-/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST (all interfaces). lost_percent: of the packets that it sends.
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST (all interfaces).
 class Participant {
  public:
-  explicit Participant(std::uint32_t domain, bool loopback_only = true, std::uint8_t lost_percent = 0) {
+  explicit Participant(std::uint32_t domain, bool loopback_only = true) {
     dds::DomainParticipantQos qos;
     auto udp = std::make_shared<eprosima::fastdds::rtps::test_UDPv4TransportDescriptor>();
-    udp->dropDataMessagesPercentage = udp->dropDataFragMessagesPercentage = udp->dropHeartbeatMessagesPercentage =
-        lost_percent;
+    udp->messages_filter_ = [lost_percent = lost_percent_](const auto&) {
+      thread_local std::minstd_rand random;
+      return std::uniform_real_distribution(0.0, 100.0)(random) < *lost_percent;
+    };
     if (loopback_only) udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->receiveBufferSize = udp->sendBufferSize = 4 << 20;
     qos.transport().use_builtin_transports = false;
@@ -201,11 +205,16 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
+  /// Of the packets that it sends from now on.
+  void lose(double percent) { *lost_percent_ = percent; }
+
   /// topic: "/imu"; type: "sensor_msgs::msg::dds_::Imu_".
   dds::DataWriter* writer(const std::string& topic, const std::string& type, const FastQos& wanted) {
     dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
     fill(qos, wanted);
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+    // What is lost is sent again after the next heartbeat, by default of 3 s.
+    qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
     return publisher_->create_datawriter(make_topic(topic, type), qos);
   }
   dds::DataReader* reader(const std::string& topic, const std::string& type, const FastQos& wanted,
@@ -232,6 +241,7 @@ class Participant {
     return participant_->create_topic("rt" + topic, type, dds::TOPIC_QOS_DEFAULT);
   }
 
+  const std::shared_ptr<std::atomic<double>> lost_percent_ = std::make_shared<std::atomic<double>>(0.0);
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
 // Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] [rig=NAME] [loss=PERCENT] Writes OUT.tum (odometry) and OUT.json. skip: packet numbers that are never
-// sent; loss: packets of the network that are; listen: ends so long after the last pose.
+// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] Writes OUT.tum (odometry) and OUT.json. skip: packet numbers that
+// are never sent; loss: packets of the network that are; nodes: it waits for so many; listen: ends so long after the
+// last pose.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -66,7 +67,9 @@ class Driver {
     imu_ = participant.writer("/imu", "sensor_msgs::msg::dds_::Imu_", {reliable, false, 1000});
   }
 
-  bool is_heard() const { return readers(events_) > 0 && readers(image_) > 0 && readers(imu_) > 0; }
+  bool is_heard(int nodes) const {
+    return readers(events_) >= nodes && readers(image_) >= nodes && readers(imu_) >= nodes;
+  }
 
   void send(const Measurement& measurement, cv::Size sensor) {
     if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
@@ -321,14 +324,15 @@ class Listener {
   std::map<std::string, Collector> collectors_;
 };
 
-void drive_recording(Driver& driver, const std::string& path, const Options& options) {
+void drive_recording(Participant& participant, Driver& driver, const std::string& path, const Options& options) {
   const Recording recording = open_recording(path);
   const auto deadline = Clock::now() + std::chrono::seconds(20);
-  while (!driver.is_heard()) {
+  while (!driver.is_heard(static_cast<int>(number_of(options, "nodes", 1)))) {
     if (Clock::now() > deadline) throw std::runtime_error("nobody subscribes");
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the readers of the other side match as well
+  participant.lose(number_of(options, "loss", 0));
   const auto rig = options.find("rig");
   const Calibration calibration = rig == options.end() ? recording.calibration.value() : load_rig(rig->second);
   const CameraModel& camera = calibration.rig.find(Modality::Events)->model;
@@ -351,14 +355,13 @@ void drive_recording(Driver& driver, const std::string& path, const Options& opt
 int run_peer(const std::string& recording, const std::string& out, const Options& options) {
   const char* domain = std::getenv("ROS_DOMAIN_ID");
   Participant participant(domain ? static_cast<std::uint32_t>(std::atoi(domain)) : 0,
-                          number_of(options, "interfaces", 1) < 2,
-                          static_cast<std::uint8_t>(number_of(options, "loss", 0)));
+                          number_of(options, "interfaces", 1) < 2);
   const auto node = options.find("node");
   Listener listener(participant, node == options.end() ? "edged" : node->second);
   std::optional<Driver> driver;
   if (recording != "none") {
     driver.emplace(participant, options);
-    drive_recording(*driver, recording, options);
+    drive_recording(participant, *driver, recording, options);
   }
   const auto quiet = std::chrono::duration<double>(number_of(options, "listen", 1.5));
   auto last_news = Clock::now();

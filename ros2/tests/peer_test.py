@@ -212,7 +212,7 @@ class PeerOnFastDds(unittest.TestCase):
 
     def test_packets_lost_by_the_network_are_counted_or_sent_again(self):
         node, asking = Node(self), Node(self, "--set", "reliable=true", name="asking")
-        self.peer(self.recording, "peer", reliable=1, loss=1)
+        self.peer(self.recording, "peer", reliable=1, loss=1, nodes=2)
         counters, all_counters = node.end(), asking.end()
         sent = 1000 * SECONDS + 1
         lost = {topic: int(counters.get(f"{topic} messages lost by the transport", 0))
