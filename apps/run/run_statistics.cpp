@@ -58,6 +58,7 @@ void RunStatistics::add(const Step& step) {
   if (is_tracking(step.status)) ++poses_;
   if (step.keyframe) ++keyframes_;
   if (step.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
+  if (step.contradicted && last_status_ != TrackingStatus::Lost) ++times_contradicted_;
   last_status_ = step.status;
   ln_depth_scale_ = step.ln_depth_scale;
   if (is_tracking(step.status)) accel_bias_ = step.state.bias_accel;

@@ -34,6 +34,8 @@ class RunStatistics {
   std::size_t poses() const { return poses_; }    ///< Good and Degraded packets
   std::size_t keyframes() const { return keyframes_; }
   std::size_t times_lost() const { return times_lost_; }
+  /// Of them, those at which the cameras contradicted the IMU.
+  std::size_t times_contradicted() const { return times_contradicted_; }
   /// First visual measurement to last [s].
   double visual_span_s() const;
   /// Time since the previous packet (the first: since the first measurement), summed over packets of that status [s].
@@ -59,7 +61,7 @@ class RunStatistics {
   std::optional<Timestamp> first_visual_;
   Timestamp last_visual_;
   std::optional<Timestamp> last_packet_;
-  std::size_t events_ = 0, packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0;
+  std::size_t events_ = 0, packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0, times_contradicted_ = 0;
   std::array<double, 4> seconds_{};
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;

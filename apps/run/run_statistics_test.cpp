@@ -52,6 +52,12 @@ TEST(RunStatistics, CountLossesNotLostPackets) {
   statistics.add(step_at(4, TrackingStatus::Good));
   statistics.add(step_at(5, TrackingStatus::Lost));
   EXPECT_EQ(statistics.times_lost(), 2u);
+  EXPECT_EQ(statistics.times_contradicted(), 0u);
+  statistics.add(step_at(6, TrackingStatus::Good));
+  Step contradicted = step_at(7, TrackingStatus::Lost);
+  contradicted.contradicted = true;
+  for (int i = 0; i < 2; ++i) statistics.add(contradicted);
+  EXPECT_EQ(statistics.times_contradicted(), 1u);
 }
 
 TEST(RunStatistics, KeepWhatWasLastWaitedFor) {

@@ -145,6 +145,9 @@ class Step(_BodyState):
     @property
     def lost_because(self) -> str: ...
     @property
+    def contradicted(self) -> bool:
+        """While lost: the cameras contradicted the IMU, so the last poses before are wrong."""
+    @property
     def cameras(self) -> dict[str, CameraStep]:
         """By name: those of the run, event cameras first. What follows is of the first of its kind."""
     @property

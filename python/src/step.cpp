@@ -139,6 +139,7 @@ void bind_step(py::module_& module) {
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)
+      .def_readonly("contradicted", &Step::contradicted)
       .def_property_readonly("cameras", &cameras_of)
       .def_property_readonly("landmarks",
                              [](const py::object& self) { return view(self.cast<const Step&>().landmarks, self); })

@@ -54,12 +54,15 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
       estimator_(fresh_estimator()),
       mapper_(config.map, config.status.lost_after_s),
       judge_(config.status),
+      biases_(noise),
       body_(noise, duration_from_seconds(config.packets.max_age_s)),
       attitude_(noise) {}
 
 void Localization::begin_estimate() {
   counters_before_.add(estimator_.external_counters());
   estimator_ = fresh_estimator();
+  biases_ = BiasHistory(noise_);
+  bias_change_ = 0.0;
 }
 
 ExternalCounters Localization::external_counters() const {
@@ -94,7 +97,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_quiet, seen.depth, std::move(external)},
       output.correction);
-  const TrackingStatus of_odometry = judge_.judge(result, estimator_.initialized(), t);
+  const TrackingStatus of_odometry = judge_.judge(result, bias_change_, estimator_.initialized(), t);
   const bool relocalized = follow_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
   update_covariance(t);
@@ -123,7 +126,10 @@ Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult 
   step.waiting_for = std::move(result.waiting_for);
   if (status == TrackingStatus::Initializing && estimator_.initialized()) step.waiting_for = missing_localization();
   step.started = std::move(result.started);
-  if (status == TrackingStatus::Lost) step.lost_because = judge_.reason();
+  if (status == TrackingStatus::Lost) {
+    step.lost_because = judge_.reason();
+    step.contradicted = judge_.contradicted();
+  }
   step.T_M_O = odom_to_map.T_M_O();
   step.ln_depth_scale = estimator_.depth_scale();
   if (config_.map.localize_only && !is_tracking(status)) return step;  // what follows would be in another frame
@@ -270,6 +276,7 @@ void Localization::update_covariance(Timestamp t) {
   covariance_.reset();
   covariance_at_ = t;
   if (const std::optional<Matrix15d> P = estimator_.covariance()) {
+    if (!estimator_.provisional()) bias_change_ = biases_.add(estimator_.newest(), *P);
     const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
     covariance_ = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
                    R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};

@@ -14,6 +14,7 @@
 #include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
+#include "edged/pipeline/bias_history.hpp"
 #include "edged/pipeline/body_motion.hpp"
 #include "edged/pipeline/mapper.hpp"
 #include "edged/pipeline/status_judge.hpp"
@@ -90,6 +91,8 @@ class Localization {
   Mapper mapper_;
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;
+  BiasHistory biases_;        ///< of this estimate
+  double bias_change_ = 0.0;  ///< as of the last covariance [sigma]
   BodyMotion body_;
   std::optional<AttitudeFilter> attitude_;  ///< until the first start
   bool gyro_clipped_ = false;               ///< in this packet

@@ -12,6 +12,7 @@ namespace edged {
 namespace {
 
 constexpr double kMorePatience = 1.5;
+constexpr double kMostBiasChange = 3.0;  // [sigma]; up to 2.3 without dynamic objects (bench/log/disturbances.md)
 
 }  // namespace
 
@@ -28,7 +29,28 @@ void StatusConfig::visit(ConfigFields& fields) {
       {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
 }
 
-TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, Timestamp t) {
+void StatusJudge::lose(std::string reason) {
+  reason_ = std::move(reason);
+  contradicted_ = false;
+}
+
+/// Of the IMU by the cameras, where it is too large to go on; empty else.
+std::string StatusJudge::contradiction(double imu_strain, double bias_change) {
+  if (const double most = patience_ * config_.lost_strain; imu_strain > most) {
+    patience_ *= kMorePatience;
+    return fmt::format(
+        "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
+        "the IMU's noise set too low)",
+        imu_strain, most);
+  }
+  if (bias_change <= kMostBiasChange) return "";
+  return fmt::format(
+      "the cameras contradict the IMU, whose biases would have changed ({:.1f} of {:.1f} sigma; most features are on "
+      "dynamic objects, or the calibration is wrong)",
+      bias_change, kMostBiasChange);
+}
+
+TrackingStatus StatusJudge::judge(const EstimatorResult& result, double bias_change, bool started, Timestamp t) {
   if (!started) {
     last_supported_.reset();
     last_velocity_.reset();
@@ -39,16 +61,8 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, bool started, T
   if (result.velocity_observed) last_velocity_ = t;
   alone_s_ = to_seconds(t - *last_supported_);
   const double drifting_s = last_velocity_ ? std::min(alone_s_, to_seconds(t - *last_velocity_)) : alone_s_;
-  reason_.clear();
-  if (!result.plausible) {
-    reason_ = "the solution has diverged";
-  } else if (const double most = patience_ * config_.lost_strain; result.imu_strain > most) {
-    reason_ = fmt::format(
-        "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
-        "the IMU's noise set too low)",
-        result.imu_strain, most);
-    patience_ *= kMorePatience;
-  }
+  reason_ = result.plausible ? contradiction(result.imu_strain, bias_change) : "the solution has diverged";
+  contradicted_ = !reason_.empty();
   vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
   if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s_);
   if (!reason_.empty()) return TrackingStatus::Lost;

@@ -22,17 +22,22 @@ class StatusJudge {
   explicit StatusJudge(const StatusConfig& config) : config_(config) {}
 
   /// Of a packet at t; while the estimator has not started, Initializing before its first start and Lost after.
-  TrackingStatus judge(const EstimatorResult& result, bool started, Timestamp t);
+  /// bias_change: of the IMU, see BiasHistory [sigma].
+  TrackingStatus judge(const EstimatorResult& result, double bias_change, bool started, Timestamp t);
   /// The estimate was ended by another part.
-  void lose(std::string reason) { reason_ = std::move(reason); }
+  void lose(std::string reason);
   /// Why the last one was Lost, with numbers.
   const std::string& reason() const { return reason_; }
+  /// The last loss was by a contradiction of cameras and IMU: the last poses before are wrong.
+  bool contradicted() const { return contradicted_; }
   /// Time without enough landmarks or rest until the last packet [s].
   double unsupported_s() const { return alone_s_; }
   /// The last loss was only a loss of vision: the estimate was valid until then.
   bool vision_lost() const { return vision_lost_; }
 
  private:
+  std::string contradiction(double imu_strain, double bias_change);
+
   StatusConfig config_;
   bool ever_started_ = false;
   double patience_ = 1.0;                    ///< multiplies the limits of strain
@@ -41,6 +46,7 @@ class StatusJudge {
   double alone_s_ = 0.0;
   std::string reason_;
   bool vision_lost_ = false;
+  bool contradicted_ = false;
 };
 
 }  // namespace edged
