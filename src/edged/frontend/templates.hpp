@@ -48,21 +48,21 @@ class Templates {
   void learn(FeatureId id, const PatchView& view, const CornerMotion& corner, bool confirmed);
   /// Whether the newest image matches the reference patch.
   void note(FeatureId id, bool fits);
-  void clear() { looks_.clear(); }
+  void clear() { references_.clear(); }
 
  private:
-  struct Look {
+  struct Reference {
     Patch patch;
-    SE3 T_cur_look;  ///< camera at the reference patch to camera now
+    SE3 T_cur_ref;  ///< camera at the reference patch to camera now
     PatchOutline outline;
     GradientPatch gradient;
     bool fits = true;  ///< at the last call of match
   };
-  std::optional<PatchPlace> place_of(const Look& look, const CornerMotion& corner) const;
+  std::optional<PatchPlace> place_of(const Reference& reference, const CornerMotion& corner) const;
 
   CameraModel camera_;
   PatchConfig config_;
-  std::map<FeatureId, Look> looks_;
+  std::map<FeatureId, Reference> references_;
 };
 
 }  // namespace edged

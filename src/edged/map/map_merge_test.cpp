@@ -12,14 +12,14 @@ namespace {
 /// A wall of points with distinct descriptors, observed from neighbouring places; everything in a frame A.
 struct Wall {
   std::vector<Eigen::Vector3d> points;
-  std::vector<Descriptor> looks;
+  std::vector<Descriptor> descriptors;
 
   explicit Wall(std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> across(-2.0, 2.0), deep(2.5, 4.0);
     for (int i = 0; i < 60; ++i) {
       points.emplace_back(across(random), deep(random), 0.5 * across(random));
-      looks.push_back({random(), random(), random(), random()});
+      descriptors.push_back({random(), random(), random(), random()});
     }
   }
 
@@ -35,7 +35,7 @@ struct Wall {
         const Eigen::Vector3d p_C = (T_A_K[k] * T_K_C).inverse() * points[i];
         if (p_C.z() < 0.5 || p_C.hnormalized().norm() > 0.8) continue;
         view.points.push_back(
-            {0, p_C.hnormalized(), 1.0 / p_C.z(), 0.01 / p_C.z(), {}, looks[i], Eigen::Vector2d::Zero(), 0, 0});
+            {0, p_C.hnormalized(), 1.0 / p_C.z(), 0.01 / p_C.z(), {}, descriptors[i], Eigen::Vector2d::Zero(), 0, 0});
       }
       map.keyframes.push_back({t, t, {view}});
       map.T_M_K.push_back(T_A_B.inverse() * T_A_K[k]);

@@ -172,9 +172,9 @@ void TrajectorySmoother::add_observations(const StampedPose& T_O_B, std::vector<
 }
 
 TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map) const {
-  std::size_t looks = 0;
-  for (const Session& session : sessions_) looks += session.views.size();
-  const std::size_t of = looks / kMostTogether + 1;
+  std::size_t views = 0;
+  for (const Session& session : sessions_) views += session.views.size();
+  const std::size_t of = views / kMostTogether + 1;
   const Fit together(*this, odom_to_map, of);
   const std::optional<Fit> chain =
       of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, 1, &together) : std::nullopt;

@@ -42,7 +42,7 @@ class FlightRecordTest : public testing::Test {
     causal_.push_back({instant(t), T_M_O_ * T_O_B_});
   }
   /// The points of that keyframe on the wall, observed from the true pose of the body.
-  void look(double t, double made_at, std::size_t keyframe) {
+  void observe(double t, double made_at, std::size_t keyframe) {
     std::vector<MapObservation> observations;
     for (const double x : {-1.2, 0.1, 1.3}) {
       for (const double y : {-1.1, 0.0, 1.0}) {
@@ -94,7 +94,7 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 8.5);
   ASSERT_GT(error(causal_.back()), 0.06);
-  look(8.5, 0.5, keyframe);
+  observe(8.5, 0.5, keyframe);
   const Trajectory poses = record_.path(odom_to_map_).poses;
   EXPECT_LT(error(poses.back()), 0.005);
   for (const StampedPose& pose : poses) EXPECT_LT(error(pose), 0.01);
@@ -114,7 +114,7 @@ TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes
     } else if (now > kOnceRound_s) {
       const std::size_t keyframe = static_cast<std::size_t>(10.0 * now) % made_at.size();
       T_M_O_ = true_pose(now) * T_O_B_.inverse();
-      look(now, made_at[keyframe], keyframe);
+      observe(now, made_at[keyframe], keyframe);
     }
   }
   ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is observed again";
@@ -133,7 +133,7 @@ TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
   T_O_B_.translation().z() -= 0.01;
   fly(4.1, 8.5, 0.0);
   for (const double t : {4.0, 4.1, 4.2}) record_.refine({instant(t), true_pose(t)});
-  look(8.5, 0.5, keyframe);
+  observe(8.5, 0.5, keyframe);
   for (const StampedPose& pose : record_.path(odom_to_map_).poses) EXPECT_LT(error(pose), 1e-3);
 }
 
@@ -142,7 +142,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   fly(0.0, 0.5, 0.0);
   const std::size_t keyframe = record_.add_keyframe({instant(0.5), T_O_B_});
   fly(0.5, 3.0, 0.0);
-  look(3.0, 0.5, keyframe);
+  observe(3.0, 0.5, keyframe);
   // The new frame is at the pose of dead reckoning, half a metre off, with a yaw error.
   const SE3 off(Eigen::Quaterniond::Identity(), {0.5, -0.2, 0.0}), O(so3::exp({0, 0, 1.0}), {1.0, 2.0, 0.5});
   T_O_B_ = O.inverse() * true_pose(5.0);
@@ -153,7 +153,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   fly(5.0, 8.0, 0.0);
   EXPECT_GT(error(causal_.back()), 0.5);
   T_M_O_ = O;
-  look(8.0, 0.5, keyframe);
+  observe(8.0, 0.5, keyframe);
   odom_to_map_.forget_guess();
   fly(8.0, 8.5, 0.0);
   for (const StampedPose& pose : record_.path(odom_to_map_).poses)
@@ -169,7 +169,7 @@ TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   fly(0.0, 3.0, 0.0);
   restart(5.0, own);
   fly(5.0, 8.0, 0.0);
-  look(8.0, 7.5, 1);
+  observe(8.0, 7.5, 1);
   odom_to_map_.forget_guess();
   const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   EXPECT_EQ(path.poses.size(), causal_.size());

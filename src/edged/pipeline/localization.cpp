@@ -13,9 +13,10 @@
 namespace edged {
 namespace {
 
-/// The covariance of the pose changes slowly, and costs a third of an optimisation.
-// With localize_only: without enough landmarks or rest. An event frame holds events of up to 0.25 s before.
+/// With localize_only: without enough landmarks or rest. An event frame holds events of up to 0.25 s before.
 constexpr double kSilentAfter_s = 0.2;
+
+/// The covariance of the pose changes slowly, and costs a third of an optimisation.
 constexpr Duration kCovarianceEvery = std::chrono::milliseconds(100);
 
 /// With fewer features on frames than this the map uses event frames.

@@ -27,9 +27,9 @@ void place_points(MapView& view, const KeyframeView& estimated) {
   view.T_B_C = estimated.T_B_C;
   std::vector<MapPoint> points;
   for (const KeyframePoint& placed : estimated.points) {
-    const auto looks = std::ranges::find(view.points, placed.id, &MapPoint::id);
-    if (looks == view.points.end()) continue;
-    MapPoint& point = points.emplace_back(*looks);
+    const auto known = std::ranges::find(view.points, placed.id, &MapPoint::id);
+    if (known == view.points.end()) continue;
+    MapPoint& point = points.emplace_back(*known);
     point.point = placed.point;
     point.inverse_depth = placed.inverse_depth;
     point.sigma = placed.sigma;
@@ -206,10 +206,10 @@ bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   const bool agreed = update(filter_, T_M_O, here, t, images);
   if (!searching_ && !unlocated_before_) return false;
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
-  const bool found_by_looks = (unlocated_before_ || !found_by_guess) && recognise(t, images);
-  if (found_by_looks) unlocated_before_.reset();
-  if (found_by_guess || found_by_looks) searching_ = false;
-  return found_by_guess || found_by_looks;
+  const bool found_by_appearance = (unlocated_before_ || !found_by_guess) && recognise(t, images);
+  if (found_by_appearance) unlocated_before_.reset();
+  if (found_by_guess || found_by_appearance) searching_ = false;
+  return found_by_guess || found_by_appearance;
 }
 
 /// Whether dead reckoning can be that far off. Its heading is that of the gyro, and accurate, which rejects most
