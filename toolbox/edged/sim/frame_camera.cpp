@@ -20,6 +20,8 @@ void FrameCameraConfig::visit(ConfigFields& fields) {
   fields.add("electrons_per_ms", electrons_per_ms, {"1/ms", 1, 1e9, "signal of a white spot in good light"});
   fields.add("electrons_per_level", electrons_per_level, {"", 0.01, 1e6, "inverse gain: electrons for one grey level"});
   fields.add("read_noise_electrons", read_noise_electrons, {"", 0, 1e5, "noise that does not depend on light"});
+  fields.add("pixel_gain_sigma", pixel_gain_sigma, {"", 0, 0.5, "spread of the gains of the pixels about 1"});
+  fields.add("vignetting", vignetting, {"", 0, 1, "share of the light that is missing in the corners"});
 }
 
 std::uint8_t grey_level(double electrons, double read_noise, double electrons_per_level, Random& random) {
@@ -28,13 +30,33 @@ std::uint8_t grey_level(double electrons, double read_noise, double electrons_pe
   return static_cast<std::uint8_t>(std::clamp(level + 0.5, 0.0, 255.0));
 }
 
+namespace {
+
+/// Of the pixels, row by row.
+std::vector<double> gains(const FrameCameraConfig& config, int width, int height, std::uint64_t seed) {
+  Random random(seed, 31);
+  const Eigen::Vector2d middle(0.5 * (width - 1), 0.5 * (height - 1));
+  std::vector<double> gains;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double corner = (Eigen::Vector2d(x, y) - middle).squaredNorm() / middle.squaredNorm();
+      const double spread = config.pixel_gain_sigma > 0.0 ? config.pixel_gain_sigma * random.normal() : 0.0;
+      gains.push_back(std::max(0.0, 1.0 + spread) * (1.0 - config.vignetting * corner));
+    }
+  }
+  return gains;
+}
+
+}  // namespace
+
 FrameCamera::FrameCamera(const FrameCameraConfig& config, int width, int height, std::uint64_t seed)
     : config_(config),
       width_(width),
       height_(height),
       random_(seed, 4),
       exposure_ms_(config.exposure_ms),
-      light_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F) {}
+      light_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F),
+      gains_(gains(config, width, height, seed)) {}
 
 void FrameCamera::expose(std::span<const float> begin, std::span<const float> end, double dt_s) {
   EDGED_CHECK(begin.size() == light_.size() && end.size() == light_.size(), "{} and {} pixels", begin.size(),
@@ -48,7 +70,7 @@ cv::Mat FrameCamera::read_out() {
   std::size_t i = 0;
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x, ++i) {
-      image(y, x) = grey_level(light_[i] * 1e3 * config_.electrons_per_ms, config_.read_noise_electrons,
+      image(y, x) = grey_level(gains_[i] * (light_[i] * 1e3 * config_.electrons_per_ms), config_.read_noise_electrons,
                                config_.electrons_per_level, random_);
     }
   }

@@ -38,7 +38,8 @@ class FrameCamera {
   int width_, height_;
   Random random_;
   double exposure_ms_;
-  std::vector<float> light_;  // radiance times seconds
+  std::vector<float> light_;   // radiance times seconds
+  std::vector<double> gains_;  // of the pixels, 1 on average in the middle
 };
 
 }  // namespace edged

@@ -67,5 +67,28 @@ TEST(FrameCamera, AdaptsByAFactorOfTwoAtMost) {
   EXPECT_NEAR(camera.exposure_ms(), 2.0 * 0.54 * before, 0.1 * before);
 }
 
+TEST(FrameCamera, HasPixelsOfDifferentGainAndDarkCorners) {
+  FrameCameraConfig config;
+  config.read_noise_electrons = 0.0;
+  config.pixel_gain_sigma = 0.1;
+  config.vignetting = 0.5;
+  FrameCamera camera(config, kSide, kSide, 1);
+  const std::vector<float> wall(kSide * kSide, 0.4F);
+  constexpr int kImages = 100;
+  cv::Mat mean = cv::Mat::zeros(kSide, kSide, CV_64F);
+  for (int i = 0; i < kImages; ++i) {
+    camera.expose(wall, wall, 8e-3);
+    cv::Mat image;
+    camera.read_out().convertTo(image, CV_64F, 1.0 / kImages);
+    mean += image;
+  }
+  const double level = 0.4 * 8.0 * 2500.0 / 80.0;
+  cv::Scalar middle, spread;
+  cv::meanStdDev(mean(cv::Rect(12, 12, 8, 8)), middle, spread);
+  EXPECT_NEAR(middle[0], level, 4.0);
+  EXPECT_NEAR(spread[0], 0.1 * level, 3.0) << "the same in every image";
+  EXPECT_NEAR(cv::mean(mean(cv::Rect(0, 0, 4, 4)))[0], 0.6 * level, 6.0);
+}
+
 }  // namespace
 }  // namespace edged

@@ -51,7 +51,7 @@ std::pair<int, int> overlap(const std::vector<float>& low, const std::vector<flo
 
 }  // namespace
 
-Renderer::Renderer(const CameraModel& camera, Scene scene)
+Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual)
     : width_(camera.width()),
       height_(camera.height()),
       focal_(static_cast<float>(camera.mean_focal())),
@@ -64,7 +64,8 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
   column_min_x_.assign(static_cast<std::size_t>(width_), kMax), column_max_x_.assign(column_min_x_.size(), -kMax);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      const Eigen::Vector3d ray = camera.pixel_to_ray(Eigen::Vector2d(x, y));
+      const Eigen::Vector2d pixel = Eigen::Vector2d(x, y) + residual.at(Eigen::Vector2d(x, y));
+      const Eigen::Vector3d ray = camera.pixel_to_ray(pixel);
       const Eigen::Vector2d point = ray.head<2>();
       const float bx = static_cast<float>(point.x()), by = static_cast<float>(point.y());
       bearing_x_.push_back(bx), bearing_y_.push_back(by), bearing_z_.push_back(static_cast<float>(ray.z()));
@@ -75,8 +76,8 @@ Renderer::Renderer(const CameraModel& camera, Scene scene)
       if (wide_ || x % kMotionStride != 0 || y % kMotionStride != 0) continue;
       constexpr double kStep = 1e-5;
       Eigen::Matrix2d slope;
-      slope.col(0) = (camera.distort_to_pixel(point + Eigen::Vector2d(kStep, 0)) - Eigen::Vector2d(x, y)) / kStep;
-      slope.col(1) = (camera.distort_to_pixel(point + Eigen::Vector2d(0, kStep)) - Eigen::Vector2d(x, y)) / kStep;
+      slope.col(0) = (camera.distort_to_pixel(point + Eigen::Vector2d(kStep, 0)) - pixel) / kStep;
+      slope.col(1) = (camera.distort_to_pixel(point + Eigen::Vector2d(0, kStep)) - pixel) / kStep;
       pixel_per_point_.push_back(slope.cast<float>());
     }
   }

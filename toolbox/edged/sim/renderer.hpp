@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edged/rig.hpp"
+#include "edged/sim/lens_residual.hpp"
 #include "edged/sim/light_field.hpp"
 #include "edged/sim/scene.hpp"
 
@@ -21,7 +22,8 @@ struct Rendering {
 
 class Renderer {
  public:
-  Renderer(const CameraModel& camera, Scene scene);
+  /// residual: of the lens over its model.
+  Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual = {});
 
   /// The picture from T_W_C in the light of t_s seconds after the start. The reference is valid until the next call.
   const Rendering& render(const SE3& T_W_C, double t_s = 0.0);

@@ -107,6 +107,8 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("alpha", alpha, {"", 0, 1, "of ds and eucm: weight of the sphere against the plane"});
   fields.add("beta", beta, {"", 0.01, 100, "of eucm: shape of the ellipsoid"});
   fields.add("w", w, {"rad", 0, 3.1, "of fov: angle of view of an ideal lens of that kind"});
+  fields.add("residual_px", residual_px,
+             {"px", 0, 5, "rms of a smooth error of the lens that its calibration does not have"});
 }
 
 double SimulatedCameraConfig::coefficient(std::string_view name) const {
@@ -204,7 +206,8 @@ class Simulator::Impl {
 Simulator::Impl::Impl(const SimulatorConfig& config)
     : config_(checked(config)),
       trajectory_(trajectory_of(config_)),
-      renderer_(config.camera.model(), scene_of(trajectory_, config_)),
+      renderer_(config.camera.model(), scene_of(trajectory_, config_),
+                LensResidual(config.camera.residual_px, config.camera.width, noise_seed(config))),
       event_camera_(config.events, config.camera.width, config.camera.height, noise_seed(config)),
       frame_camera_(config.frames, config.camera.width, config.camera.height, noise_seed(config)),
       imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),

@@ -69,6 +69,7 @@ struct SimulatedCameraConfig {
   double k1 = -0.38289916, k2 = 0.18933637, p1 = -0.00100247, p2 = -0.00056378;
   double k3 = 0.0, k4 = 0.0, k5 = 0.0, k6 = 0.0;
   double xi = 0.1, alpha = 0.6, beta = 1.1, w = 0.9;
+  double residual_px = 0.0;
 
   void visit(ConfigFields& fields);
   CameraModel model() const;
@@ -104,6 +105,8 @@ struct FrameCameraConfig {
   double electrons_per_ms = 2500.0;
   double electrons_per_level = 80.0;
   double read_noise_electrons = 45.0;
+  double pixel_gain_sigma = 0.0;
+  double vignetting = 0.0;
 
   void visit(ConfigFields& fields);
 };
