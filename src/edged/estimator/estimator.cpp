@@ -51,6 +51,34 @@ bool sees_frames(const Window& window) {
                              [](const WindowCamera& camera) { return camera.given.modality == Modality::Frames; });
 }
 
+/// Of a camera's observations as they are weighted now, on the unit plane; nothing without any.
+std::optional<double> sigma_of(const Window& window, std::size_t camera) {
+  for (const auto& [id, feature] : window.features()) {
+    const auto seen = feature.last_seen.find(camera);
+    if (seen == feature.last_seen.end()) continue;
+    const auto observation = feature.observations.find({seen->second, camera});
+    if (observation != feature.observations.end()) return observation->second.sigma;
+  }
+  return std::nullopt;
+}
+
+/// Of the most accurate frame camera.
+std::optional<double> sigma_of_frames(const Window& window) {
+  std::optional<double> least;
+  for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
+    if (window.cameras()[camera].given.modality != Modality::Frames) continue;
+    const std::optional<double> sigma = sigma_of(window, camera);
+    if (sigma && (!least || *sigma < *least)) least = sigma;
+  }
+  return least;
+}
+
+/// Share of event_noise_inflation: all of it down to half of the sigma of frames, none of it from a fifth on.
+double share_beside_frames(double events_over_frames) {
+  constexpr double kAll = 1.0 / 2.0, kNone = 1.0 / 5.0;
+  return std::clamp(std::log(events_over_frames / kNone) / std::log(kAll / kNone), 0.0, 1.0);
+}
+
 /// The observations, with the noise that they have while the gyro is saturated.
 std::vector<CameraObservations> of_unseen_turn(std::vector<CameraObservations> observations) {
   for (CameraObservations& view : observations) {
@@ -229,16 +257,18 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
 /// Adapts the noise of each camera to its residuals. A large IMU strain means that the cameras agree on a wrong motion:
 /// that of a dynamic object, or errors in common. On event frames the innovations of the observations show less of the
 /// drift than on frames: the drift continues with the appearance of an edge under the motion. Beside frames, which do
-/// not drift like that, events get a lower weight.
+/// not drift like that, events get a lower weight, unless these are far less accurate: in the dark.
 void Estimator::adapt_noise(double imu_strain) {
   const double doubt = std::pow(std::max(1.0, imu_strain / config_.max_imu_strain), kDoubtGain);
-  const bool frames = sees_frames(window_);
+  const std::optional<double> frames = sigma_of_frames(window_);
   for (std::size_t camera = 0; camera < window_.cameras().size(); ++camera) {
     const std::optional<double> spread = median_residual(window_, camera);
     if (!spread) continue;
-    const bool beside_frames = frames && window_.cameras()[camera].given.modality == Modality::Events;
-    const double inflation = config_.noise_inflation * (beside_frames ? config_.event_noise_inflation : 1.0);
-    const double wanted = std::max(*spread, 1e-3) * inflation;
+    double wanted = std::max(*spread, 1e-3) * config_.noise_inflation;
+    if (frames && window_.cameras()[camera].given.modality == Modality::Events) {
+      const double alone = wanted * sigma_of(window_, camera).value_or(*frames);
+      wanted *= std::pow(config_.event_noise_inflation, share_beside_frames(alone / *frames));
+    }
     const double scale = window_.cameras()[camera].noise_scale * std::pow(wanted, config_.noise_gain) * doubt;
     window_.set_noise_scale(camera, std::clamp(scale, config_.min_noise_scale, config_.max_noise_scale));
   }

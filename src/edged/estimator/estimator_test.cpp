@@ -342,6 +342,21 @@ TEST(Estimator, FindsThatWhatATrackHasDriftedByStays) {
   EXPECT_LT(with.nees, 1.0);
 }
 
+/// The factor on the sigma of events after 8 s, beside frames with so many times their noise.
+double event_noise_scale(double frames_noise) {
+  TestWorld world({.cameras = 2, .pixel_noise = 0.1, .frames_noise = frames_noise});
+  Estimator estimator(world.rig(), world.noise(), {});
+  for (int i = 1; i <= 160; ++i) estimator.add(world.packet(0.05 * i, 0.05, i % 3 == 0));
+  EXPECT_TRUE(estimator.initialized());
+  return estimator.window().cameras()[1].noise_scale;
+}
+
+TEST(Estimator, TrustsEventsBesideFramesThatAreFarLessAccurate) {
+  const double beside_good = event_noise_scale(1.0), beside_bad = event_noise_scale(20.0);
+  EXPECT_LT(beside_bad, 0.6 * beside_good);
+  EXPECT_GT(beside_bad, 0.3 * beside_good);  // 1 / event_noise_inflation is 0.4
+}
+
 TEST(Estimator, GivesTheSameBitsTwice) {
   const RunResult a = run({.rest_s = 1.0}, 5.0), b = run({.rest_s = 1.0}, 5.0);
   EXPECT_EQ(a.max_position_error, b.max_position_error);

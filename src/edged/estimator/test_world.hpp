@@ -27,6 +27,7 @@ struct TestWorldOptions {
   double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
   Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< of scale and axes: measured = (I + E) true + bias
   double pixel_noise = 0.5;                              ///< [px]
+  double frames_noise = 1.0;                             ///< times pixel_noise, on frames
   double pixel_walk = 0.0;                               ///< [px/sqrt(s)] how fast tracks drift from their points
   double imu_noise = 1.0;                                ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
@@ -125,7 +126,8 @@ class TestWorld {
       if (!pixel || !camera.model.contains(*pixel)) continue;
       const std::size_t of_camera = options_.shared_ids ? 0 : 1000 * camera_index;
       const FeatureId id = (walks ? kWalkerId + i : i - walker_.size() + 1) + of_camera;
-      Eigen::Vector2d noise = options_.pixel_noise * normal2();
+      const double times = camera.modality == Modality::Frames ? options_.frames_noise : 1.0;
+      Eigen::Vector2d noise = times * options_.pixel_noise * normal2();
       if (options_.pixel_walk > 0.0) noise += drifted(id, t);
       const Eigen::Vector2d point = exact ? Eigen::Vector2d(p_C.hnormalized()) : camera.model.pixel_to_point(*pixel);
       out.features.push_back({id, point + noise / 200.0, 1.0 / 200.0});
