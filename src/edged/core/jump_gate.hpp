@@ -4,9 +4,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "edged/core/measurement_stamps.hpp"
@@ -45,16 +43,11 @@ class JumpGate {
     }
   }
 
-  /// Of many items, the number of leading ones that pass unchanged.
-  std::size_t push_first(std::span<const T> items) {
-    if (items.empty() || waiting_ || is_far_ahead(time_of(items.front()))) return 0;
-    Timestamp newest = newest_.value_or(time_of(items.front()));  // a copy stays in a register
-    const Timestamp heard = heard_;
-    std::size_t count = 0;
-    for (; count < items.size() && time_of(items[count]) - std::max(newest, heard) <= kJump; ++count)
-      newest = std::max(newest, time_of(items[count]));
-    newest_ = newest;
-    return count;
+  /// True if items up to this stamp pass unchanged: then they count as accepted, and need no push().
+  bool passes(Timestamp t) {
+    if (waiting_ || !newest_ || is_far_ahead(t)) return false;
+    newest_ = std::max(*newest_, t);
+    return true;
   }
 
   /// Another stream, on the same clock as far as it is known, has reached t: items that are held near t are confirmed,

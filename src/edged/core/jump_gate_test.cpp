@@ -63,11 +63,16 @@ TEST(JumpGate, AnotherStreamConfirmsWhatIsNearIt) {
   EXPECT_EQ(gate.told, "1 100 201 ");
 }
 
-TEST(JumpGate, TakesManyAtOnceUpToTheFirstThatIsFarAhead) {
-  JumpGate<Item> gate(false);
-  const std::vector<Item> items{item(1), item(2), item(3600), item(3)};
-  EXPECT_EQ(gate.push_first(items), 2U);
-  EXPECT_EQ(gate.newest(), timestamp_from_seconds(2));
+TEST(JumpGate, TakesManyAtOnceByTheNewestOfThem) {
+  Gate gate{JumpGate<Item>(false)};
+  EXPECT_FALSE(gate.gate.passes(timestamp_from_seconds(1))) << "the first has none before it";
+  gate.push({1});
+  EXPECT_TRUE(gate.gate.passes(timestamp_from_seconds(2)));
+  EXPECT_EQ(gate.gate.newest(), timestamp_from_seconds(2));
+  EXPECT_FALSE(gate.gate.passes(timestamp_from_seconds(3600)));
+  EXPECT_EQ(gate.gate.newest(), timestamp_from_seconds(2));
+  gate.push({3600});
+  EXPECT_FALSE(gate.gate.passes(timestamp_from_seconds(3))) << "while one is held";
 }
 
 }  // namespace

@@ -39,6 +39,18 @@ double hann(std::size_t bin) { return 0.5 - 0.5 * circle()[bin].real(); }
 
 }  // namespace
 
+void PolaritySpectrum::add(Timestamp begin, std::span<const Event> events) {
+  for (auto event = events.begin(); event != events.end();) {
+    const auto bin = (event->t - begin) / kBin;
+    const Timestamp end = begin + (bin + 1) * kBin;
+    const auto first = event;
+    std::uint32_t positive = 0;
+    for (; event != events.end() && event->t < end; ++event) positive += event->positive;
+    positive_[static_cast<std::size_t>(bin)] += positive;
+    negative_[static_cast<std::size_t>(bin)] += static_cast<std::uint32_t>(event - first) - positive;
+  }
+}
+
 double PolaritySpectrum::weight() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < kBins; ++i) sum += hann(i) * (positive_[i] + negative_[i]);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "edged/measurement.hpp"
@@ -36,6 +37,8 @@ class PolaritySpectrum {
   void add(Duration since, bool positive) {
     ++(positive ? positive_ : negative_)[static_cast<std::size_t>(since / kBin)];
   }
+  /// Events in order, the first of them not before the begin, all of them within the window.
+  void add(Timestamp begin, std::span<const Event> events);
   void clear() { positive_.fill(0), negative_.fill(0); }
 
   /// Events, weighted by a Hann window.
@@ -64,6 +67,12 @@ class FlickerDetector {
     if (ended) end_window(t);
     spectrum_.add(since_begin(t), positive);
     return ended;
+  }
+  /// Events in order, at once. False, without effect, if a window ends before one of them.
+  bool add(std::span<const Event> events) {
+    if (events.front().t < window_begin_ || events.back().t >= window_begin_ + PolaritySpectrum::kWindow) return false;
+    spectrum_.add(window_begin_, events);
+    return true;
   }
   /// Of the light, by the windows that have ended; nothing without flicker.
   const std::optional<LampCycle>& lamp() const { return lamp_; }
@@ -94,6 +103,8 @@ class FlickerFilter {
     if (detector_.add(event.t, event.positive)) prepare();
     return detector_.lamp() && returns(event);
   }
+  /// Of events in order. False, without effect, if they are to be asked for one by one.
+  bool drops_none(std::span<const Event> events) { return !detector_.lamp() && detector_.add(events); }
   const FlickerDetector& detector() const { return detector_; }
 
  private:

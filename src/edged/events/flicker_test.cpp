@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 
 #include "edged/events/test_support.hpp"
 
@@ -97,6 +98,26 @@ TEST(FlickerDetector, GivesThePhaseOfTheLight) {
     const double phase = detector.lamp()->phase(timestamp_from_seconds(100.0 / hz));
     EXPECT_NEAR(std::cos(phase), 1.0, 0.15) << phase;
   }
+}
+
+TEST(FlickerDetector, CountsManyEventsAtOnceAsOneByOne) {
+  constexpr std::size_t kMany = 97;
+  const std::vector<Event> events = events_of({.hz = 121.3, .modulation = 0.5}, 0.9);
+  FlickerDetector one_by_one, at_once;
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i + kMany <= events.size(); i += kMany) {
+    const std::span many = std::span(events).subspan(i, kMany);
+    for (const Event& event : many) one_by_one.add(event.t, event.positive);
+    if (at_once.add(many)) {
+      ++taken;
+    } else {
+      for (const Event& event : many) at_once.add(event.t, event.positive);
+    }
+  }
+  EXPECT_GT(taken, events.size() / kMany * 9 / 10) << "all but those in which a window ends";
+  ASSERT_TRUE(one_by_one.lamp() && at_once.lamp());
+  EXPECT_EQ(at_once.lamp()->hz, one_by_one.lamp()->hz);
+  EXPECT_EQ(at_once.lamp()->crest, one_by_one.lamp()->crest);
 }
 
 TEST(FlickerDetector, TakesNoMotionForALamp) {

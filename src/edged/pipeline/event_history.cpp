@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace edged {
 namespace {
@@ -23,8 +24,24 @@ EventHistory::EventHistory(const RigCamera& camera, const PacketizerConfig& conf
   if (config.remove_flicker) flicker_.emplace(camera.model.width(), camera.model.height());
 }
 
+/// Adds all of them at once, or none if they are not in order, or some may be of lamps.
+bool EventHistory::append(const std::vector<Event>& events, Timestamp last_cut) {
+  const Timestamp first = events.front().t + offset_;
+  if (first <= last_cut || (!events_.empty() && first < events_.back().t)) return false;
+  if (!std::ranges::is_sorted(events, {}, &Event::t)) return false;
+  const std::size_t before = events_.size();
+  events_.insert(events_.end(), events.begin(), events.end());
+  const std::span<Event> added = std::span(events_).subspan(before);
+  if (offset_ != Duration(0))
+    for (Event& event : added) event.t += offset_;
+  const bool all_stay = !flicker_ || flicker_->drops_none(added);
+  if (!all_stay) events_.resize(before);
+  return all_stay;
+}
+
 EventHistory::Dropped EventHistory::add(const std::vector<Event>& events, Timestamp last_cut) {
   Dropped dropped;
+  if (events.empty() || append(events, last_cut)) return dropped;
   for (Event event : events) {
     event.t += offset_;
     if (event.t <= last_cut || (!events_.empty() && event.t < events_.back().t)) {

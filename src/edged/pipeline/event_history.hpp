@@ -39,6 +39,8 @@ class EventHistory {
   std::size_t give_up();
 
  private:
+  bool append(const std::vector<Event>& events, Timestamp last_cut);
+
   std::string camera_;
   Duration offset_;
   std::size_t cut_events_, window_events_;  // per packet

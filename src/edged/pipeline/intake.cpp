@@ -3,7 +3,6 @@
 #include "edged/pipeline/intake.hpp"
 
 #include <algorithm>
-#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -15,6 +14,17 @@ namespace {
 constexpr Duration kBehind = std::chrono::seconds(1);
 constexpr Duration kSure = std::chrono::milliseconds(500);
 constexpr std::size_t kMostTimes = 2;
+
+/// Most batches are in order and inside the sensor: then the stamps of their ends decide about all their events.
+bool is_regular(const std::vector<Event>& events, const CameraModel& camera) {
+  const int width = camera.width(), height = camera.height();
+  Timestamp before = events.front().t;
+  for (const Event& event : events) {
+    if (event.t < before || event.x >= width || event.y >= height) return false;
+    before = event.t;
+  }
+  return is_plausible(events.front().t) && is_plausible(events.back().t);
+}
 
 /// Sets the camera name of an item that the gate held.
 template <typename T>
@@ -58,18 +68,19 @@ void Intake::add(Measurement measurement) {
   std::visit([this](auto& item) { accept(std::move(item)); }, measurement);
 }
 
-/// Events are checked one by one.
+/// Events are checked one by one where not all of the batch can be taken at once.
 void Intake::accept(EventBatch batch) {
   Sensor<Event>* sensor = find(events_, batch.camera);
-  if (sensor == nullptr || !admit(batch, sensor->model)) return;
-  const std::size_t regular = sensor->gate.push_first(batch.events);
-  if (regular < batch.events.size()) {
-    const auto rest = batch.events.begin() + static_cast<std::ptrdiff_t>(regular);
-    std::vector<Event> passed(batch.events.begin(), rest);
-    const auto pass = [&](const Event& event) { passed.push_back(event); };
+  if (sensor == nullptr || batch.events.empty()) return;
+  const bool regular = is_regular(batch.events, sensor->model);
+  if (!regular) remove_invalid(batch.events, sensor->model);
+  // Masked events must not cut packets either, nor count as motion.
+  if (sensor->model.is_masked())
+    std::erase_if(batch.events, [&](const Event& event) { return !sensor->model.uses(event.x, event.y); });
+  if (!batch.events.empty() && !(regular && sensor->gate.passes(batch.events.back().t))) {
+    const auto pass = [&batch](const Event& event) { batch.events.push_back(event); };
     const auto drop = [&](const Event&, Timestamp) { ++counters_.far_ahead; };
-    for (const Event& event : std::span(rest, batch.events.end())) sensor->gate.push(event, pass, drop);
-    batch.events = std::move(passed);
+    for (const Event& event : std::exchange(batch.events, {})) sensor->gate.push(event, pass, drop);
   }
   if (!batch.events.empty()) take(std::move(batch), sensor->clock);
 }
@@ -191,16 +202,11 @@ Intake::Sensor<T>* Intake::find(std::vector<Sensor<T>>& cameras, const std::stri
   return nullptr;
 }
 
-/// Removes invalid events.
-bool Intake::admit(EventBatch& batch, const CameraModel& camera) {
+void Intake::remove_invalid(std::vector<Event>& events, const CameraModel& camera) {
   const int width = camera.width(), height = camera.height();
   counters_.events_outside +=
-      std::erase_if(batch.events, [=](const Event& event) { return event.x >= width || event.y >= height; });
-  counters_.absurd_stamps += std::erase_if(batch.events, [](const Event& event) { return !is_plausible(event.t); });
-  // Masked events must not cut packets either, nor count as motion.
-  if (camera.is_masked())
-    std::erase_if(batch.events, [&](const Event& event) { return !camera.uses(event.x, event.y); });
-  return !batch.events.empty();
+      std::erase_if(events, [=](const Event& event) { return event.x >= width || event.y >= height; });
+  counters_.absurd_stamps += std::erase_if(events, [](const Event& event) { return !is_plausible(event.t); });
 }
 
 bool Intake::admit(Frame& frame, const CameraModel& camera) {

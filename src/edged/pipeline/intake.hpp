@@ -71,7 +71,7 @@ class Intake {
   void accept(Frame frame);
   void accept(const ImuSample& sample);
   void accept(const ExternalSample& sample);
-  bool admit(EventBatch& batch, const CameraModel& camera);
+  void remove_invalid(std::vector<Event>& events, const CameraModel& camera);
   bool admit(Frame& frame, const CameraModel& camera);
   bool admit(const ImuSample& sample);
   template <typename T>

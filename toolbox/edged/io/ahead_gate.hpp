@@ -53,8 +53,9 @@ class AheadGate {
     return true;
   }
 
-  /// Of many items, the number of leading ones that pass unchanged.
+  /// Of many items in order, the number of leading ones that pass unchanged.
   std::size_t push_first(std::span<const T> items) {
+    if (!items.empty() && passes(time_of(items.back()))) return items.size();
     const auto stop = std::ranges::find_if(items, [this](const T& item) { return !passes(time_of(item)); });
     return static_cast<std::size_t>(stop - items.begin());
   }

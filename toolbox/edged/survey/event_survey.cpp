@@ -30,25 +30,32 @@ EventSurveyor::EventSurveyor(cv::Size sensor)
     : sensor_(sensor), pixels_(counted_area(sensor)), flicker_(counted_area(sensor)) {}
 
 void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
-  for (const Event& event : events) {
-    if (bin_end_ == Timestamp::min()) bin_end_ = event.t + kBin;
-    if (event.t >= bin_end_) {
-      const Duration::rep bins = (event.t - bin_end_) / kBin + 1;
-      rates_.close(static_cast<std::size_t>(bins));
-      bin_end_ += bins * kBin;
-    }
-    ++rates_.bin_events;
-    if (skipped_ + 1 < every) {
-      ++skipped_;
-      continue;
-    }
-    skipped_ = 0;
+  count(events);
+  std::size_t next = every - 1 - std::min(skipped_, every - 1);
+  for (; next < events.size(); next += every) {
+    const Event& event = events[next];
     ++events_;
     positive_ += event.positive;
     extent_.width = std::max(extent_.width, event.x + 1);
     extent_.height = std::max(extent_.height, event.y + 1);
     pixels_.add(event.x, event.y, event.t);
     flicker_.add(event);
+  }
+  skipped_ = events.size() + every - 1 - next;
+}
+
+void EventSurveyor::count(std::span<const Event> events) {
+  while (!events.empty()) {
+    const Timestamp t = events.front().t;
+    if (bin_end_ == Timestamp::min()) bin_end_ = t + kBin;
+    if (t >= bin_end_) {
+      const Duration::rep bins = (t - bin_end_) / kBin + 1;
+      rates_.close(static_cast<std::size_t>(bins));
+      bin_end_ += bins * kBin;
+    }
+    const auto later = std::ranges::lower_bound(events, bin_end_, {}, &Event::t);
+    rates_.bin_events += static_cast<std::size_t>(later - events.begin());
+    events = {later, events.end()};
   }
 }
 

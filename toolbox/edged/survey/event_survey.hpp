@@ -51,6 +51,7 @@ class EventSurveyor {
     /// Ends the current bin. The remaining ones are empty.
     void close(std::size_t ended);
   };
+  void count(std::span<const Event> events);
 
   cv::Size sensor_, extent_;
   HotPixelFinder pixels_;

@@ -19,6 +19,7 @@ void GyroIntegral::add(const ImuSample& sample) {
     sum_.push_back(Eigen::Vector3d::Zero());
     turned_.push_back(Eigen::Quaterniond::Identity());
     push_.push_back(Eigen::Vector3d::Zero());
+    gaps_.push_back(0);
   } else {
     const Eigen::Vector3d step = (gyro_.back() + sample.gyro_B) / 2 * to_seconds(sample.t - stamps_.back());
     sum_.push_back(sum_.back() + step);
@@ -26,6 +27,7 @@ void GyroIntegral::add(const ImuSample& sample) {
     turned_.push_back((before * so3::exp(step)).normalized());
     push_.push_back(push_.back() + (before * accel_.back() + turned_.back() * sample.accel_B) / 2 *
                                        to_seconds(sample.t - stamps_.back()));
+    gaps_.push_back(gaps_.back() + (sample.t - stamps_.back() > kLongestStep ? 1 : 0));
   }
   stamps_.push_back(sample.t);
   gyro_.push_back(sample.gyro_B);
@@ -38,8 +40,7 @@ std::optional<std::pair<std::size_t, std::size_t>> GyroIntegral::samples_after(T
   };
   const std::size_t first = place(begin), last = place(end);
   if (first == 0 || last == stamps_.size()) return std::nullopt;
-  for (std::size_t i = first; i <= last; ++i)
-    if (stamps_[i] - stamps_[i - 1] > kLongestStep) return std::nullopt;
+  if (gaps_[last] > gaps_[first - 1]) return std::nullopt;
   return std::pair(first, last);
 }
 

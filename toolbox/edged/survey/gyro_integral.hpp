@@ -36,6 +36,7 @@ class GyroIntegral {
   Eigen::Vector3d step_to(std::size_t after, Timestamp t) const;
 
   std::vector<Timestamp> stamps_;
+  std::vector<int> gaps_;  ///< up to each sample
   std::vector<Eigen::Vector3d> gyro_, sum_, accel_, push_;
   std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
 };

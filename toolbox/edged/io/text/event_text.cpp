@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "edged/core/check.hpp"
 
@@ -21,83 +22,116 @@ constexpr std::uint64_t kMaxSeconds = kMaxStampNs / 1'000'000'000 - 1;
 constexpr std::array<std::uint64_t, 10> kPow10 = {1,       10,        100,        1'000,       10'000,
                                                   100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
 
-static_assert(std::endian::native == std::endian::little,
-              "parse_digits() takes the first character as the lowest byte");
+static_assert(std::endian::native == std::endian::little, "word_at() has the first character in the lowest byte");
 
 unsigned digit(char c) { return static_cast<unsigned char>(c) - static_cast<unsigned>('0'); }
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_separator(char c) { return is_blank(c) || c == ',' || c == ';'; }
 
-/// Skips to the next field: blanks, with at most one comma or semicolon.
-const char* skip_separator(const char* p) {
-  while (is_blank(*p)) ++p;
-  if (*p != ',' && *p != ';') return p;
-  for (++p; is_blank(*p);) ++p;
-  return p;
+/// Characters at p, each in its byte of a word, the first in the lowest.
+template <typename Word>
+Word word_at(const char* p) {
+  Word word;
+  std::memcpy(&word, p, sizeof word);
+  return word;
 }
 
-/// A whole number below 100000 and a separator; null otherwise. The '\n' ends every loop.
-const char* parse_pixel(const char* p, std::uint16_t& value) {
-  p = skip_separator(p);
-  const char* const start = p;
-  std::uint32_t v = 0;
-  for (unsigned d; (d = digit(*p)) < 10 && p - start < 5; ++p) v = v * 10 + d;
-  if (p == start || !is_separator(*p) || v > 65535) return nullptr;
-  value = static_cast<std::uint16_t>(v);
-  return p;
+/// The highest bit of each byte above 9, at least up to the first one.
+template <typename Word>
+Word above_nine(Word bytes) {
+  constexpr Word kEach = static_cast<Word>(0x0101'0101'0101'0101);
+  return ((bytes + 0x76 * kEach) | bytes) & 0x80 * kEach;
 }
 
-/// Leading digits, at most eight, and their value.
-struct Digits {
-  int count;
-  std::uint64_t value;
+/// What is behind a separator and at most one blank after it.
+const char* after_separator(const char* p) {
+  if (p[1] == ' ') [[unlikely]]
+    return p + 2;
+  return p + 1;
+}
+
+/// One to four digits before a separator, and what is behind it; null for others.
+const char* parse_common_pixel(const char* p, char separator, std::uint16_t& value) {
+  std::uint32_t digits = word_at<std::uint32_t>(p) ^ 0x3030'3030U;
+  const int end = std::countr_zero(above_nine(digits) | std::uint64_t{1} << 39U);  // its bit; 39 after four digits
+  if (end < 15 || p[static_cast<unsigned>(end) / 8] != separator) return nullptr;
+  digits <<= static_cast<unsigned>(39 - end);  // zeros lead
+  digits = digits * 10 + (digits >> 8U);       // pairs, in every second byte
+  value = static_cast<std::uint16_t>((digits & 0x00FF'00FFU) * (1U + (100U << 16U)) >> 16U);
+  return after_separator(p + static_cast<unsigned>(end) / 8);
+}
+
+/// The value of eight digits.
+std::uint64_t value_of(std::uint64_t digits) {
+  constexpr std::uint64_t kBytes = 0x0000'00FF'0000'00FF;
+  digits = digits * 10 + (digits >> 8U);  // pairs, in every second byte
+  return ((digits & kBytes) * (100 + (std::uint64_t{1'000'000} << 32U)) +
+          ((digits >> 16U) & kBytes) * (1 + (std::uint64_t{10'000} << 32U))) >>
+         32U;
+}
+
+/// One to nine decimals of a second, and what is behind them; null for others.
+const char* parse_common_decimals(const char* p, std::uint64_t& ns) {
+  const std::uint64_t digits = word_at<std::uint64_t>(p) ^ 0x3030'3030'3030'3030;
+  const auto count = static_cast<unsigned>(std::countr_zero(above_nine(digits))) / 8;
+  if (count == 8 && digit(p[8]) < 10) [[likely]] {
+    ns = value_of(digits) * 10 + digit(p[8]);
+    return p + 9;
+  }
+  if (count == 0) return nullptr;
+  ns = value_of(digits << (64 - 8 * count)) * kPow10[9 - count];  // zeros lead
+  return p + count;
+}
+
+/// The seconds before the point of a stamp. Most lines share those of the line before.
+class CommonSeconds {
+ public:
+  static constexpr std::ptrdiff_t kBytes = 16;  ///< must be readable
+
+  /// What is behind the point; null unless one to ten digits and a point are at p.
+  const char* parse(const char* p) {
+    const std::uint64_t differs =
+        ((word_at<std::uint64_t>(p) ^ text_[0]) & mask_[0]) | ((word_at<std::uint64_t>(p + 8) ^ text_[1]) & mask_[1]);
+    return differs == 0 || learn(p) ? p + size_ : nullptr;
+  }
+  std::uint64_t ns() const { return ns_; }
+
+ private:
+  bool learn(const char* p) {
+    std::ptrdiff_t digits = 0;
+    std::uint64_t seconds = 0;
+    for (; digits < 10 && digit(p[digits]) < 10; ++digits) seconds = seconds * 10 + digit(p[digits]);
+    if (digits == 0 || p[digits] != '.' || seconds > kMaxSeconds) return false;
+    size_ = digits + 1;
+    ns_ = seconds * kPow10[9];
+    std::memcpy(text_.data(), p, kBytes);
+    mask_ = {};
+    std::memset(mask_.data(), 0xFF, static_cast<std::size_t>(size_));
+    return true;
+  }
+
+  std::array<std::uint64_t, 2> text_{}, mask_{~std::uint64_t{0}, 0};  // no line begins with zeros
+  std::ptrdiff_t size_ = 0;
+  std::uint64_t ns_ = 0;
 };
 
-/// Eight characters at once, each in its byte of a word: those of a number are at p.
-Digits parse_digits(const char* p) {
-  std::uint64_t word;
-  std::memcpy(&word, p, sizeof word);
-  word ^= 0x3030'3030'3030'3030;  // digits are 0 to 9 now
-  // The lowest byte above 9 ends the number. It may carry into later bytes, which no longer matter.
-  const std::uint64_t others = ((word + 0x7676'7676'7676'7676) | word) & 0x8080'8080'8080'8080;
-  const int count = std::countr_zero(others) / 8;
-  if (count == 0) return {0, 0};
-  word <<= 64 - 8 * count;          // zeros lead
-  word = word * 10 + (word >> 8U);  // pairs, in every second byte
-  constexpr std::uint64_t kBytes = 0x0000'00FF'0000'00FF;
-  const std::uint64_t value = (word & kBytes) * (100 + (std::uint64_t{1'000'000} << 32U)) +
-                              ((word >> 16U) & kBytes) * (1 + (std::uint64_t{10'000} << 32U));
-  return {count, value >> 32U};
-}
+constexpr std::ptrdiff_t kCommonLine = 64;          // parse_common_line() reads less than that
+constexpr std::ptrdiff_t kShortestCommonLine = 10;  // bytes
 
-constexpr std::ptrdiff_t kCommonLine = 64;  // parse_common_line() reads less than that
-
-/// As parse_event_line() for the lines that programs write: fields of digits with one blank or comma between them, up
-/// to 10 digits of seconds, 9 decimals and 4 digits of a pixel. Null for other lines. kCommonLine bytes must be
-/// readable.
-const char* parse_common_line(const char* p, Event& event) {
-  const auto separates = [](char c) { return c == ' ' || c == ','; };
-  Digits part = parse_digits(p);
-  p += part.count;
-  std::uint64_t seconds = part.value;
-  if (part.count == 8)
-    for (int i = 0; i < 2 && digit(*p) < 10; ++i) seconds = seconds * 10 + digit(*p++);
-  if (part.count == 0 || *p != '.' || seconds > kMaxSeconds) return nullptr;
-  part = parse_digits(++p);
-  if (part.count != 8 || digit(p[8]) > 9 || !separates(p[9])) return nullptr;
-  event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds * kPow10[9] + part.value * 10 + digit(p[8])));
-  p += 10;
-  for (std::uint16_t* const pixel : {&event.x, &event.y}) {
-    part = parse_digits(p);
-    p += part.count;
-    if (part.count == 0 || part.count > 4 || !separates(*p)) return nullptr;
-    ++p;
-    *pixel = static_cast<std::uint16_t>(part.value);
-  }
-  if (digit(*p) > 1) return nullptr;
-  event.positive = *p++ == '1';
-  p += *p == '\r';
-  return *p == '\n' ? p + 1 : nullptr;
+/// As parse_event_fields() for the lines that programs write: fields of digits with a separator between them, up to
+/// 10 digits of seconds, 9 decimals and 4 digits of a pixel. Returns the next line, or null for other lines.
+/// kCommonLine bytes must be readable.
+const char* parse_common_line(const char* p, CommonSeconds& seconds, Event& event) {
+  std::uint64_t ns;
+  if (!(p = seconds.parse(p)) || !(p = parse_common_decimals(p, ns))) return nullptr;
+  const char separator = *p;
+  if (separator != ' ' && separator != ',' && separator != '\t' && separator != ';') return nullptr;
+  p = after_separator(p);
+  if (!(p = parse_common_pixel(p, separator, event.x)) || !(p = parse_common_pixel(p, separator, event.y)))
+    return nullptr;
+  event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds.ns() + ns));
+  const unsigned polarity = digit(*p++);
+  event.positive = polarity != 0;
+  if (*p == '\r') ++p;
+  return *p == '\n' && polarity < 2 ? p + 1 : nullptr;
 }
 
 std::optional<std::uint16_t> whole_number(std::string_view field) {
@@ -107,31 +141,6 @@ std::optional<std::uint16_t> whole_number(std::string_view field) {
 }
 
 }  // namespace
-
-const char* parse_event_line(const char* p, Event& event) {
-  while (is_blank(*p)) ++p;
-  const char* start = p;
-  std::uint64_t seconds = 0;
-  for (unsigned d; (d = digit(*p)) < 10 && p - start < 11; ++p) seconds = seconds * 10 + d;
-  if (p == start || seconds > kMaxSeconds) return nullptr;
-  std::uint64_t ns = 0;
-  if (*p == '.') {
-    start = ++p;
-    for (unsigned d; (d = digit(*p)) < 10 && p - start < 9; ++p) ns = ns * 10 + d;
-    ns *= kPow10[static_cast<std::size_t>(9 - (p - start))];
-    if (digit(*p) < 10 && digit(*p) >= 5) ++ns;
-    while (digit(*p) < 10) ++p;
-  }
-  if (!is_separator(*p)) return nullptr;
-  event.t = timestamp_from_ns(static_cast<std::int64_t>(seconds * kPow10[9] + ns));
-
-  if (!(p = parse_pixel(p, event.x)) || !(p = parse_pixel(p, event.y))) return nullptr;
-  p = skip_separator(p);
-  if (digit(*p) > 1) return nullptr;
-  event.positive = *p++ == '1';
-  while (is_blank(*p) || *p == '\r') ++p;
-  return *p == '\n' ? p + 1 : nullptr;
-}
 
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event) {
   FieldReader fields(line);
@@ -218,25 +227,22 @@ void EventTextStream::parse_block(std::string_view block) {
   const char* p = block.data();
   const char* const end = p + block.size();
   while (p < end) {
+    if (const char* const rest = plain_ ? parse_common_lines(p, end) : p; rest != p) {
+      p = rest;
+      continue;
+    }
     ++line_;
     Event event;
-    const char* next = plain_ && end - p >= kCommonLine ? parse_common_line(p, event) : nullptr;
-    if (!next && plain_) next = parse_event_line(p, event);
-    if (!next) {
-      next = p + std::string_view(p, static_cast<std::size_t>(end - p)).find('\n') + 1;
-      const std::string_view line(p, static_cast<std::size_t>(next - p) - 1);
-      if (!parse_event_fields(line, columns_, event)) {
-        reject_line(line, next < end || !blocks_.unterminated());
-        p = next;
-        continue;
-      }
-    }
+    const char* const next = p + std::string_view(p, static_cast<std::size_t>(end - p)).find('\n') + 1;
+    const std::string_view line(p, static_cast<std::size_t>(next - p) - 1);
     p = next;
-    if (event.x >= width_ || event.y >= height_) [[unlikely]] {
+    if (!parse_event_fields(line, columns_, event)) {
+      reject_line(line, next < end || !blocks_.unterminated());
+    } else if (event.x >= width_ || event.y >= height_) {
       damage_.bad(line_, "pixel outside the sensor",
                   fmt::format("pixel ({}, {}) outside the {} x {} sensor: is this its calibration?", event.x, event.y,
                               width_, height_));
-    } else if (gate_.passes(event.t)) [[likely]] {
+    } else if (gate_.passes(event.t)) {
       place(event);
     } else {
       gate_.push(
@@ -250,9 +256,30 @@ void EventTextStream::parse_block(std::string_view block) {
   }
 }
 
+/// As many lines as are of the common form, in order, and within the sensor. Returns the line after them.
+const char* EventTextStream::parse_common_lines(const char* p, const char* end) {
+  if (end - p < kCommonLine || !gate_.passes(newest_)) return p;  // it holds some, or there is none before
+  end = std::min(end - kCommonLine, p + kShortestCommonLine * static_cast<std::ptrdiff_t>(some_.size() - 1));
+  const int width = width_, height = height_;
+  CommonSeconds seconds;
+  Timestamp newest = newest_;
+  Event* event = some_.data();
+  for (const char* next; p <= end; ++event, p = next) {
+    next = parse_common_line(p, seconds, *event);
+    if (!next || event->x >= width || event->y >= height || event->t < newest || event->t - newest > gate_.kAhead)
+      break;
+    newest = event->t;
+  }
+  const std::span<const Event> common(some_.data(), event);
+  gate_.push_first(common);
+  events_.insert(events_.end(), common.begin(), common.end());
+  newest_ = newest;
+  line_ += common.size();
+  return p;
+}
+
 void EventTextStream::place(const Event& event) {
-  if (event.t < newest_) [[unlikely]]
-    return place_late(event);
+  if (event.t < newest_) return place_late(event);
   newest_ = event.t;
   events_.push_back(event);
 }

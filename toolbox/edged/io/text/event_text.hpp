@@ -3,6 +3,7 @@
 // Events from text lines `t x y p`: the parser and the stream built on it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -30,13 +31,8 @@ struct EventColumns {
 /// named_columns() does.
 EventColumns named_event_columns(const SourcePath& file);
 
-/// Parses the line that starts at p: decimal seconds (exact to the nanosecond), column, row, polarity 0 or 1, separated
-/// by blanks, commas or semicolons. There must be a '\n' at or after p. Returns the start of the next line, or null
-/// when the line is not of that form.
-const char* parse_event_line(const char* p, Event& event);
-
-/// The same for any order of columns and notation of numbers (exponents, `96.0`, polarity -1), but slower. False if the
-/// line is no event.
+/// Parses a line: stamp (exact to the nanosecond), column, row, polarity 0 or 1 (or -1), in any order and notation of
+/// numbers (exponents, `96.0`), separated by blanks, commas or semicolons. False if the line is no event.
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event);
 
 /// What keeps the line from being an event, by its column as the user counts: "column 3 ('abc') must be ...".
@@ -61,6 +57,7 @@ class EventTextStream {
  private:
   bool refill();
   void parse_block(std::string_view block);
+  const char* parse_common_lines(const char* p, const char* end);
   void place(const Event& event);
   void place_late(const Event& event);
   void reject_line(std::string_view line, bool terminated);
@@ -68,9 +65,10 @@ class EventTextStream {
   BlockReader blocks_;
   LineDamage damage_;
   EventColumns columns_;
-  bool plain_;  ///< parse_event_line() reads this form
+  bool plain_;  ///< parse_common_lines() reads this form
   int width_, height_;
   std::size_t line_ = 0;
+  std::array<Event, 512> some_;         ///< parsed at once: to append each to a vector takes longer
   std::vector<Event> events_;           ///< sorted
   std::size_t begin_ = 0;               ///< first event not yet taken
   std::size_t ready_ = 0;               ///< events before this index can no longer change

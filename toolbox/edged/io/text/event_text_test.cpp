@@ -46,9 +46,8 @@ TEST(Seconds, PrintAndReadBack) {
 }
 
 TEST(EventLine, IsReadExactly) {
-  const std::string text = "1468939993.067416019 239 179 1\r\n";
   Event e;
-  ASSERT_EQ(parse_event_line(text.data(), e), text.data() + text.size());
+  ASSERT_TRUE(parse_event_fields("1468939993.067416019 239 179 1\r", {}, e));
   EXPECT_EQ(to_ns(e.t), 1'468'939'993'067'416'019);
   EXPECT_EQ(e.x, 239);
   EXPECT_EQ(e.y, 179);
@@ -60,7 +59,6 @@ TEST(EventLine, RefusesWhatIsNoEvent) {
                                  "nan 2 3 1\n", "0.1 nan 3 1\n", "0.1 -2 3 1\n", "0.1 70000 3 1\n", "0.1 2 123456 1\n",
                                  "99999999999 2 3 1\n", "x\n", "0.1 2 3 10\n", " \t\n"}) {
     Event e;
-    EXPECT_EQ(parse_event_line(text.data(), e), nullptr) << text;
     EXPECT_FALSE(parse_event_fields(text.substr(0, text.size() - 1), {}, e)) << text;
   }
 }
@@ -79,15 +77,15 @@ std::string any_pixel(std::mt19937& random) {
 
 TEST(EventStream, ReadsEachLineAsFieldByFieldHoweverManyDigitsItHas) {
   std::mt19937 random(11);
-  const std::array<std::string, 6> separators{" ", " ", ",", ";", "\t", " , "};
+  const std::array<std::string, 7> separators{" ", " ", ",", ";", "\t", ", ", " , "};
   const std::array<std::string, 4> ends{"\n", "\n", "\r\n", " \n"};
   std::string text;
   std::vector<Event> expected;
   for (std::int64_t s = 0; s < 20'000; ++s) {
     const std::string& by = separators.at(random() % separators.size());
     const std::string number = std::string(random() % 5, '0') + std::to_string(1'000'000 + s / 10);
-    const std::string decimals =
-        random() % 2 == 0 ? fmt::format("{:09}", s % 10 * 100'000'007) : std::to_string(s % 10);
+    const std::string decimals = random() % 2 == 0 ? fmt::format("{:09}", s % 10 * 100'000'007)
+                                                   : std::to_string(s % 10) + std::string(random() % 10, '0');
     const std::string x = any_pixel(random), y = any_pixel(random);
     const std::string line = fmt::format("{}.{}{}{}{}{}{}{}", number, decimals, by, x, by, y, by, random() % 2);
     text += line + ends.at(random() % ends.size());
