@@ -52,6 +52,13 @@ void check_writable(const std::filesystem::path& file, const char* option) {
   std::filesystem::remove(trial, ignored);
 }
 
+void check_empty(const std::filesystem::path& folder, const char* option) {
+  std::error_code ignored;
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_empty(folder, ignored))
+    throw InputError::format("{} {}: is there already and not empty; choose another, or add --force", option,
+                             folder.string());
+}
+
 void make_picture_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

@@ -24,6 +24,9 @@ std::ofstream open_for_writing(const std::filesystem::path& file);
 /// to the file.
 void check_writable(const std::filesystem::path& file, const char* option);
 
+/// Throws InputError, with the option, if the folder is there and not empty.
+void check_empty(const std::filesystem::path& folder, const char* option);
+
 /// Both throw InputError, which names --out, if folder or file cannot be written.
 void make_picture_folder(const std::filesystem::path& folder);
 void write_picture(const std::filesystem::path& file, const cv::Mat& image);

@@ -13,6 +13,9 @@
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
+#include "edged/step.hpp"
+#include "edged/time.hpp"
+#include "edged/track.hpp"
 
 namespace edged {
 
@@ -21,6 +24,7 @@ struct Reconstruction {
   struct Camera {
     std::string name;
     CameraModel pinhole;
+    Modality modality = Modality::Frames;
   };
   struct Observation {
     FeatureId feature = 0;
@@ -30,6 +34,7 @@ struct Reconstruction {
   };
   struct Image {
     std::string file;  ///< below the folder of the images
+    Timestamp t;       ///< IMU clock
     std::size_t camera = 0;
     SE3 T_W_C;
     std::vector<Observation> observations;
@@ -52,6 +57,15 @@ struct Reconstruction {
   std::vector<Image> images;
   std::vector<Point> points;
 };
+
+/// The tracks that lie in the image of the pinhole.
+std::vector<Reconstruction::Observation> observations_of(const std::vector<Track>& tracks, const CameraModel& pinhole);
+
+/// Appends the images of a step, without files: what its cameras observe, if they are among those of the model.
+void add_images(Reconstruction& model, const Step& step);
+
+/// Sets T_W_C of the images by the final trajectory and calibration. Those without a final pose are left out.
+void place(Reconstruction& model, const Trajectory& poses, const Rig& rig);
 
 /// Fills `points` by triangulation of the features with the poses of the images: those of two observations and more
 /// whose depth is known to a tenth. Observations off by more than 2 px are left out.

@@ -24,10 +24,7 @@ namespace {
 class RunExport : public RunObserver {
  public:
   explicit RunExport(RunContext& run) : run_(run), folder_(run.options.exports.folder) {
-    std::error_code ignored;
-    if (std::filesystem::exists(folder_, ignored) && !std::filesystem::is_empty(folder_, ignored) && !run.options.force)
-      throw InputError::format("--export {}: is there already and not empty; choose another, or add --force",
-                               folder_.string());
+    if (!run.options.force) check_empty(folder_, "--export");
     for (const RigCamera& camera : run.used.cameras)
       if (camera.modality == Modality::Frames) model_.cameras.push_back({camera.name, ideal_pinhole(camera.model)});
     if (model_.cameras.empty())
@@ -47,7 +44,7 @@ class RunExport : public RunObserver {
   }
 
   void on_end(const RunEnd& end) override {
-    place(end.known.poses);
+    place(model_, end.known.poses, run_.odometry.rig());
     triangulate(model_);
     write_colmap(folder_, model_);
     write_file(folder_ / "transforms.json", transforms_json(model_));
@@ -74,36 +71,18 @@ class RunExport : public RunObserver {
     cv::remap(seen.image, undistorted, map, cv::noArray(), cv::INTER_LINEAR);
     Reconstruction::Image image;
     image.file = fmt::format("{}_{:06d}.png", seen.name, model_.images.size());
+    image.t = t;
     image.camera = camera;
-    for (const Track& track : seen.tracks) {
-      const Eigen::Vector2d pixel = pinhole.distort_to_pixel(lens.pixel_to_point(track.pixel));
-      if (!pinhole.contains(pixel)) continue;
-      const cv::Point nearest(cvRound(pixel.x()), cvRound(pixel.y()));
-      image.observations.push_back({track.id, pixel, undistorted.at<std::uint8_t>(nearest)});
-    }
+    image.observations = observations_of(seen.tracks, pinhole);
+    for (auto& [id, pixel, grey, point] : image.observations)
+      grey = undistorted.at<std::uint8_t>(cv::Point(cvRound(pixel.x()), cvRound(pixel.y())));
     write_picture(folder_ / "images" / image.file, undistorted);
     model_.images.push_back(std::move(image));
-    times_.push_back(t);
-  }
-
-  /// Where the images were taken, by the final trajectory and calibration. Those without a final pose are left out.
-  void place(const Trajectory& poses) {
-    const Rig rig = run_.odometry.rig();
-    std::vector<Reconstruction::Image> placed;
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-      const auto pose = std::ranges::lower_bound(poses, times_[i], {}, &StampedPose::t);
-      if (pose == poses.end() || pose->t != times_[i]) continue;
-      Reconstruction::Image& image = model_.images[i];
-      image.T_W_C = pose->T * rig.camera(model_.cameras[image.camera].name).T_B_C;
-      placed.push_back(std::move(image));
-    }
-    model_.images = std::move(placed);
   }
 
   const RunContext& run_;
   std::filesystem::path folder_;
   Reconstruction model_;
-  std::vector<Timestamp> times_;  ///< of its images
   std::optional<Timestamp> last_;
 };
 

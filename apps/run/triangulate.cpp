@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Points of a reconstruction from the observations of their features.
+// Images of a reconstruction with their poses, and points from the observations of their features.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -111,6 +111,35 @@ std::optional<Reconstruction::Point> agreed(const Reconstruction& model, std::ve
 }
 
 }  // namespace
+
+std::vector<Reconstruction::Observation> observations_of(const std::vector<Track>& tracks, const CameraModel& pinhole) {
+  std::vector<Reconstruction::Observation> observations;
+  for (const Track& track : tracks) {
+    const Vector2d pixel = pinhole.distort_to_pixel(track.point);
+    if (pinhole.contains(pixel)) observations.push_back({.feature = track.id, .pixel = pixel});
+  }
+  return observations;
+}
+
+void add_images(Reconstruction& model, const Step& step) {
+  for (std::size_t camera = 0; camera < model.cameras.size(); ++camera) {
+    const CameraStep* seen = step.find(model.cameras[camera].name);
+    if (!seen || seen->image.empty()) continue;
+    Reconstruction::Image& image = model.images.emplace_back();
+    image.t = step.t;
+    image.camera = camera;
+    image.observations = observations_of(seen->tracks, model.cameras[camera].pinhole);
+  }
+}
+
+void place(Reconstruction& model, const Trajectory& poses, const Rig& rig) {
+  std::erase_if(model.images, [&](Reconstruction::Image& image) {
+    const auto pose = std::ranges::lower_bound(poses, image.t, {}, &StampedPose::t);
+    if (pose == poses.end() || pose->t != image.t) return true;
+    image.T_W_C = pose->T * rig.camera(model.cameras[image.camera].name).T_B_C;
+    return false;
+  });
+}
 
 void triangulate(Reconstruction& model) {
   std::map<FeatureId, std::vector<Seen>> features;
