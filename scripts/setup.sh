@@ -11,7 +11,7 @@ packages=(
   libceres-dev libopengv-dev
   zlib1g-dev libyaml-cpp-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
-  libhdf5-dev libblosc-dev liblzf-dev
+  libhdf5-dev libblosc-dev liblzf-dev liboctomap-dev
   cyclonedds-dev                                           # topics of ROS 2
   cyclonedds-tools libfastrtps-dev libfastcdr-dev          # their tests
   pybind11-dev python3-dev python3-numpy python3-pip python3-pytest python3-yaml

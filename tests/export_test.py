@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""`edged run --export`: COLMAP models by a reader of its own, written from the published format, nerfstudio's transforms.json and the
+"""`edged run --export` and `--occupancy`: COLMAP models by a reader of its own, written from the published format, nerfstudio's transforms.json and the
 points. Usage: EDGED=path/to/edged export_test.py"""
 import json
 import math
@@ -157,6 +157,36 @@ class Export(WithFlight):
         (self.folder / "file").write_text("")
         self.assert_refused(edged(*run, "--export", self.folder / "file" / "x"), str(self.folder / "file" / "x"))
         self.assertNotEqual(edged(*run, "--export-hz", 4).returncode, 0)
+
+
+class Occupancy(WithFlight):
+    SIMULATION = ("--duration", 5, "--seed", 5)
+
+    def run_with(self, *options):
+        return edged("run", self.flight, "--out", self.folder / "run", "--quiet", *options)
+
+    def test_files_for_planners_are_there_in_every_mode(self):
+        for mode in ("fused", "frames", "events"):
+            out = self.folder / mode
+            made = self.run_with("--mode", mode, "--occupancy", out, "--occupancy-voxel", 0.1)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertEqual(sorted(file.name for file in out.iterdir()), ["map.pgm", "map.yaml", "occupancy.bt", "occupancy.ot"])
+            self.assertTrue((out / "occupancy.bt").read_bytes().startswith(b"# Octomap OcTree binary file"))
+            self.assertTrue((out / "occupancy.ot").read_bytes().startswith(b"# Octomap OcTree file"))
+            self.assertIn("resolution: 0.1\n", (out / "map.yaml").read_text())
+            self.assertTrue((out / "map.pgm").read_bytes().startswith(b"P5"))
+
+    def test_what_cannot_be_mapped_is_refused(self):
+        self.assert_refused(self.run_with("--occupancy", self.flight), "--occupancy", str(self.flight), "--force")
+        (self.folder / "file").write_text("")
+        self.assert_refused(self.run_with("--occupancy", self.folder / "file" / "x"), str(self.folder / "file" / "x"))
+        out = self.folder / "x"
+        self.assert_refused(self.run_with("--occupancy", out, "--occupancy-heights", 1, 0.5), "--occupancy-heights 1 0.5")
+        for options in (("--occupancy", out, "--occupancy-voxel", 0), ("--occupancy-voxel", 0.1), ("--occupancy-heights", 0, 1)):
+            result = self.run_with(*options)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("--occupancy", result.stderr)
+        self.assertFalse(out.exists())
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@
 #include "run/run_folder.hpp"
 #include "run/run_many.hpp"
 #include "run/run_map.hpp"
+#include "run/run_occupancy.hpp"
 
 namespace edged {
 namespace {
@@ -62,6 +63,8 @@ int run_all(const RunOptions& given, const CLI::App& app) {
                                "is one file, the recordings are several; leave =FILE out for one beside each folder");
   if (recordings.size() > 1 && !options.exports.folder.empty())
     throw CLI::ValidationError("--export", "is for one recording; each would replace the folder of the one before");
+  if (recordings.size() > 1 && !options.occupancy.folder.empty())
+    throw CLI::ValidationError("--occupancy", "is for one recording; each would replace the folder of the one before");
   if (recordings.size() > 1 && !options.mavlink.empty())
     throw CLI::ValidationError("--mavlink", "is for one recording: an autopilot flies one vehicle");
   if (recordings.size() > 1 && !options.serve.empty())
@@ -109,6 +112,7 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "Also write results.mcap: poses, path, map, images and numbers for Foxglove, Lichtblick "
                     "and others (about 10 MB per minute)");
   add_export_options(*run_app, options->exports);
+  add_occupancy_options(*run_app, options->occupancy);
   add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);
   run_app->add_option(

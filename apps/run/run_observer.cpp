@@ -26,6 +26,7 @@ constexpr std::array kObservers = {
     observe_album,    // which those below use
     observe_final_trajectory,
     observe_export,
+    observe_occupancy,
     observe_overview,
     observe_report,  // of the files of those above
     observe_mcap,

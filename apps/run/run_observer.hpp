@@ -94,6 +94,7 @@ ObserverFactory observe_states;                    // run_writer
 ObserverFactory observe_external;                  // external_log
 ObserverFactory observe_final_trajectory;          // final_trajectory
 ObserverFactory observe_export;                    // run_export
+ObserverFactory observe_occupancy;                 // run_occupancy
 ObserverFactory observe_summary;                   // run_summary
 ObserverFactory observe_overview;                  // overview
 ObserverFactory observe_album;                     // run_album

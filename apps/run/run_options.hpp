@@ -23,11 +23,19 @@ struct ExportOptions {
   double rate_hz = 0.0;          ///< of its images; 0: those of the keyframes
 };
 
+/// A folder for planners.
+struct OccupancyOptions {
+  std::filesystem::path folder;   ///< "": none
+  double voxel_m = 0.05;          ///< edge of its voxels
+  std::vector<double> heights_m;  ///< of its slice: from, to; empty: those of the path
+};
+
 struct RunOptions {
   SourceOptions source;
   ConfigSource config;
   MapOptions map;
   ExportOptions exports;
+  OccupancyOptions occupancy;
   std::string mode = "auto";
   std::string frame = "auto";
   std::filesystem::path out;

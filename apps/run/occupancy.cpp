@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/occupancy.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <sstream>
+#include <unordered_map>
+#include <vector>
+
+#include "common/files.hpp"
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kFewestViews = 4;
+constexpr double kMostSigma = 0.5;   // of a point along the ray, over the voxel
+constexpr double kFreeSigmas = 3.0;  // before a point, where its ray ends to be free
+constexpr double kFrames_px = 0.7;   // sigma of observations whose errors along a track are correlated
+constexpr double kEvents_px = 1.2;
+constexpr double kHit = 0.9;         // probability that a voxel is occupied which surely holds a point
+constexpr float kMiss = -0.4F;       // log-odds of a voxel that a ray crosses
+constexpr double kMostPixels = 1e9;  // of a slice
+constexpr std::uint8_t kOccupied = 0, kFree = 254, kUnknown = 205;  // as the ROS map server writes them
+
+octomap::point3d to_octomap(const Eigen::Vector3d& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+/// What one image says. Each voxel counts once, so that many points in one direction are no more than one.
+class Scan {
+ public:
+  Scan(octomap::OcTree& tree, const Eigen::Vector3d& from, double noise_px)
+      : tree_(tree), from_(from), noise_px_(noise_px) {}
+
+  void add(const Reconstruction::Point& point) {
+    const Eigen::Vector3d ray = point.p_W - from_, along = ray.normalized();
+    const double sigma = noise_px_ * std::sqrt(along.dot(point.covariance * along)), voxel = tree_.getResolution();
+    const Eigen::Vector3d free_end = point.p_W - (voxel + kFreeSigmas * sigma) * along;
+    if (along.dot(free_end - from_) > 0.0 && tree_.computeRayKeys(to_octomap(from_), to_octomap(free_end), ray_))
+      free_.insert(ray_.begin(), ray_.end());
+    octomap::OcTreeKey key;
+    if (sigma > kMostSigma * voxel || !tree_.coordToKeyChecked(to_octomap(point.p_W), key)) return;
+    const double in_voxel = std::erf(0.5 * voxel / (std::numbers::sqrt2 * sigma));  // if its middle is the estimate
+    float& hit = hits_[key];
+    hit = std::max(hit, octomap::logodds(0.5 + (kHit - 0.5) * in_voxel));
+  }
+
+  void insert() {
+    // In any order: each voxel is changed once.
+    for (const auto& [key, log_odds] : hits_) tree_.updateNode(key, log_odds, true);
+    for (const octomap::OcTreeKey& key : free_)
+      if (!hits_.contains(key)) tree_.updateNode(key, kMiss, true);
+  }
+
+ private:
+  octomap::OcTree& tree_;
+  Eigen::Vector3d from_;
+  double noise_px_;
+  octomap::KeyRay ray_;
+  octomap::KeySet free_;
+  std::unordered_map<octomap::OcTreeKey, float, octomap::OcTreeKey::KeyHash> hits_;  // log-odds
+};
+
+/// A leaf as a square of voxels, seen from above.
+struct Square {
+  int x, y, size;
+  bool occupied;
+};
+
+/// Those that reach into the heights, the free ones first.
+std::vector<Square> squares_between(const octomap::OcTree& tree, const HeightRange& heights) {
+  std::vector<Square> squares;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    const double half = 0.5 * leaf.getSize();
+    if (leaf.getZ() + half <= heights.low_m || leaf.getZ() - half >= heights.high_m) continue;
+    const octomap::OcTreeKey first = leaf.getIndexKey();
+    squares.push_back({first[0], first[1], 1 << (tree.getTreeDepth() - leaf.getDepth()), tree.isNodeOccupied(*leaf)});
+  }
+  std::ranges::stable_partition(squares, [](const Square& square) { return !square.occupied; });
+  return squares;
+}
+
+/// x to the right, y up.
+struct Slice {
+  cv::Mat image;           // CV_8UC1, a pixel per voxel
+  Eigen::Vector2d corner;  // lower left, in the map [m]
+};
+
+Slice slice_of(const octomap::OcTree& tree, const HeightRange& heights) {
+  const std::vector<Square> squares = squares_between(tree, heights);
+  if (squares.empty())
+    throw InputError::format("--occupancy-heights {:g} {:g}: nothing is known between them", heights.low_m,
+                             heights.high_m);
+  cv::Point low(squares.front().x, squares.front().y), high = low;
+  for (const auto& [x, y, size, occupied] : squares) {
+    low = {std::min(low.x, x), std::min(low.y, y)};
+    high = {std::max(high.x, x + size), std::max(high.y, y + size)};
+  }
+  const cv::Size size(high - low);
+  if (1.0 * size.width * size.height > kMostPixels)
+    throw InputError::format("--occupancy-voxel {:g}: map.pgm would have {} x {} pixels; give a larger voxel",
+                             tree.getResolution(), size.width, size.height);
+  const auto corner_m = [&](int key) {
+    return tree.keyToCoord(static_cast<octomap::key_type>(key)) - 0.5 * tree.getResolution();
+  };
+  Slice slice{cv::Mat(size, CV_8UC1, cv::Scalar(kUnknown)), {corner_m(low.x), corner_m(low.y)}};
+  for (const Square& square : squares) {
+    const cv::Rect place(square.x - low.x, high.y - square.y - square.size, square.size, square.size);
+    slice.image(place).setTo(square.occupied ? kOccupied : kFree);
+  }
+  return slice;
+}
+
+}  // namespace
+
+octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m) {
+  octomap::OcTree tree(voxel_m);
+  for (const Reconstruction::Image& image : model.images) {
+    const bool events = model.cameras[image.camera].modality == Modality::Events;
+    Scan scan(tree, image.T_W_C.translation(), events ? kEvents_px : kFrames_px);
+    for (const Reconstruction::Observation& observation : image.observations) {
+      if (observation.point == Reconstruction::kNone) continue;
+      const Reconstruction::Point& point = model.points[observation.point];
+      if (point.seen.size() >= kFewestViews) scan.add(point);
+    }
+    scan.insert();
+  }
+  tree.updateInnerOccupancy();
+  tree.prune();
+  return tree;
+}
+
+void write_occupancy(const std::filesystem::path& folder, const octomap::OcTree& tree, const HeightRange& heights) {
+  std::ostringstream probabilities, binary;
+  tree.write(probabilities);
+  octomap::OcTree(tree).writeBinary(binary);
+  write_file(folder / "occupancy.ot", probabilities.str());
+  write_file(folder / "occupancy.bt", binary.str());
+  const Slice slice = slice_of(tree, heights);
+  write_picture(folder / "map.pgm", slice.image);
+  // The map server takes 1 - v / 255 of a pixel v as the probability that it is occupied: of unknown ones 0.1961.
+  write_file(folder / "map.yaml",
+             fmt::format("image: map.pgm\nresolution: {}\norigin: [{:.6f}, {:.6f}, 0.0]\nnegate: 0\n"
+                         "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+                         tree.getResolution(), slice.corner.x(), slice.corner.y()));
+}
+
+}  // namespace edged

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Occupied, free and unknown space around the points of a reconstruction, as files of OctoMap and of the ROS map
+// server.
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <filesystem>
+
+#include "run/reconstruction.hpp"
+
+namespace edged {
+
+/// Of points with four observations and more: voxels of those whose depth is known to half a voxel are occupied, by how
+/// likely they hold it. The rays to all of them are free up to a voxel and three sigmas before the point. What no ray
+/// crosses stays unknown. voxel_m: edge of a voxel [m].
+octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m);
+
+/// Heights [m] in the map, the second above the first.
+struct HeightRange {
+  double low_m, high_m;
+};
+
+/// occupancy.ot (with probabilities) and occupancy.bt (occupied or free) of OctoMap; for the ROS map server map.pgm and
+/// map.yaml, what lies between two heights: a pixel is occupied if a voxel there is, else free if one is. Throws
+/// InputError if they cannot be written, or map.pgm would have more than 1e9 pixels.
+void write_occupancy(const std::filesystem::path& folder, const octomap::OcTree& tree, const HeightRange& heights);
+
+}  // namespace edged
