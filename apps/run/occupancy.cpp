@@ -9,6 +9,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <sstream>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -117,6 +118,11 @@ Slice slice_of(const octomap::OcTree& tree, const HeightRange& heights) {
   return slice;
 }
 
+/// Not by OctoMap's functions for whole files, which print to stderr.
+std::string header_of(const char* kind, const octomap::OcTree& tree) {
+  return fmt::format("{}\nid {}\nsize {}\nres {}\ndata\n", kind, tree.getTreeType(), tree.size(), tree.getResolution());
+}
+
 }  // namespace
 
 octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m) {
@@ -138,8 +144,13 @@ octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m) {
 
 void write_occupancy(const std::filesystem::path& folder, const octomap::OcTree& tree, const HeightRange& heights) {
   std::ostringstream probabilities, binary;
-  tree.write(probabilities);
-  octomap::OcTree(tree).writeBinary(binary);
+  probabilities << header_of("# Octomap OcTree file", tree);
+  tree.writeData(probabilities);
+  octomap::OcTree likely(tree);
+  likely.toMaxLikelihood();
+  likely.prune();
+  binary << header_of("# Octomap OcTree binary file", likely);
+  likely.writeBinaryData(binary);
   write_file(folder / "occupancy.ot", probabilities.str());
   write_file(folder / "occupancy.bt", binary.str());
   const Slice slice = slice_of(tree, heights);
