@@ -83,7 +83,7 @@ std::vector<Square> squares_between(const octomap::OcTree& tree, const HeightRan
     const octomap::OcTreeKey first = leaf.getIndexKey();
     squares.push_back({first[0], first[1], 1 << (tree.getTreeDepth() - leaf.getDepth()), tree.isNodeOccupied(*leaf)});
   }
-  std::ranges::stable_partition(squares, [](const Square& square) { return !square.occupied; });
+  std::stable_partition(squares.begin(), squares.end(), [](const Square& square) { return !square.occupied; });
   return squares;
 }
 
