@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
 // Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] Writes OUT.tum (odometry) and OUT.json. skip: packet numbers that
-// are never sent; loss: packets of the network that are; nodes: it waits for so many; listen: ends so long after the
-// last pose.
+// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] Writes OUT.tum (odometry) and OUT.json; without a recording also
+// OUT.ready once the node publishes to it. skip: packet numbers that are never sent; loss: packets of the network that
+// are; nodes: it waits for so many; listen: ends so long after the last pose.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -289,8 +289,14 @@ class Listener {
     for (const Output& output : kOutputs) {
       std::string topic = output.topic;
       if (topic.front() == '~') topic.replace(0, 1, "/" + node);
-      participant.reader(topic, output.type, output.qos, collectors_[output.topic]);
+      readers_.push_back(participant.reader(topic, output.type, output.qos, collectors_[output.topic]));
     }
+  }
+  /// The node publishes its poses to this.
+  bool is_told() const {
+    dds::SubscriptionMatchedStatus status;
+    readers_.front()->get_subscription_matched_status(status);
+    return status.current_count > 0;
   }
   std::size_t poses() { return collectors_["~/odometry"].count(); }
 
@@ -322,15 +328,22 @@ class Listener {
   }
 
   std::map<std::string, Collector> collectors_;
+  std::vector<dds::DataReader*> readers_;  // of kOutputs: first the odometry
 };
+
+template <typename Condition>
+void wait_until(Condition condition, const char* otherwise) {
+  const auto deadline = Clock::now() + std::chrono::seconds(20);
+  while (!condition()) {
+    if (Clock::now() > deadline) throw std::runtime_error(otherwise);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
 
 void drive_recording(Participant& participant, Driver& driver, const std::string& path, const Options& options) {
   const Recording recording = open_recording(path);
-  const auto deadline = Clock::now() + std::chrono::seconds(20);
-  while (!driver.is_heard(static_cast<int>(number_of(options, "nodes", 1)))) {
-    if (Clock::now() > deadline) throw std::runtime_error("nobody subscribes");
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  const auto nodes = static_cast<int>(number_of(options, "nodes", 1));
+  wait_until([&driver, nodes] { return driver.is_heard(nodes); }, "nobody subscribes");
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the readers of the other side match as well
   participant.lose(number_of(options, "loss", 0));
   const auto rig = options.find("rig");
@@ -362,6 +375,9 @@ int run_peer(const std::string& recording, const std::string& out, const Options
   if (recording != "none") {
     driver.emplace(participant, options);
     drive_recording(participant, *driver, recording, options);
+  } else {
+    wait_until([&listener] { return listener.is_told(); }, "nobody publishes");
+    std::ofstream(out + ".ready") << "\n";
   }
   const auto quiet = std::chrono::duration<double>(number_of(options, "listen", 1.5));
   auto last_news = Clock::now();

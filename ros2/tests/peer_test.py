@@ -234,6 +234,10 @@ class PeerOnFastDds(unittest.TestCase):
         node = Node(self, *cameras)
         self.recording = recording
         listener = self.start_peer("none", "peer", listen=4)
+        deadline = time.monotonic() + 20
+        while not (self.folder / "peer.ready").exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
         edged("play", flight, "--ros2", "--wait", "--quiet")
         self.assertEqual(listener.wait(timeout=60), 0)
         node.end()
