@@ -58,16 +58,17 @@ struct Step {
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
   /// reference of the covariance with it.
   bool relocalized = false;
+  /// While Lost: the last estimate ended as the cameras contradicted the IMU, so its last poses are wrong.
+  bool contradicted = false;
 
   /// The odometry frame O in the map frame M (W above is M): state.T_W_B = T_M_O * T_O_B. T_O_B has no jumps between
   /// one start of the estimator and the next; the map corrects T_M_O.
   SE3 T_M_O;
   std::vector<MapMatch> map_matches;  ///< map points observed in an image of this packet; they correct T_M_O
 
-  std::string waiting_for;    ///< without an estimate: why initialization has not succeeded yet, with numbers
-  std::string started;        ///< set if the estimator was initialized with this packet: how, with numbers
-  std::string lost_because;   ///< while Lost: what ended the last estimate, with numbers
-  bool contradicted = false;  ///< while Lost: it ended as the cameras contradicted the IMU, so its last poses are wrong
+  std::string waiting_for;   ///< without an estimate: why initialization has not succeeded yet, with numbers
+  std::string started;       ///< set if the estimator was initialized with this packet: how, with numbers
+  std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
 
   std::vector<CameraStep> cameras;                     ///< event cameras, then frame cameras, in the order of the rig
   std::vector<Landmark> landmarks;                     ///< landmarks of the window after the optimization
