@@ -127,12 +127,13 @@ void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Find
     out.push_back({severe,
                    fmt::format("lost for {:.1f} s, {:.0f} % of the time{}", lost_s, 100 * run.lost_share(), why),
                    remedy});
-  else if (run.times_lost() > 0)
-    out.push_back({run.times_contradicted() > 0 ? severe : Severity::Warning,
-                   fmt::format("lost {}, for {:.1f} s{}", counted(run.times_lost(), "time"), lost_s, why),
-                   run.times_contradicted() > 0
-                       ? "the last poses before a contradiction are wrong: see states.csv and run.log"
-                       : remedy});
+  else if (run.times_lost() > 0) {
+    const std::string lost = fmt::format("lost {}, for {:.1f} s{}", counted(run.times_lost(), "time"), lost_s, why);
+    if (run.times_contradicted() > 0)
+      out.push_back({severe, lost, "the last poses before a contradiction are wrong: see states.csv and run.log"});
+    else
+      out.push_back({Severity::Warning, lost, remedy});
+  }
 }
 
 /// Samples that contradict the estimate are rejected: a few are outliers, many mean a wrong description of the sensor.

@@ -96,8 +96,10 @@ void EstimatorConfig::visit(ConfigFields& fields) {
              {"", 0, 1, "Weight of a packet when each camera's noise adapts to its residuals. 0: fixed noise."});
   fields.add("noise_inflation", noise_inflation,
              {"", 0.5, 20, "Assumed noise relative to the spread of new residuals."});
-  fields.add("event_noise_inflation", event_noise_inflation,
-             {"", 0.5, 20, "Further factor on the noise of event cameras used beside frame cameras."});
+  fields.add(
+      "event_noise_inflation", event_noise_inflation,
+      {"", 0.5, 20,
+       "Further factor on the noise of event cameras used beside frame cameras, unless these are far less accurate."});
   fields.add("max_imu_strain", max_imu_strain,
              {"sigma", 0.01, 100, "Cameras are down-weighted when the IMU residuals of the window exceed this."});
   fields.add(

@@ -12,7 +12,7 @@ namespace edged {
 namespace {
 
 constexpr double kMorePatience = 1.5;
-constexpr double kMostBiasChange = 3.0;  // [sigma]; up to 2.3 without dynamic objects (bench/log/disturbances.md)
+constexpr double kMostBiasChange = 3.0;  // [sigma]; up to 2.1 without dynamic objects (docs/decisions/023)
 
 }  // namespace
 

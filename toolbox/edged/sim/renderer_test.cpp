@@ -39,6 +39,23 @@ TEST(Renderer, GivesTheDepthOfASlantedPlane) {
   }
 }
 
+/// A slanted wall is as near as the displaced pixel of the calibrated lens says.
+TEST(Renderer, IsMovedByWhatTheModelOfTheLensLeavesOver) {
+  const CameraModel camera = SimulatedCameraConfig().model();
+  const LensResidual residual(2.0, camera.width(), 3);
+  Renderer renderer(camera, wall_scene(2.0, 50.0), residual);
+  const SE3 T_W_C(so3::exp({0.2, -0.3, 0.1}), Eigen::Vector3d::Zero());
+  const Rendering& picture = renderer.render(T_W_C);
+  for (int y = 5; y < camera.height() - 5; y += 20) {
+    for (int x = 5; x < camera.width() - 5; x += 20) {
+      const Eigen::Vector2d pixel(x, y);
+      const Eigen::Vector2d point = camera.pixel_to_point(pixel + residual.at(pixel));
+      const double slope = (T_W_C.rotation() * Eigen::Vector3d(point.x(), point.y(), 1.0)).z();
+      EXPECT_NEAR(picture.inverse_depth[static_cast<std::size_t>(y * camera.width() + x)], slope / 2.0, 1e-6);
+    }
+  }
+}
+
 TEST(Renderer, ShowsTheNearerOfTwoFacesAndNothingFromBehind) {
   Scene scene = wall_scene(2.0, 50.0);
   scene.faces.push_back(wall_scene(1.0, 0.1).faces.front());
