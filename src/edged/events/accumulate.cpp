@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/events/accumulate.hpp"
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/events/sharpness.hpp"
 
 namespace edged {
 namespace {
@@ -40,6 +42,15 @@ class BilinearSplat {
   float max_x_, max_y_;
 };
 
+/// The sum of the squares of an event's weights along one axis, mean over all subpixels: weights 1 - f and f, blurred.
+double spread_along_axis(double blur_sigma_px) {
+  constexpr double kSame = 2.0 / 3.0, kNext = 1.0 / 6.0;  // means of (1 - f)^2 + f^2 and of f (1 - f)
+  if (blur_sigma_px <= 0.0) return kSame;
+  const cv::Mat kernel = cv::getGaussianKernel(2 * cvCeil(4.0 * blur_sigma_px) + 1, blur_sigma_px, CV_64F);
+  const cv::Mat later = kernel.rowRange(1, kernel.rows), earlier = kernel.rowRange(0, kernel.rows - 1);
+  return kSame * kernel.dot(kernel) + 2.0 * kNext * later.dot(earlier);
+}
+
 }  // namespace
 
 void EventFrameConfig::visit(ConfigFields& fields) {
@@ -63,6 +74,7 @@ void EventFrameConfig::visit(ConfigFields& fields) {
 EventFrameRenderer::EventFrameRenderer(UndistortTable table, const EventFrameConfig& config)
     : table_(std::move(table)),
       config_(config),
+      spread_(std::pow(spread_along_axis(config.blur_sigma_px), 2)),
       positive_(table_.height() + 2, table_.width() + 2, CV_32FC1),
       negative_(positive_.size(), CV_32FC1) {
   EDGED_CHECK(config_.saturation_events > 0.0, "saturation_events is {}", config_.saturation_events);
@@ -92,7 +104,10 @@ EventFrame EventFrameRenderer::render(std::span<const Event> events, const Camer
   cv::subtract(positive_, negative_, difference_);
   const double scale = weight * 255.0 / config_.saturation_events;
   const cv::Mat difference = difference_(cv::Rect(1, 1, table_.width(), table_.height()));
-  return {finish(sum, scale, 0.0), finish(difference, 0.5 * scale, 128.0)};
+  EventFrame frame{finish(sum, scale, 0.0), finish(difference, 0.5 * scale, 128.0)};
+  const double mean = cv::mean(frame.image)[0];
+  if (mean > 0.0) frame.structure = image_variance(frame.increments) / (0.25 * scale * spread_ * mean);
+  return frame;
 }
 
 cv::Mat EventFrameRenderer::finish(const cv::Mat& sum, double scale, double zero) {

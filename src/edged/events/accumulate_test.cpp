@@ -116,6 +116,45 @@ TEST(EventFrame, StartsAfreshAtEachCallAndKeepsEarlierImages) {
   EXPECT_EQ(cv::countNonZero(again != copy), 0);
 }
 
+/// Events at random pixels, 1 us apart.
+std::vector<Event> random_events(int n, double positive_share) {
+  std::mt19937_64 random(5);
+  std::vector<Event> events;
+  for (int i = 0; i < n; ++i) {
+    events.push_back({at_us(i), static_cast<std::uint16_t>(uniform(random, 0, 120)),
+                      static_cast<std::uint16_t>(uniform(random, 0, 90)), uniform(random, 0, 1) < positive_share});
+  }
+  return events;
+}
+
+TEST(EventFrame, HasAStructureOfOneWhereEventsAreNoise) {
+  CameraMotion motion;
+  motion.knots = {{at_us(0), SE3(Eigen::Quaterniond::Identity(), {0.01, 0.01, 0.0})}, {at_us(4000), SE3()}};
+  for (const double blur_px : {0.0, 0.8, 1.5}) {
+    for (const double positive_share : {0.5, 1.0}) {
+      for (const double weight : {1.0, 2.0}) {
+        EventFrameConfig config;
+        config.blur_sigma_px = blur_px;
+        EventFrameRenderer renderer(UndistortTable(kCamera, kCamera), config);
+        const std::vector<Event> noise = random_events(4000, positive_share);
+        EXPECT_NEAR(renderer.render(noise, motion, 1.0, nullptr, weight).structure, 1.0, 0.15)
+            << blur_px << " " << positive_share << " " << weight;
+      }
+    }
+  }
+}
+
+TEST(EventFrame, HasAStructureOfMoreWhereEventsLieAlongEdges) {
+  std::vector<Event> events = random_events(2000, 0.5);
+  for (int line = 0; line < 6; ++line)
+    for (int i = 0; i < 330; ++i)
+      events.push_back({at_us(2000 + i), static_cast<std::uint16_t>(10 + 20 * line), static_cast<std::uint16_t>(i % 90),
+                        line % 2 == 0});
+  EventFrameRenderer renderer(UndistortTable(kCamera, kCamera), EventFrameConfig());
+  EXPECT_GT(renderer.render(events, CameraMotion(), 1.0).structure, 3.0);
+  EXPECT_EQ(renderer.render({}, CameraMotion(), 1.0).structure, 0.0);
+}
+
 TEST(EventFrame, ListsItsOptions) {
   EventFrameConfig config;
   ConfigFields fields = ConfigFields::of(config);

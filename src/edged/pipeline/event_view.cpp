@@ -12,6 +12,8 @@
 namespace edged {
 namespace {
 
+constexpr double kLeastStructure = 2.0;  // of an event frame; noise alone has 1 (docs/decisions/013)
+
 /// The poses from the last one not after t on, at least two. A single twist (Eq. 1) covers only the time of the events.
 std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
   std::size_t first = poses.size() - 2;
@@ -65,6 +67,7 @@ EventImage EventView::render(const EventsToRender& rendered, const RigCamera& ca
   const EventFrame rendered_frame = renderer_.render(events, motion, scene_depth, depths, rendered.every);
   image.frame = rendered_frame.image;
   image.increments = rendered_frame.increments;
+  image.noise = rendered_frame.structure < kLeastStructure;
   image.covered = events.back().t - events.front().t;
   const cv::Mat enhanced = enhance(image.frame, enhance_);
   image.track = enhance_track_ ? enhanced : image.frame;

@@ -17,6 +17,7 @@ namespace edged {
 /// One event frame. All images are empty when there were too few events for one.
 struct EventImage {
   cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
+  bool noise = false;     ///< it shows noise of the pixels alone: consecutive frames share events, and noise is tracked
   cv::Mat increments;     ///< of the brightness (EventFrame)
   Duration covered = {};  ///< from the first to the last of its events
   cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): features are tracked on one, detected on the other

@@ -74,7 +74,7 @@ VisionOutput Vision::process(const VisionInput& input) {
   }
   if (landmarks_) discount_shared(output.observations, views, config_.stereo);  // a start takes three images only
   output.images = images_of(views);
-  output.events_quiet = is_quiet(packet);
+  output.events_quiet = is_quiet(packet, output.event_images);
   output.depth = depth_.for_factor(packet.t);
   return output;
 }
@@ -173,7 +173,7 @@ std::vector<ChannelView> Vision::views_of(const Packet& packet, std::span<const 
   std::vector<ChannelView> views;
   for (std::size_t i = 0; i < event_images.size(); ++i) {
     const EventImage& image = event_images[i];
-    if (!image.frame.empty())
+    if (!image.frame.empty() && !image.noise)
       views.push_back({&channels_[i], image.track, image.detect, image.increments, image.covered});
   }
   for (std::size_t i = event_images.size(); i < channels_.size(); ++i) {
@@ -305,9 +305,10 @@ int Vision::features_wanted(const Channel& channel, Timestamp t) const {
                         event_views_.size());
 }
 
-bool Vision::is_quiet(const Packet& packet) const {
+bool Vision::is_quiet(const Packet& packet, std::span<const EventImage> event_images) const {
   bool quiet = !event_views_.empty();
-  for (std::size_t i = 0; i < event_views_.size(); ++i) quiet = quiet && event_views_[i].quiet(packet.events[i]);
+  for (std::size_t i = 0; i < event_views_.size(); ++i)
+    quiet = quiet && (event_images[i].noise || event_views_[i].quiet(packet.events[i]));
   return quiet;
 }
 

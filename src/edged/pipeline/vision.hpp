@@ -93,7 +93,7 @@ class Vision {
   bool frames_at_work(Timestamp t) const;
   bool frames_carry(Timestamp t) const;
   int features_wanted(const Channel& channel, Timestamp t) const;
-  bool is_quiet(const Packet& packet) const;
+  bool is_quiet(const Packet& packet, std::span<const EventImage> event_images) const;
   std::vector<TrackedImage> images_of(std::span<const ChannelView> views) const;
 
   OdometryConfig config_;

@@ -148,6 +148,31 @@ TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
   EXPECT_EQ(cameras.front().rendered, 0U);
 }
 
+TEST_F(PlaneVision, ObservesNothingInAnEventFrameOfNoise) {
+  rig_.cameras = {{"dvs", Modality::Events, scene_.camera(), SE3(), Duration(0)}};
+  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  const auto width = static_cast<unsigned>(scene_.camera().width()),
+             height = static_cast<unsigned>(scene_.camera().height());
+  const std::size_t count = width * height / 4U;
+  for (int image = 0; image < 3; ++image) {
+    Packet noise = packet(image);
+    PacketEvents events{"dvs", {}, count, count, 25.0 * static_cast<double>(count)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = (i + static_cast<std::size_t>(image) * count) * 0x9e3779b97f4a7c15U >> 24U;
+      events.events.push_back({noise.t - Duration(static_cast<std::int64_t>(count - i)),
+                               static_cast<std::uint16_t>(place % width),
+                               static_cast<std::uint16_t>(place / width % height), i % 3 == 0});
+    }
+    noise.events.push_back(std::move(events));
+    const VisionOutput output = process(vision, noise, image);
+    if (image == 0) continue;  // no motion is known yet
+    EXPECT_FALSE(output.event_images.front().frame.empty()) << "it is shown";
+    EXPECT_TRUE(output.events_quiet) << "motion would show";
+    EXPECT_TRUE(output.observations.empty());
+    EXPECT_FALSE(output.keyframe);
+  }
+}
+
 TEST_F(PlaneVision, GivesTheFeaturesOfTwoCamerasOneIdEach) {
   const SE3 beside(so3::exp({0.0, 0.01, 0.0}), {0.1, 0.0, 0.0});
   rig_.cameras.push_back({"beside", Modality::Frames, scene_.camera(), beside, Duration(0)});
