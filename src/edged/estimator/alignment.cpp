@@ -148,6 +148,7 @@ class MotionSearch {
 
   /// Dynamic objects bias the gyro bias too: if there are some, it is estimated from the inliers, or is zero at first.
   std::optional<Found> best() {
+    if (priors_.gyro_known) return best_at(priors_.biases.gyro);
     std::optional<Found> best = best_at(align_gyro_bias(frames_, rig_, noise_));
     if (!best || judge_->fits_nearly_all(best->best)) return best;
     std::optional<Found> other = best_at(Vector3d(Vector3d::Zero()));
@@ -225,7 +226,7 @@ std::optional<Alignment> align(const std::vector<InitFrame>& frames, const Rig& 
     state.T_O_B = T_O_B0 * SE3(m.R, m.position(x));
     state.v_O = T_O_B0.rotation() * m.velocity(x);
     state.bias_gyro = found->gyro_bias;
-    state.bias_accel = x.tail<3>();
+    state.bias_accel = solver.accel_bias(x);
     result.states.push_back(state);
   }
   return result;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kSpacing_s = 0.08;
-constexpr StartPriors kPriors{0.15};
+const StartPriors kPriors{.biases = {.gyro_sigma = 0.02, .accel_sigma = 0.15}};
 
 /// `views` views of the world from begin_s on.
 std::vector<InitFrame> views_of(TestWorld& world, double begin_s, int views = 20) {

@@ -96,13 +96,13 @@ double inflation(const Window& window, const EstimatorConfig& config) {
 }  // namespace
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
-                     std::vector<IntrinsicsCorrection> intrinsics)
+                     std::vector<IntrinsicsCorrection> intrinsics, const std::optional<BiasPrior>& biases)
     : noise_(noise),
       config_(config),
       window_(rig, config.cauchy_scale, config.depth_factor),
       standstill_(config.standstill),
       external_(config.height, config.velocity),
-      initializer_(rig, noise, config),
+      initializer_(rig, noise, config, biases),
       known_intrinsics_(std::move(intrinsics)),
       depth_scale_{0.0, config.depth_factor.scale_sigma} {}
 

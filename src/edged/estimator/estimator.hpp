@@ -40,9 +40,9 @@ struct EstimatorResult {
 class Estimator {
  public:
   /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock.
-  /// intrinsics: corrections known from an earlier start, one of each camera, or none.
+  /// Known from an earlier start: intrinsics, corrections of each camera, or none; biases, those of the IMU.
   Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
-            std::vector<IntrinsicsCorrection> intrinsics = {});
+            std::vector<IntrinsicsCorrection> intrinsics = {}, const std::optional<BiasPrior>& biases = {});
 
   /// Inputs in time order.
   EstimatorResult add(const EstimatorInput& input);

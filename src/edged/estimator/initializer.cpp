@@ -195,7 +195,9 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   state.t = input.t;
   state.T_O_B = SE3(Eigen::Quaterniond::FromTwoVectors(standstill.mean_accel_B(), Eigen::Vector3d::UnitZ()),
                     Eigen::Vector3d::Zero());
+  const BiasPrior prior = biases();
   state.bias_gyro = standstill.mean_gyro_B();
+  state.bias_accel = prior.accel;
   Window window = empty_window();
   const StateId id =
       window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true), input.observations);
@@ -203,10 +205,14 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
   window.add_soft_prior(gauge_prior(pose, to_block(state.T_O_B), kGaugeSigma_m, kGaugeSigma_rad));
   window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(), kRestAccelSigma));
-  window.add_soft_prior(
-      motion_prior(motion, motion_block(state),
-                   {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, config_.accel_bias_sigma}));
+  window.add_soft_prior(motion_prior(motion, motion_block(state),
+                                     {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, prior.accel_sigma}));
   return window;
+}
+
+BiasPrior Initializer::biases() const {
+  return known_biases_.value_or(
+      BiasPrior{.gyro_sigma = config_.gyro_bias_sigma, .accel_sigma = config_.accel_bias_sigma});
 }
 
 StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
@@ -223,7 +229,7 @@ StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomStat
 
 StartResult Initializer::start_by(External external, double most_scale_sigma, const OdomState* running) {
   const bool velocities = external == External::Used && config_.velocity.enabled;
-  const StartPriors priors{config_.accel_bias_sigma, velocities ? &config_.velocity : nullptr};
+  const StartPriors priors{biases(), known_biases_.has_value(), velocities ? &config_.velocity : nullptr};
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, priors, running);
   if (!alignment) return {{}, "features tracked over three views"};
   StartResult result = start_from(*alignment, external, most_scale_sigma);
@@ -287,9 +293,9 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg,
     return fmt::format("motion that determines gravity: known to {:.1f} deg, {:.1f} required", tilt_deg, most_tilt_deg);
   }
   const OdomState state = window.newest().nav();
-  const double most_bias = kMaxBiasSigmas * config_.accel_bias_sigma;
-  if (state.bias_accel.norm() > most_bias) {
-    const double bias = state.bias_accel.norm();
+  const BiasPrior prior = biases();
+  const double most_bias = kMaxBiasSigmas * prior.accel_sigma, bias = (state.bias_accel - prior.accel).norm();
+  if (bias > most_bias) {
     return fmt::format("a plausible accelerometer bias: {:.2f} of {:.2f} m/s^2", bias, most_bias);
   }
   if (worst_depth_error(window, {0.0, config_.depth_factor.scale_sigma}) > config_.depth_factor.gate) {
@@ -313,15 +319,18 @@ Window Initializer::aligned_window(const Alignment& alignment, External external
   for (const FeatureId id : alignment.outliers) window.forget_feature(id);
   const auto& [first, state] = *window.states().begin();
   window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
-  OdomState unbiased = state.nav();
-  unbiased.bias_accel.setZero();
-  double gyro_bias_sigma = config_.gyro_bias_sigma;
-  if (knows_scale(alignment)) {
-    unbiased.bias_gyro.setZero();
-    gyro_bias_sigma = kPairGyroBiasSigma;
+  BiasPrior prior = biases();
+  if (!known_biases_) {
+    if (knows_scale(alignment)) {
+      prior.gyro_sigma = kPairGyroBiasSigma;
+    } else {
+      prior.gyro = state.nav().bias_gyro;
+    }
   }
-  window.add_soft_prior(motion_prior({BlockKind::Motion, first}, motion_block(unbiased),
-                                     {kFree, gyro_bias_sigma, config_.accel_bias_sigma}));
+  OdomState before = state.nav();
+  before.bias_gyro = prior.gyro, before.bias_accel = prior.accel;
+  window.add_soft_prior(
+      motion_prior({BlockKind::Motion, first}, motion_block(before), {kFree, prior.gyro_sigma, prior.accel_sigma}));
   if (external == External::Unused) return window;
   ExternalFactors factors(config_.height, config_.velocity);
   auto at = window.states().begin();

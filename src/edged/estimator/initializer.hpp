@@ -39,8 +39,10 @@ double scale_sigma(const Window& window);
 
 class Initializer {
  public:
-  Initializer(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config)
-      : rig_(rig), noise_(noise), config_(config) {}
+  /// biases: of the IMU, where an earlier estimate has found them.
+  Initializer(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
+              const std::optional<BiasPrior>& biases = {})
+      : rig_(rig), noise_(noise), config_(config), known_biases_(biases) {}
 
   /// Inputs in time order. rest, which has processed the input already: for an initialization at rest; null to disable
   /// that. An initialization in motion must have a scale sigma of at most most_scale_sigma. running: the estimate at
@@ -63,6 +65,7 @@ class Initializer {
   void solve_start(Window& window) const;
   void weigh_observations(Window& window) const;
   std::string doubt_about(const Window& window, double most_tilt_deg, double most_speed_sigma) const;
+  BiasPrior biases() const;
   int views() const { return static_cast<int>(buffer_.size()); }
   /// By the baselines between cameras.
   bool knows_scale(const Alignment& alignment) const { return alignment.baseline_sigma <= config_.init_scale_sigma; }
@@ -70,6 +73,7 @@ class Initializer {
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
+  std::optional<BiasPrior> known_biases_;
   std::vector<InitFrame> buffer_;                    ///< views
   std::vector<ImuSample> pending_imu_;               ///< since the last view
   std::vector<ExternalSample> pending_external_;     ///< the same

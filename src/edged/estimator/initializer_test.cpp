@@ -34,9 +34,10 @@ using Velocities = std::optional<Eigen::Quaterniond>;
 
 /// Runs the estimator from begin_s until it has converged; nothing if it does not within patience_s.
 std::optional<Started> start(const TestWorldOptions& options, double begin_s, double patience_s,
-                             std::vector<std::string>* waited_for = nullptr, const Velocities& R_B_S = std::nullopt) {
+                             std::vector<std::string>* waited_for = nullptr, const Velocities& R_B_S = std::nullopt,
+                             const std::optional<BiasPrior>& biases = {}) {
   TestWorld world(options), sensor(options);
-  Estimator estimator(world.rig(), world.noise(), {});
+  Estimator estimator(world.rig(), world.noise(), {}, {}, biases);
   for (int i = 1; i * kEvery_s <= patience_s; ++i) {
     const double t = begin_s + i * kEvery_s;
     EstimatorInput input = world.packet(t, kEvery_s, i % 4 == 0);
@@ -113,6 +114,22 @@ INSTANTIATE_TEST_SUITE_P(
                     StartCase{"far_and_fast", {.speed = 4.0, .near_m = 12.0, .far_m = 20.0}, 3.0},
                     StartCase{"without_turning", {.turn = 0.0}, 4.0}, StartCase{"two_cameras", {.cameras = 2}, 3.0}),
     [](const auto& test) { return test.param.name; });
+
+TEST(Initializer, ReliesOnTheBiasesOfAnEarlierEstimate) {
+  double known_sum = 0.0, found_sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    TestWorldOptions options{.speed = 0.5, .pixel_noise = 0.5, .seed = seed};
+    options.bias_gyro = {0.05, -0.06, 0.04}, options.bias_accel = {0.3, -0.2, 0.25};
+    const BiasPrior biases{options.bias_gyro, options.bias_accel, 0.003, 0.03};
+    const double begin_s = 1.0 + 0.7 * static_cast<double>(seed);
+    const auto found = start(options, begin_s, 6.0), known = start(options, begin_s, 6.0, nullptr, {}, biases);
+    ASSERT_TRUE(found && known) << seed;
+    EXPECT_LT(known->tilt_deg, 0.7) << seed;
+    EXPECT_LE(known->after_s, found->after_s + 0.2) << seed;
+    known_sum += std::abs(known->scale_error), found_sum += std::abs(found->scale_error);
+  }
+  EXPECT_LT(known_sum, 0.8 * found_sum);
+}
 
 /// Two cameras that share features need no motion; with noise of half a pixel they need more views.
 TEST(Initializer, WithAPairStartsWhateverTheMotion) {

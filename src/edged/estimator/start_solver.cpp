@@ -47,23 +47,24 @@ std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, cons
   return tracks;
 }
 
-/// What the IMU makes of a motion, around a gyro bias and no accelerometer bias.
-RelativeMotion moved_on(const RelativeMotion& m, const Preintegration& imu, const Vector3d& bg) {
+/// What the IMU makes of a motion, around the biases that it was integrated with.
+RelativeMotion moved_on(const RelativeMotion& m, const Preintegration& imu) {
+  const Vector3d &bg = imu.bias_gyro(), &ba = imu.bias_accel();
   RelativeMotion next;
   next.t = m.t + imu.dt();
   next.R = m.R * imu.dR(bg).toRotationMatrix();
-  next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, Vector3d::Zero());
-  next.beta = m.beta + m.R * imu.dv(bg, Vector3d::Zero());
+  next.alpha = m.alpha + m.beta * imu.dt() + m.R * imu.dp(bg, ba);
+  next.beta = m.beta + m.R * imu.dv(bg, ba);
   next.d_alpha = m.d_alpha + m.d_beta * imu.dt() + m.R * imu.d_dp_d_ba();
   next.d_beta = m.d_beta + m.R * imu.d_dv_d_ba();
   return next;
 }
 
 std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames, const Vector3d& bg,
-                                            const ImuNoise& noise) {
+                                            const Vector3d& ba, const ImuNoise& noise) {
   std::vector<RelativeMotion> motion(1);
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    motion.push_back(moved_on(motion.back(), {frames[i].imu, bg, Vector3d::Zero(), noise}, bg));
+    motion.push_back(moved_on(motion.back(), {frames[i].imu, bg, ba, noise}));
   }
   return motion;
 }
@@ -86,16 +87,15 @@ StartVelocity velocity_equation(const RelativeMotion& m, const Vector3d& omega_B
 
 std::vector<StartVelocity> velocity_equations(const std::vector<InitFrame>& frames,
                                               const std::vector<RelativeMotion>& motion, const Vector3d& bg,
-                                              const ImuNoise& noise, const VelocityConfig& config) {
+                                              const Vector3d& ba, const ImuNoise& noise, const VelocityConfig& config) {
   std::vector<StartVelocity> equations;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     for (const ExternalSample& any : frames[i].external) {
       const auto* sample = std::get_if<VelocitySample>(&any);
       if (sample == nullptr) continue;
-      const Preintegration imu(slice_imu(frames[i].imu, frames[i].imu.front().t, sample->t), bg, Vector3d::Zero(),
-                               noise);
+      const Preintegration imu(slice_imu(frames[i].imu, frames[i].imu.front().t, sample->t), bg, ba, noise);
       equations.push_back(
-          velocity_equation(moved_on(motion[i - 1], imu, bg), imu.samples().back().gyro_B - bg, *sample, config));
+          velocity_equation(moved_on(motion[i - 1], imu), imu.samples().back().gyro_B - bg, *sample, config));
     }
   }
   return equations;
@@ -162,11 +162,11 @@ struct StartEquations {
 StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Vector3d& gyro_bias,
                          const ImuNoise& noise, const StartPriors& priors)
     : rig_(&rig),
-      accel_bias_sigma_(priors.accel_bias_sigma),
-      motion_(relative_motion(frames, gyro_bias, noise)),
+      biases_(priors.biases),
+      motion_(relative_motion(frames, gyro_bias, biases_.accel, noise)),
       tracks_(gather_tracks(frames, rig)) {
   if (priors.velocity != nullptr) {
-    velocities_ = velocity_equations(frames, motion_, gyro_bias, noise, *priors.velocity);
+    velocities_ = velocity_equations(frames, motion_, gyro_bias, biases_.accel, noise, *priors.velocity);
   }
 }
 
@@ -241,7 +241,7 @@ std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_leng
 }
 
 std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, int iterations) const {
-  const double bias_information = 1.0 / (accel_bias_sigma_ * accel_bias_sigma_);
+  const double bias_information = std::pow(biases_.accel_sigma, -2);
   Eigen::Matrix<double, 8, 8> H;
   Eigen::Matrix<double, 9, 8> free;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -265,7 +265,7 @@ Start StartSolver::start_of(const OdomState& last) const {
   const RelativeMotion& m = motion_.back();
   const Matrix3d R_0_O = m.R * last.T_O_B.R().transpose();
   Start x;
-  x << Vector3d::Zero(), R_0_O * Vector3d(0.0, 0.0, -kGravity), last.bias_accel;
+  x << Vector3d::Zero(), R_0_O * Vector3d(0.0, 0.0, -kGravity), last.bias_accel - biases_.accel;
   x.head<3>() = R_0_O * last.v_O - m.velocity(x);
   return x;
 }

@@ -30,8 +30,8 @@ struct StartTrack {
   std::vector<StartObservation> observations;
 };
 
-/// The unknowns once rotations are known: first velocity, gravity, both in the first body frame, and accelerometer
-/// bias.
+/// The unknowns once rotations are known: first velocity, gravity, both in the first body frame, and the accelerometer
+/// bias less that of the prior.
 using Start = Eigen::Matrix<double, 9, 1>;
 using StartMatrix = Eigen::Matrix<double, 9, 9>;
 
@@ -55,9 +55,16 @@ struct RelativeMotion {
   }
 };
 
+/// What is known of the biases of the IMU before a start, with sigmas of an axis [rad/s, m/s^2].
+struct BiasPrior {
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
+  double gyro_sigma, accel_sigma;
+};
+
 /// What is known beside the views.
 struct StartPriors {
-  double accel_bias_sigma;                   ///< how far the accelerometer bias may lie from zero [m/s^2]
+  BiasPrior biases;
+  bool gyro_known = false;                   ///< its bias need not be found in the views
   const VelocityConfig* velocity = nullptr;  ///< null: samples of velocity are not used
 };
 
@@ -84,13 +91,14 @@ class StartSolver {
   const std::vector<StartTrack>& tracks() const { return tracks_; }
   /// One per frame.
   const std::vector<RelativeMotion>& motion() const { return motion_; }
+  Eigen::Vector3d accel_bias(const Start& x) const { return biases_.accel + x.tail<3>(); }
 
-  /// The linear solution, |g| imposed and the accelerometer bias zero; free_length: |g| without that. Nothing if it is
-  /// not determined.
+  /// The linear solution, |g| imposed and the accelerometer bias that of the prior; free_length: |g| without that.
+  /// Nothing if it is not determined.
   std::optional<Start> linear(const Chosen& chosen, double* free_length) const;
 
   /// Noise makes the linear solution too small and points too near: this minimises the reprojection error itself, with
-  /// |g| fixed and a prior of zero on the accelerometer bias.
+  /// |g| fixed and the prior on the accelerometer bias.
   std::optional<RefinedStart> refine(const Chosen& chosen, Start x, int iterations) const;
 
   /// The initialization from which the IMU propagates to a given state at the time of the last view.
@@ -116,7 +124,7 @@ class StartSolver {
   void add_velocities(const Start& x, StartEquations& equations) const;
 
   const Rig* rig_;
-  double accel_bias_sigma_;
+  BiasPrior biases_;
   std::vector<RelativeMotion> motion_;
   std::vector<StartTrack> tracks_;
   std::vector<StartVelocity> velocities_;

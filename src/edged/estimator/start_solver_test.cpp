@@ -37,7 +37,8 @@ class StartOfAMotion : public testing::Test {
     last_.bias_accel = options_.bias_accel;
   }
 
-  StartSolver solver() const { return {frames_, rig_, options_.bias_gyro, noise_, {0.1}}; }
+  const StartPriors priors_{.biases = {.gyro_sigma = 0.02, .accel_sigma = 0.1}};
+  StartSolver solver() const { return {frames_, rig_, options_.bias_gyro, noise_, priors_}; }
   static StartSolver::Chosen all(const StartSolver& solver) {
     StartSolver::Chosen chosen(solver.tracks().size());
     std::iota(chosen.begin(), chosen.end(), std::size_t{0});

@@ -3,6 +3,7 @@
 #include "edged/pipeline/bias_history.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace edged {
 namespace {
@@ -30,6 +31,12 @@ double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
   }
   entries_.push_back(now);
   return most;
+}
+
+std::optional<BiasPrior> BiasHistory::prior(const Entry& entry) {
+  const double gyro = entry.variance.head<3>().maxCoeff(), accel = entry.variance.tail<3>().maxCoeff();
+  return BiasPrior{entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kGyroDrift)),
+                   std::sqrt(accel + squared(kAccelDrift))};
 }
 
 }  // namespace edged

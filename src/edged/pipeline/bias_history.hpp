@@ -6,8 +6,10 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <optional>
 
 #include "edged/core/odom_state.hpp"
+#include "edged/estimator/start_solver.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/time.hpp"
@@ -22,6 +24,9 @@ class BiasHistory {
   /// The largest difference of an axis from what it was before, in sigmas of that time and of the drift since. P: of
   /// the state, as Estimator::covariance has it. States in time order.
   double add(const OdomState& state, const Matrix15d& P);
+  /// As they were 10 s ago, or first, and as they are; nothing before any was added.
+  std::optional<BiasPrior> oldest() const { return entries_.empty() ? std::nullopt : prior(entries_.front()); }
+  std::optional<BiasPrior> newest() const { return entries_.empty() ? std::nullopt : prior(entries_.back()); }
 
  private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -30,6 +35,8 @@ class BiasHistory {
     Vector6d bias;      ///< of the gyro [rad/s], of the accelerometer [m/s^2]
     Vector6d variance;  ///< at that time
   };
+
+  static std::optional<BiasPrior> prior(const Entry& entry);
 
   ImuNoise noise_;
   std::deque<Entry> entries_;

@@ -42,5 +42,15 @@ TEST_F(BiasHistoryTest, ForgetsWhatIsLongPast) {
   EXPECT_EQ(add(11.0, 0.0, 1.0), 0.0);
 }
 
+TEST_F(BiasHistoryTest, GivesAPriorOfTheOldestAndTheNewest) {
+  EXPECT_FALSE(history_.oldest() || history_.newest());
+  for (double t = 0.0; t < 12.0; t += 0.5) add(t, 1e-4 * t, 0.0);
+  EXPECT_NEAR(history_.oldest()->gyro.y(), 1e-4 * 1.5, 1e-9);
+  EXPECT_NEAR(history_.newest()->gyro.y(), 1e-4 * 11.5, 1e-9);
+  EXPECT_GT(history_.newest()->gyro_sigma, kGyroSigma) << "it drifts until the next start";
+  EXPECT_LT(history_.newest()->gyro_sigma, 2.0 * kGyroSigma);
+  EXPECT_GT(history_.newest()->accel_sigma, kAccelSigma);
+}
+
 }  // namespace
 }  // namespace edged

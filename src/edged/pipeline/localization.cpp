@@ -66,6 +66,16 @@ void Localization::begin_estimate() {
   bias_change_ = 0.0;
 }
 
+/// For the start after the end of an estimate. Where the cameras contradict the IMU, its biases are those from before;
+/// where they do so again, after a start that has relied on these, they may be the wrong ones.
+void Localization::learn_biases() {
+  if (judge_.contradicted() && known_biases_) {
+    known_biases_.reset();
+  } else if (const std::optional<BiasPrior> found = judge_.contradicted() ? biases_.oldest() : biases_.newest()) {
+    known_biases_ = found;
+  }
+}
+
 ExternalCounters Localization::external_counters() const {
   ExternalCounters counters = counters_before_;
   counters.add(estimator_.external_counters());
@@ -109,6 +119,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.step.relocalized = relocalized;
   output.correction.ended = of_odometry == TrackingStatus::Lost && estimator_.initialized();
   if (output.correction.ended) {
+    learn_biases();
     begin_estimate();
     dead_reckoning_until_ = judge_.vision_lost() ? t + kDeadReckoning : t;
   }

@@ -57,8 +57,9 @@ class Localization {
   ExternalCounters external_counters() const;
 
  private:
-  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator, intrinsics_}; }
+  Estimator fresh_estimator() const { return {rig_, noise_, config_.estimator, intrinsics_, known_biases_}; }
   void begin_estimate();
+  void learn_biases();
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;
   bool follow_map(Timestamp t, const VisionOutput& seen, const EstimatorResult& result);
@@ -86,13 +87,14 @@ class Localization {
   std::vector<KnownModel> image_models_;  ///< of the cameras' images: for the map, whose points have them
   std::vector<KnownModel> lens_models_;   ///< of the cameras: for rig(), which the ROS node calls at each step
   StageTimings* timings_;
+  std::optional<BiasPrior> known_biases_;  ///< by the estimates before
   Estimator estimator_;
   ExternalCounters counters_before_;  ///< by the estimators before
   Mapper mapper_;
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;
-  BiasHistory biases_;        ///< of this estimate
-  double bias_change_ = 0.0;  ///< as of the last covariance [sigma]
+  BiasHistory biases_;                     ///< of this estimate
+  double bias_change_ = 0.0;               ///< as of the last covariance [sigma]
   BodyMotion body_;
   std::optional<AttitudeFilter> attitude_;  ///< until the first start
   bool gyro_clipped_ = false;               ///< in this packet
