@@ -93,8 +93,8 @@ class Localization {
   Mapper mapper_;
   FinalTrajectory before_;  ///< of the times before the newest clock reset
   StatusJudge judge_;
-  BiasHistory biases_;                     ///< of this estimate
-  double bias_change_ = 0.0;               ///< as of the last covariance [sigma]
+  BiasHistory biases_;        ///< of this estimate
+  double bias_change_ = 0.0;  ///< as of the last covariance [sigma]
   BodyMotion body_;
   std::optional<AttitudeFilter> attitude_;  ///< until the first start
   bool gyro_clipped_ = false;               ///< in this packet
