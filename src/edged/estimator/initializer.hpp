@@ -73,7 +73,7 @@ class Initializer {
   Rig rig_;
   ImuNoise noise_;
   EstimatorConfig config_;
-  std::optional<BiasPrior> known_biases_;
+  std::optional<BiasPrior> known_biases_;            ///< by an earlier estimate
   std::vector<InitFrame> buffer_;                    ///< views
   std::vector<ImuSample> pending_imu_;               ///< since the last view
   std::vector<ExternalSample> pending_external_;     ///< the same

@@ -241,7 +241,7 @@ std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_leng
 }
 
 std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, int iterations) const {
-  const double bias_information = std::pow(biases_.accel_sigma, -2);
+  const double bias_information = 1.0 / (biases_.accel_sigma * biases_.accel_sigma);
   Eigen::Matrix<double, 8, 8> H;
   Eigen::Matrix<double, 9, 8> free;
   for (int iteration = 0; iteration < iterations; ++iteration) {

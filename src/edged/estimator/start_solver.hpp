@@ -58,7 +58,7 @@ struct RelativeMotion {
 /// What is known of the biases of the IMU before a start, with sigmas of an axis [rad/s, m/s^2].
 struct BiasPrior {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
-  double gyro_sigma, accel_sigma;
+  double gyro_sigma = 0.0, accel_sigma = 0.0;
 };
 
 /// What is known beside the views.
@@ -91,6 +91,7 @@ class StartSolver {
   const std::vector<StartTrack>& tracks() const { return tracks_; }
   /// One per frame.
   const std::vector<RelativeMotion>& motion() const { return motion_; }
+  /// [m/s^2]
   Eigen::Vector3d accel_bias(const Start& x) const { return biases_.accel + x.tail<3>(); }
 
   /// The linear solution, |g| imposed and the accelerometer bias that of the prior; free_length: |g| without that.
