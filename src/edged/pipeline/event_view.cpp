@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-constexpr double kLeastStructure = 2.0;  // of an event frame; noise alone has 1 (docs/decisions/013)
+constexpr double kLeastStructure = 1.2;  // of an event frame; noise alone has 1 (docs/decisions/013)
 
 /// The poses from the last one not after t on, at least two. A single twist (Eq. 1) covers only the time of the events.
 std::span<const StampedPose> covering(const std::vector<StampedPose>& poses, Timestamp t) {
