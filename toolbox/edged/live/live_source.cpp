@@ -32,8 +32,9 @@ void LiveSource::pace(Measurement& measurement, const std::function<bool()>& sto
 void LiveSource::thin(EventBatch& batch) {
   if (batch.events.empty()) return;
   const Timestamp last = batch.events.back().t, waits_since = reader_.queue().waits_since().value_or(last);
-  const double age_s = to_seconds(clock_.now() - std::min(waits_since, last));
-  if (age_s > free_age_s_) thinned_ += thinners_[batch.camera].thin(batch.events, std::max(kFree, free_age_s_ / age_s));
+  const double delay_s = to_seconds(clock_.now() - std::min(waits_since, last));
+  const double share = share_.next(delay_s / free_age_s_, to_seconds(last - batch.events.front().t));
+  thinned_ += thinners_[batch.camera].thin(batch.events, share);
 }
 
 ShedCounters LiveSource::shed() const {

@@ -12,16 +12,16 @@
 #include "edged/dataset.hpp"
 #include "edged/live/event_thinner.hpp"
 #include "edged/live/live_clock.hpp"
+#include "edged/live/overload_share.hpp"
 #include "edged/live/read_ahead.hpp"
 #include "edged/live/shed_report.hpp"
 #include "edged/timing.hpp"
 
 namespace edged {
 
-/// While something waits for longer than a small part of the allowed age, or the reader is that late, of new events the
-/// share (that part / delay) stays: the delay settles where the consumer keeps pace, the events become fewer in the
-/// whole image, and there is no gap in time. A small share always stays: where reading itself is too slow, to leave out
-/// all would not help.
+/// While something waits for longer than a small part of the allowed age, or the reader is that late, a share of new
+/// events stays that falls until the delay is that part again: the events become fewer in the whole image, and there is
+/// no gap in time. A small share always stays: where reading itself is too slow, to leave out all would not help.
 class LiveSource {
  public:
   /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
@@ -59,6 +59,7 @@ class LiveSource {
   StageTiming latency_;
   ShedReport report_;
   std::map<std::string, EventThinner> thinners_;  // by camera, of the thread
+  OverloadShare share_;                           // of events, of the thread
   std::atomic<std::size_t> thinned_ = 0;
   ReadAhead reader_;  // last member: its thread uses the others
 };

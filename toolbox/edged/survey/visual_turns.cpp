@@ -10,11 +10,34 @@ namespace edged {
 namespace {
 
 constexpr std::size_t kFewestPairs = 12;
+constexpr int kWidest_px = 640;                                // of an image of events
 constexpr std::size_t kMostTurns = 3000;                       // bounds time and memory
 constexpr double kEventsPerPixel = 0.3;                        // in an image of events
 constexpr Duration kShortest = std::chrono::milliseconds(10);  // between images of events
 constexpr Duration kBaseline = std::chrono::milliseconds(80);  // least duration of a rotation: below it noise dominates
 constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is a gap
+
+/// The camera with pixels of side 2^octaves of its own; one that is masked in part is masked.
+CameraModel with_larger_pixels(const CameraModel& camera, int octaves) {
+  if (octaves == 0) return camera;
+  const int n = 1 << octaves, width = camera.width() / n, height = camera.height() / n;
+  const auto centre = [n](double at) { return (at + 0.5) / n - 0.5; };
+  const CameraModel coarse(width, height, camera.fx() / n, camera.fy() / n, centre(camera.cx()), centre(camera.cy()),
+                           camera.distortion(), camera.coefficients());
+  if (!camera.is_masked()) return coarse;
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1);
+  for (int y = 0; y < height * n; ++y)
+    for (int x = 0; x < width * n; ++x)
+      if (!camera.uses(x, y)) used[static_cast<std::size_t>((y / n) * width + x / n)] = 0;
+  return coarse.masked(used);
+}
+
+/// By which its images of events are smaller.
+int octaves_of(const RigCamera& camera) {
+  int octaves = 0;
+  while (camera.modality == Modality::Events && camera.model.width() >> octaves > kWidest_px) ++octaves;
+  return octaves;
+}
 
 TrackerConfig with_corners(int corners) {
   TrackerConfig config;
@@ -40,9 +63,10 @@ std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d>
 
 VisualTurns::VisualTurns(const RigCamera& camera, int corners)
     : modality_(camera.modality),
-      tracker_(camera.name, camera.model, with_corners(corners)),
-      event_image_(camera.model.height(), camera.model.width(), CV_8UC1, cv::Scalar(0)),
-      events_per_image_(static_cast<std::size_t>(kEventsPerPixel * static_cast<double>(event_image_.total()))) {}
+      octaves_(octaves_of(camera)),
+      tracker_(camera.name, with_larger_pixels(camera.model, octaves_), with_corners(corners)),
+      event_image_(tracker_.camera().height(), tracker_.camera().width(), CV_8UC1, cv::Scalar(0)),
+      events_per_image_(static_cast<std::size_t>(kEventsPerPixel * camera.model.width() * camera.model.height())) {}
 
 void VisualTurns::add(const Measurement& measurement) {
   if (turns_.size() >= kMostTurns) return;
@@ -53,15 +77,20 @@ void VisualTurns::add(const Measurement& measurement) {
 }
 
 void VisualTurns::add_events(std::span<const Event> events) {
-  constexpr int kGrey = 60;  // grey level of one event; a few add up to white
+  constexpr int kGrey = 60;  // grey level of one event; a few in each pixel of the sensor add up to white
+  const int grey = std::max(kGrey >> (2 * octaves_), 1);
   const CameraModel& camera = tracker_.camera();
   const bool is_masked = camera.is_masked();
   const int width = event_image_.cols, height = event_image_.rows;
   std::uint8_t* const pixels = event_image_.ptr();
+  // More of a wide sensor are not needed: each costs the same, and there are many.
+  if (octaves_ > 0 && !views_.empty())
+    events = {std::ranges::lower_bound(events, views_.back().t + kShortest, {}, &Event::t), events.end()};
   for (const Event& event : events) {
-    if (event.x >= width || event.y >= height || (is_masked && !camera.uses(event.x, event.y))) continue;
-    std::uint8_t& pixel = pixels[event.y * width + event.x];
-    pixel = static_cast<std::uint8_t>(std::min(pixel + kGrey, 255));
+    const int x = event.x >> octaves_, y = event.y >> octaves_;
+    if (x >= width || y >= height || (is_masked && !camera.uses(x, y))) continue;
+    std::uint8_t& pixel = pixels[y * width + x];
+    pixel = static_cast<std::uint8_t>(std::min(pixel + grey, 255));
   }
   events_ += events.size();
   if (events.empty()) return;

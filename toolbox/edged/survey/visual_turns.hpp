@@ -32,7 +32,8 @@ struct Turn {
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
                                                 std::span<const Eigen::Vector2d> end);
 
-/// Tracks corners in standard frames, or in images of the newest events.
+/// Tracks corners in standard frames, or in images of the newest events, at most 640 px wide: of a wider sensor 2 x 2
+/// or more pixels are one.
 class VisualTurns {
  public:
   /// corners: largest number of tracks; fewer are cheaper and less accurate.
@@ -54,6 +55,7 @@ class VisualTurns {
   void add_turn(const View& view);
 
   Modality modality_;
+  int octaves_;  ///< by which images of events are smaller
   FeatureTracker tracker_;
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
