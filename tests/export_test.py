@@ -141,6 +141,21 @@ class Export(WithFlight):
             self.assertAlmostEqual(math.hypot(*values[3:6]), 1.0, places=3)
             self.assertTrue(all(values[i] > 0.0 for i in (9, 12, 14)))
 
+    def test_dense_points_are_the_same_in_every_run(self):
+        clouds = []
+        for name in ("first", "second"):
+            run = self.folder / name
+            made = edged("run", self.flight, "--mode", "frames", "--out", run, "--dense", "--quiet", "--json")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            clouds.append((run / "dense.ply").read_bytes())
+        dense = json.loads(made.stdout)["dense"]
+        self.assertGreater(dense["with_depth"], 1000)
+        self.assertGreaterEqual(dense["edge_pixels"], dense["with_depth"])
+        self.assertEqual(dense["dropped"], 0)
+        header, points = clouds[0].split(b"end_header\n", 1)
+        self.assertEqual(len(points), 19 * int(header.split(b"element vertex ")[1].split()[0]))
+        self.assertEqual(*clouds)
+
     def test_images_come_at_a_rate(self):
         out = self.folder / "rate"
         result = edged("run", self.flight, "--mode", "frames", "--out", self.folder / "run", "--export", out, "--export-hz", 4, "--quiet")

@@ -72,27 +72,35 @@ bool is_solid(const Scene& scene, const Vector3d& p_W) {
 
 struct MappedRoom {
   Reconstruction model;
-  octomap::OcTree tree;
-  SE3 T_W_M;  ///< the true world: of the final trajectory, laid onto the truth
+  octomap::OcTree tree, dense_tree;  ///< the second: of dense points, too
+  SE3 T_W_M;                         ///< the true world: of the final trajectory, laid onto the truth
 };
 
 MappedRoom map_of(const Flight& flight, Mode mode) {
   const OdometryConfig config;
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});
   Reconstruction model;
-  for (const RigCamera& camera : used_cameras(flight.calibration.rig, mode, config.cameras).cameras)
+  DenseMapper mapper;
+  const Rig used = used_cameras(flight.calibration.rig, mode, config.cameras);
+  const std::vector<RigCamera> images = image_cameras(used);
+  for (const RigCamera& camera : used.cameras)
     model.cameras.push_back({camera.name, ideal_pinhole(camera.model), camera.modality});
   auto next = flight.measurements.begin();
   drive(
       odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
       [&](const Step& step) {
-        if (is_tracking(step.status) && step.keyframe) add_images(model, step);
+        if (!is_tracking(step.status)) return true;
+        if (step.keyframe) add_images(model, step);
+        mapper.add(dense_instant(step, images, odometry.rig()));
         return true;
       });
   const Trajectory poses = odometry.final_trajectory().poses;
   place(model, poses, odometry.rig());
   triangulate(model);
-  return {model, occupancy_of(model, kVoxel_m), align_rigidly(associate(flight.truth->trajectory, poses).pairs).T};
+  mapper.finish();
+  const std::vector<DenseScan> dense = place(mapper.maps(), poses, odometry.rig());
+  return {model, occupancy_of(model, kVoxel_m), occupancy_of(model, kVoxel_m, dense),
+          align_rigidly(associate(flight.truth->trajectory, poses).pairs).T};
 }
 
 /// What the voxels say against what is there.
@@ -103,9 +111,9 @@ struct Agreement {
   double farthest_m = 0.0;  ///< an occupied voxel from the next surface
 };
 
-Agreement agreement(const MappedRoom& room, const Scene& scene) {
+Agreement agreement(const MappedRoom& room, const octomap::OcTree& tree, const Scene& scene) {
   Agreement count;
-  octomap::OcTree all = room.tree;
+  octomap::OcTree all = tree;
   all.expand();
   for (auto leaf = all.begin_leafs(); leaf != all.end_leafs(); ++leaf) {
     const Vector3d p_W = room.T_W_M * Vector3d(leaf.getX(), leaf.getY(), leaf.getZ());
@@ -140,7 +148,7 @@ struct Completeness {
   int surface = 0, occupied = 0, space = 0, free = 0;
 };
 
-Completeness completeness(const MappedRoom& room, const Scene& scene) {
+Completeness completeness(const MappedRoom& room, const octomap::OcTree& tree, const Scene& scene) {
   constexpr double kStep_m = 0.15;
   const SE3 T_M_W = room.T_W_M.inverse();
   const auto state_near = [&](const Vector3d& p_W, int reach, bool occupied) {
@@ -149,7 +157,7 @@ Completeness completeness(const MappedRoom& room, const Scene& scene) {
       for (int j = -reach; j <= reach; ++j)
         for (int k = -reach; k <= reach; ++k) {
           const octomap::OcTreeNode* node =
-              room.tree.search(p_M.x() + i * kVoxel_m, p_M.y() + j * kVoxel_m, p_M.z() + k * kVoxel_m);
+              tree.search(p_M.x() + i * kVoxel_m, p_M.y() + j * kVoxel_m, p_M.z() + k * kVoxel_m);
           if (node && room.tree.isNodeOccupied(node) == occupied) return true;
         }
     return false;
@@ -187,19 +195,23 @@ TEST(OccupancyOfARoom, IsOccupiedAtTrueSurfacesAndNotFreeThroughWalls) {
   const Flight flight = read_flight(simulator, simulator.calibration());
   for (const Mode mode : kAllModes) {
     const MappedRoom room = map_of(flight, mode);
-    const Agreement count = agreement(room, simulator.scene());
-    const Completeness share = completeness(room, simulator.scene());
-    std::cout << fmt::format(
-        "{}: {} of {} occupied voxels within a voxel of a surface, the farthest {:.0f} mm; {} free ones, {} in solid "
-        "bodies, {} deeper than 5 cm; of what keyframes show, {:.1f} % of the surface is occupied, {:.0f} % of the "
-        "space free\n",
-        mode_name(mode), count.at_surface, count.occupied, 1e3 * count.farthest_m, count.free, count.solid,
-        count.behind, 100.0 * share.occupied / share.surface, 100.0 * share.free / share.space);
-    EXPECT_GE(count.occupied, 10) << mode_name(mode);
-    EXPECT_GE(count.at_surface, 0.95 * count.occupied) << mode_name(mode);
-    EXPECT_GE(count.free, 5000) << mode_name(mode);
-    EXPECT_LE(count.solid, 0.001 * count.free) << mode_name(mode);
-    EXPECT_EQ(count.behind, 0) << mode_name(mode);
+    for (const bool dense : {false, true}) {
+      const octomap::OcTree& tree = dense ? room.dense_tree : room.tree;
+      const Agreement count = agreement(room, tree, simulator.scene());
+      const Completeness share = completeness(room, tree, simulator.scene());
+      const std::string what = mode_name(mode) + (dense ? ", dense" : "");
+      std::cout << fmt::format(
+          "{}: {} of {} occupied voxels within a voxel of a surface, the farthest {:.0f} mm; {} free ones, {} in solid "
+          "bodies, {} deeper than 5 cm; of what keyframes show, {:.1f} % of the surface is occupied, {:.0f} % of the "
+          "space free\n",
+          what, count.at_surface, count.occupied, 1e3 * count.farthest_m, count.free, count.solid, count.behind,
+          100.0 * share.occupied / share.surface, 100.0 * share.free / share.space);
+      EXPECT_GE(count.occupied, dense && mode != Mode::Events ? 300 : 10) << what;
+      EXPECT_GE(count.at_surface, 0.95 * count.occupied) << what;
+      EXPECT_GE(count.free, 5000) << what;
+      EXPECT_LE(count.solid, 0.001 * count.free) << what;
+      EXPECT_EQ(count.behind, 0) << what;
+    }
   }
 }
 

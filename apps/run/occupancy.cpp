@@ -24,9 +24,10 @@ constexpr double kMostSigma = 0.5;   // of a point along the ray, over the voxel
 constexpr double kFreeSigmas = 3.0;  // before a point, where its ray ends to be free
 constexpr double kFrames_px = 0.7;   // sigma of observations whose errors along a track are correlated
 constexpr double kEvents_px = 1.2;
-constexpr double kHit = 0.9;         // probability that a voxel is occupied which surely holds a point
-constexpr float kMiss = -0.4F;       // log-odds of a voxel that a ray crosses
-constexpr double kMostPixels = 1e9;  // of a slice
+constexpr double kDenseSigmas = 2.5;  // of a dense point: their errors have long tails
+constexpr double kHit = 0.9;          // probability that a voxel is occupied which surely holds a point
+constexpr float kMiss = -0.4F;        // log-odds of a voxel that a ray crosses
+constexpr double kMostPixels = 1e9;   // of a slice
 constexpr std::uint8_t kOccupied = 0, kFree = 254, kUnknown = 205;  // as the ROS map server writes them
 
 octomap::point3d to_octomap(const Eigen::Vector3d& p) {
@@ -36,17 +37,20 @@ octomap::point3d to_octomap(const Eigen::Vector3d& p) {
 /// What one image says. Each voxel counts once, so that many points in one direction are no more than one.
 class Scan {
  public:
-  Scan(octomap::OcTree& tree, const Eigen::Vector3d& from, double noise_px)
-      : tree_(tree), from_(from), noise_px_(noise_px) {}
+  Scan(octomap::OcTree& tree, const Eigen::Vector3d& from) : tree_(tree), from_(from) {}
 
-  void add(const Reconstruction::Point& point) {
-    const Eigen::Vector3d ray = point.p_W - from_, along = ray.normalized();
-    const double sigma = noise_px_ * std::sqrt(along.dot(point.covariance * along)), voxel = tree_.getResolution();
-    const Eigen::Vector3d free_end = point.p_W - (voxel + kFreeSigmas * sigma) * along;
+  /// sigma: along the ray [m].
+  void free_towards(const Eigen::Vector3d& p_W, double sigma) {
+    const Eigen::Vector3d along = (p_W - from_).normalized();
+    const Eigen::Vector3d free_end = p_W - (tree_.getResolution() + kFreeSigmas * sigma) * along;
     if (along.dot(free_end - from_) > 0.0 && tree_.computeRayKeys(to_octomap(from_), to_octomap(free_end), ray_))
       free_.insert(ray_.begin(), ray_.end());
+  }
+
+  void occupy(const Eigen::Vector3d& p_W, double sigma) {
+    const double voxel = tree_.getResolution();
     octomap::OcTreeKey key;
-    if (sigma > kMostSigma * voxel || !tree_.coordToKeyChecked(to_octomap(point.p_W), key)) return;
+    if (sigma > kMostSigma * voxel || !tree_.coordToKeyChecked(to_octomap(p_W), key)) return;
     const double in_voxel = std::erf(0.5 * voxel / (std::numbers::sqrt2 * sigma));  // if its middle is the estimate
     float& hit = hits_[key];
     hit = std::max(hit, octomap::logodds(0.5 + (kHit - 0.5) * in_voxel));
@@ -62,7 +66,6 @@ class Scan {
  private:
   octomap::OcTree& tree_;
   Eigen::Vector3d from_;
-  double noise_px_;
   octomap::KeyRay ray_;
   octomap::KeySet free_;
   std::unordered_map<octomap::OcTreeKey, float, octomap::OcTreeKey::KeyHash> hits_;  // log-odds
@@ -125,16 +128,27 @@ std::string header_of(const char* kind, const octomap::OcTree& tree) {
 
 }  // namespace
 
-octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m) {
+octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::span<const DenseScan> dense) {
   octomap::OcTree tree(voxel_m);
   for (const Reconstruction::Image& image : model.images) {
-    const bool events = model.cameras[image.camera].modality == Modality::Events;
-    Scan scan(tree, image.T_W_C.translation(), events ? kEvents_px : kFrames_px);
+    const double noise_px = model.cameras[image.camera].modality == Modality::Events ? kEvents_px : kFrames_px;
+    Scan scan(tree, image.T_W_C.translation());
     for (const Reconstruction::Observation& observation : image.observations) {
       if (observation.point == Reconstruction::kNone) continue;
       const Reconstruction::Point& point = model.points[observation.point];
-      if (point.seen.size() >= kFewestViews) scan.add(point);
+      if (point.seen.size() < kFewestViews) continue;
+      const Eigen::Vector3d along = (point.p_W - image.T_W_C.translation()).normalized();
+      const double sigma = noise_px * std::sqrt(along.dot(point.covariance * along));
+      scan.free_towards(point.p_W, sigma);
+      scan.occupy(point.p_W, sigma);
     }
+    scan.insert();
+  }
+  // Their few outliers would be free through walls, and those of event frames too often beside a surface.
+  for (const DenseScan& of_image : dense) {
+    if (of_image.modality == Modality::Events) continue;
+    Scan scan(tree, of_image.from_W);
+    for (const DenseScan::Point& point : of_image.points) scan.occupy(point.p_W, kDenseSigmas * point.sigma_m);
     scan.insert();
   }
   tree.updateInnerOccupancy();

@@ -7,15 +7,17 @@
 #include <octomap/OcTree.h>
 
 #include <filesystem>
+#include <span>
 
+#include "run/dense_scan.hpp"
 #include "run/reconstruction.hpp"
 
 namespace edged {
 
 /// Of points with four observations and more: voxels of those whose depth is known to half a voxel are occupied, by how
 /// likely they hold it. The rays to all of them are free up to a voxel and three sigmas before the point. What no ray
-/// crosses stays unknown. voxel_m: edge of a voxel [m].
-octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m);
+/// crosses stays unknown. Dense points of frames only make voxels occupied. voxel_m: edge of a voxel [m].
+octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::span<const DenseScan> dense = {});
 
 /// Heights [m] in the map, the second above the first.
 struct HeightRange {

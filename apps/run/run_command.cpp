@@ -112,6 +112,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "Also write results.mcap: poses, path, map, images and numbers for Foxglove, Lichtblick "
                     "and others (about 10 MB per minute)");
   add_export_options(*run_app, options->exports);
+  run_app->add_flag(
+      "--dense", options->dense,
+      "Also write dense.ply: semi-dense points, at edges of frames and of event frames, placed by the "
+      "final trajectory; in a thread of its own. With --live keyframes are left out that it is too slow for");
   add_occupancy_options(*run_app, options->occupancy);
   add_archive_option(*run_app, options->archive);
   add_serve_option(*run_app, options->serve);

@@ -7,12 +7,12 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "common/files.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
+#include "edged/dense/rectifier.hpp"
 #include "run/reconstruction.hpp"
 #include "run/run_observer.hpp"
 
@@ -61,14 +61,7 @@ class RunExport : public RunObserver {
 
   void add(Timestamp t, std::size_t camera, const CameraStep& seen, const CameraModel& lens) {
     const CameraModel& pinhole = model_.cameras[camera].pinhole;
-    cv::Mat map(pinhole.height(), pinhole.width(), CV_32FC2), undistorted;
-    for (int y = 0; y < map.rows; ++y) {
-      for (int x = 0; x < map.cols; ++x) {
-        const Eigen::Vector2d at = lens.distort_to_pixel(pinhole.pixel_to_point({x, y}));
-        map.at<cv::Vec2f>(y, x) = {static_cast<float>(at.x()), static_cast<float>(at.y())};
-      }
-    }
-    cv::remap(seen.image, undistorted, map, cv::noArray(), cv::INTER_LINEAR);
+    const cv::Mat undistorted = Rectifier(lens, pinhole)(seen.image);
     Reconstruction::Image image;
     image.file = fmt::format("{}_{:06d}.png", seen.name, model_.images.size());
     image.t = t;

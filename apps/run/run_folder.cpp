@@ -36,6 +36,7 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "trajectory_final.tum",
                                   "keyframes.csv",
                                   "map.ply",
+                                  "dense.ply",
                                   "pace.csv",
                                   "results.mcap",
                                   "external.csv"};

@@ -26,7 +26,8 @@ constexpr std::array kObservers = {
     observe_album,    // which those below use
     observe_final_trajectory,
     observe_export,
-    observe_occupancy,
+    observe_dense,
+    observe_occupancy,  // of the points of the one above, too
     observe_overview,
     observe_report,  // of the files of those above
     observe_mcap,

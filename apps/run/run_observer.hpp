@@ -14,6 +14,7 @@
 #include "edged/camera/output_frame.hpp"
 #include "edged/odometry.hpp"
 #include "report/report_path.hpp"
+#include "run/dense_scan.hpp"
 #include "run/run_album.hpp"
 #include "run/run_options.hpp"
 #include "run/run_statistics.hpp"
@@ -43,9 +44,10 @@ struct RunContext {
   std::filesystem::path folder, archive;  ///< the second: "" for none
   StageTimings timings;                   ///< of the program
   ResourceMeter meter;
-  PacketPace pace;           ///< of the newest step
-  RunStatistics statistics;  ///< with all steps, the newest included
-  RunAlbum album;            ///< the same
+  PacketPace pace;               ///< of the newest step
+  RunStatistics statistics;      ///< with all steps, the newest included
+  RunAlbum album;                ///< the same
+  std::vector<DenseScan> dense;  ///< points of --dense, once its observer has ended
 };
 
 /// The results at the end of the steps.
@@ -94,6 +96,7 @@ ObserverFactory observe_states;                    // run_writer
 ObserverFactory observe_external;                  // external_log
 ObserverFactory observe_final_trajectory;          // final_trajectory
 ObserverFactory observe_export;                    // run_export
+ObserverFactory observe_dense;                     // run_dense
 ObserverFactory observe_occupancy;                 // run_occupancy
 ObserverFactory observe_summary;                   // run_summary
 ObserverFactory observe_overview;                  // overview

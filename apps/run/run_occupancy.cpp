@@ -37,7 +37,7 @@ class RunOccupancy : public RunObserver {
   void on_end(const RunEnd& end) override {
     place(model_, end.known.poses, run_.odometry.rig());
     triangulate(model_);
-    const octomap::OcTree tree = occupancy_of(model_, options_.voxel_m);
+    const octomap::OcTree tree = occupancy_of(model_, options_.voxel_m, run_.dense);
     if (tree.size() == 0)
       throw InputError::format(
           "--occupancy {}: the depth of no feature is known; record for longer, and move sideways to the scene",
@@ -64,8 +64,9 @@ class RunOccupancy : public RunObserver {
 void add_occupancy_options(CLI::App& app, OccupancyOptions& options) {
   CLI::Option* folder = app.add_option(
       "--occupancy", options.folder,
-      "Also write a folder for planners: occupied and free space around the tracked features, as occupancy.bt and "
-      "occupancy.ot of OctoMap, and as map.pgm and map.yaml of the ROS map server");
+      "Also write a folder for planners: occupied and free space around the tracked features (with --dense also "
+      "the dense points), as occupancy.bt and occupancy.ot of OctoMap, and as map.pgm and map.yaml of the ROS map "
+      "server");
   app.add_option("--occupancy-voxel", options.voxel_m, "Edge of the voxels of --occupancy [m]")
       ->check(CLI::Range(0.01, 10.0))
       ->capture_default_str()

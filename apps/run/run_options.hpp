@@ -46,6 +46,7 @@ struct RunOptions {
   bool json = false;
   bool live = false;
   bool mcap = false;
+  bool dense = false;
   std::string archive;  ///< which file; "true" for the one beside the folder; "" for none
   std::string serve;    ///< address; "true" for the default; "" without a live page
   std::string mavlink;  ///< URL of the autopilot; "" without one

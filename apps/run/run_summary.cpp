@@ -73,6 +73,22 @@ nlohmann::ordered_json live_json(const LiveSummary& live) {
             {"age_s", peaks.age_s}}}};
 }
 
+nlohmann::ordered_json dense_json(const DenseSummary& dense) {
+  return {{"keyframes", dense.keyframes},
+          {"without_parallax", dense.without_parallax},
+          {"dropped", dense.dropped},
+          {"edge_pixels", dense.edges},
+          {"with_depth", dense.with_depth}};
+}
+
+std::string dense_line(const DenseSummary& dense) {
+  const double share = per(static_cast<double>(dense.with_depth), static_cast<double>(dense.edges));
+  const std::string dropped = dense.dropped > 0 ? fmt::format("; {} left out: too slow", dense.dropped) : "";
+  return line("dense depth", counted(dense.keyframes, "keyframe"),
+              fmt::format("{:.0f} % of their edge pixels; {} without parallax{}", 100.0 * share, dense.without_parallax,
+                          dropped));
+}
+
 std::string live_table(const LiveSummary& live) {
   const StageTiming& latency = live.latency;
   const bool shed = live.shed != ShedCounters{} || live.shed_packets > 0;
@@ -219,6 +235,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
                    {"found_s", number_or_null(s.map->found_s)},
                    {"relocalized", s.map->relocalized},
                    {"saved", s.map->saved}};
+  if (s.dense) json["dense"] = dense_json(*s.dense);
   json["calibration"] = nlohmann::ordered_json::array();
   for (const CalibrationFound& c : s.calibration) json["calibration"].push_back(to_json(c));
   json["mpe_percent_by_protocol"] = s.mpe_percent;
@@ -299,6 +316,7 @@ std::string to_table(const RunSummary& s) {
                                          : "again: poses are in a frame of their own");
   }
   if (s.map && !s.map->saved.empty()) table += line("map kept", s.map->saved);
+  if (s.dense) table += dense_line(*s.dense);
   if (!s.archive.empty()) table += line("archive", s.archive);
   if (s.live) table += live_table(*s.live);
   for (const auto& [kind, count] : s.repairs) table += line("repaired", fmt::format("{} x", count), kind);

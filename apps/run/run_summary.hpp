@@ -46,6 +46,12 @@ struct ExternalSummary {
   std::size_t samples = 0, used = 0, rejected = 0, late = 0;
 };
 
+/// The results of --dense.
+struct DenseSummary {
+  std::size_t keyframes = 0, without_parallax = 0, dropped = 0;  ///< with depth; without; live, while it was too slow
+  std::size_t edges = 0, with_depth = 0;                         ///< edge pixels of those with depth
+};
+
 struct RunSummary {
   std::string recording, format, mode, frame, folder;
   std::string archive;  ///< archive of the folder; "": not requested
@@ -59,6 +65,7 @@ struct RunSummary {
   double wall_s = 0, cpu_s = 0, peak_rss_mb = 0;
   std::optional<LiveSummary> live;
   std::optional<MapSummary> map;
+  std::optional<DenseSummary> dense;
   std::vector<CalibrationFound> calibration;
   std::map<std::string, ExternalSummary> external;  ///< by sensor
   std::map<std::string, std::size_t> repairs;       ///< by the reader and the packetizer, zero counts left out
