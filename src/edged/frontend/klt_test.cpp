@@ -23,7 +23,7 @@ TEST(Klt, RecoversASubpixelShift) {
   a.build(image, config);
   b.build(shifted(image, 3.3, -2.6), config);
   const std::vector<cv::Point2f> points{{60, 50}, {120, 90}, {180, 130}};
-  const Flow flow = follow(a, b, points, points, {config.levels - 1}, config);
+  const Flow flow = follow(a, b, points, points, config.levels - 1, config);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_TRUE(flow.found[i]);
     EXPECT_NEAR(flow.points[i].x, points[i].x + 3.3, 0.08);
@@ -36,7 +36,7 @@ TEST(Klt, DoesNotFindAFlatWindow) {
   ImagePyramid flat;
   flat.build(cv::Mat(180, 240, CV_8UC1, cv::Scalar(100)), config);
   const std::vector<cv::Point2f> points{{120, 90}};
-  EXPECT_FALSE(follow(flat, flat, points, points, {2}, config).found[0]);
+  EXPECT_FALSE(follow(flat, flat, points, points, 2, config).found[0]);
 }
 
 TEST(Klt, MeasuresTheGradientGateInGreyLevelsPerPixel) {
@@ -50,9 +50,9 @@ TEST(Klt, MeasuresTheGradientGateInGreyLevelsPerPixel) {
   pyramid.build(image, config);
   const std::vector<cv::Point2f> points{{120, 90}};
   config.min_gradient = 0.8;
-  EXPECT_TRUE(follow(pyramid, pyramid, points, points, {0}, config).found[0]);
+  EXPECT_TRUE(follow(pyramid, pyramid, points, points, 0, config).found[0]);
   config.min_gradient = 1.2;
-  EXPECT_FALSE(follow(pyramid, pyramid, points, points, {0}, config).found[0]);
+  EXPECT_FALSE(follow(pyramid, pyramid, points, points, 0, config).found[0]);
 }
 
 TEST(Klt, WorksOnImagesSmallerThanTheWindow) {
@@ -61,7 +61,7 @@ TEST(Klt, WorksOnImagesSmallerThanTheWindow) {
   for (const int side : {1, 2, 9, 21, 22, 43}) {
     a.build(random_texture(side, side), config);
     const std::vector<cv::Point2f> points{{side * 0.5F, side * 0.5F}};
-    EXPECT_NO_THROW(follow(a, a, points, points, {config.levels - 1}, config)) << side;
+    EXPECT_NO_THROW(follow(a, a, points, points, config.levels - 1, config)) << side;
   }
 }
 

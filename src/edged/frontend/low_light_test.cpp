@@ -67,7 +67,7 @@ TEST(LowLight, MakesOpticalFlowPossibleInNoise) {
     for (int y = 30; y < 160; y += 20) {
       for (int x = 30; x < 200; x += 20) points.emplace_back(static_cast<float>(x), static_cast<float>(y));
     }
-    const Flow flow = follow(a, b, points, points, {klt.levels - 1}, klt);
+    const Flow flow = follow(a, b, points, points, klt.levels - 1, klt);
     std::vector<double> errors;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (flow.found[i])

@@ -14,8 +14,7 @@
 namespace edged {
 namespace {
 
-constexpr int kExpectedTopLevel = 1;           // of a search that starts at its expected result: predicted, or backward
-constexpr double kPredictedEpsilon_px = 0.03;  // reference patches align what was predicted
+constexpr int kBackwardTopLevel = 1;  // the backward search starts at its expected result
 
 cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
@@ -246,9 +245,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
   }
-  FlowSearch search{config_.klt.levels - 1};
-  if (!matches.expected_C.empty()) search = {std::min(search.top_level, kExpectedTopLevel), kPredictedEpsilon_px};
-  const Flow forward = follow(previous_, current_, select(from, alive), select(seeds, alive), search, config_.klt);
+  const Flow forward =
+      follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1, config_.klt);
   std::vector<std::size_t> otherwise;  // matches, or has no reference patch
   for (std::size_t k = 0; k < alive.size(); ++k) {
     const std::size_t i = alive[k];
@@ -274,9 +272,8 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
 /// image.
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
-  const FlowSearch search{kExpectedTopLevel, matches.expected_C.empty() ? KltConfig::epsilon_px : kPredictedEpsilon_px};
   const Flow backward =
-      follow(current_, previous_, select(matches.points, which), select(from, which), search, config_.klt);
+      follow(current_, previous_, select(matches.points, which), select(from, which), kBackwardTopLevel, config_.klt);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const std::size_t i = which[k];
     if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {
