@@ -33,10 +33,10 @@ double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
   return most;
 }
 
-std::optional<BiasPrior> BiasHistory::prior(const Entry& entry) {
+BiasPrior BiasHistory::prior(const Entry& entry) {
   const double gyro = entry.variance.head<3>().maxCoeff(), accel = entry.variance.tail<3>().maxCoeff();
-  return BiasPrior{entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kGyroDrift)),
-                   std::sqrt(accel + squared(kAccelDrift))};
+  return {entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kGyroDrift)),
+          std::sqrt(accel + squared(kAccelDrift))};
 }
 
 }  // namespace edged

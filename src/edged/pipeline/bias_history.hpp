@@ -25,8 +25,12 @@ class BiasHistory {
   /// the state, as Estimator::covariance has it. States in time order.
   double add(const OdomState& state, const Matrix15d& P);
   /// As they were 10 s ago, or first, and as they are; nothing before any was added.
-  std::optional<BiasPrior> oldest() const { return entries_.empty() ? std::nullopt : prior(entries_.front()); }
-  std::optional<BiasPrior> newest() const { return entries_.empty() ? std::nullopt : prior(entries_.back()); }
+  std::optional<BiasPrior> oldest() const {
+    return entries_.empty() ? std::nullopt : std::optional(prior(entries_.front()));
+  }
+  std::optional<BiasPrior> newest() const {
+    return entries_.empty() ? std::nullopt : std::optional(prior(entries_.back()));
+  }
 
  private:
   using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -36,7 +40,7 @@ class BiasHistory {
     Vector6d variance;  ///< at that time
   };
 
-  static std::optional<BiasPrior> prior(const Entry& entry);
+  static BiasPrior prior(const Entry& entry);
 
   ImuNoise noise_;
   std::deque<Entry> entries_;

@@ -79,13 +79,13 @@ void DenseMapper::add(DenseInstant instant) {
   }
   while (!delayed_.empty() &&
          (poses_.known_until() >= delayed_.front().t || to_seconds(now - delayed_.front().t) > config_.most_delay_s)) {
-    release(delayed_.front());
+    release(std::move(delayed_.front()));
     delayed_.pop_front();
   }
 }
 
 void DenseMapper::finish() {
-  for (const DenseInstant& instant : delayed_) release(instant);
+  for (DenseInstant& instant : delayed_) release(std::move(instant));
   delayed_.clear();
   for (auto& [modality, views] : views_) {
     for (const Reference& reference : views.waiting) measure(reference, views);
@@ -102,14 +102,13 @@ bool DenseMapper::keep(const DenseInstant& instant, Modality modality, Views& vi
   return moved || instant.keyframe;
 }
 
-void DenseMapper::release(const DenseInstant& instant) {
-  DenseInstant refined = instant;
-  refined.T_O_B = poses_({instant.t, instant.T_O_B});
+void DenseMapper::release(DenseInstant instant) {
+  instant.T_O_B = poses_({instant.t, instant.T_O_B});
   for (auto& [modality, views] : views_) {
     bool first = true;
-    for (const DenseImage& image : refined.images) {
+    for (const DenseImage& image : instant.images) {
       if (image.modality != modality) continue;
-      add_image(refined, image, first, views);
+      add_image(instant, image, first, views);
       first = false;
     }
     while (!views.waiting.empty() && is_complete(views.waiting.front(), views, instant.t)) {

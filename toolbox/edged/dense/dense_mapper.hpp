@@ -116,7 +116,7 @@ class DenseMapper {
   };
 
   bool keep(const DenseInstant& instant, Modality modality, Views& views) const;
-  void release(const DenseInstant& instant);
+  void release(DenseInstant instant);
   void add_image(const DenseInstant& instant, const DenseImage& image, bool first, Views& views);
   DenseView view_of(const DenseInstant& instant, const DenseImage& image, const EdgeConfig& edges);
   bool is_complete(const Reference& reference, const Views& views, Timestamp now) const;
