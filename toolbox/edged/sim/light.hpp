@@ -51,6 +51,7 @@ float beam_light(const Beam& beam, const Eigen::Vector3f& p, const Eigen::Vector
 /// Only the wall around the window casts a shadow.
 struct Lighting {
   double ambient = 1.0;  ///< radiance of a white surface by the reflections of all others
+  double gloss = 0.0;    ///< share of a lamp's light that surfaces reflect like varnish
   std::vector<Lamp> lamps;
   std::optional<SunWindow> sun;
 };
@@ -70,7 +71,12 @@ double lamp_level(const Lamp& lamp, double t_s);
 /// its axis and to the normal over the squared distance, bounded near the lamp by the size of the panel.
 double lamp_light(const Lamp& lamp, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W);
 
-/// The same in the light of the sun, whose disc blurs the edges of the lit area.
+/// Radiance of a perfectly reflecting varnish at p with unit normal n in the light of the lamp at full power, seen from
+/// the origin, all in one frame: a lobe of some 9 deg about the mirrored ray (Lafortune, Willems, "Using the modified
+/// Phong reflectance model for physically based rendering", 1994).
+double lamp_highlight(const Lamp& lamp, const Eigen::Vector3d& p, const Eigen::Vector3d& n);
+
+/// Radiance of a white matt surface in the light of the sun, whose disc blurs the edges of the lit area.
 double sun_light(const SunWindow& sun, const Eigen::Vector3d& p_W, const Eigen::Vector3d& n_W);
 
 }  // namespace edged

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -110,6 +111,44 @@ TEST(Renderer, ShowsAGlowingFaceWithItsLamp) {
   Renderer renderer(kCamera, scene);
   EXPECT_NEAR(renderer.render(above(2.0), 0.0).radiance[40 * 101 + 50], 3.0, 1e-3);
   EXPECT_NEAR(renderer.render(above(2.0), 2.0).radiance[40 * 101 + 50], 0.0, 1e-3);
+}
+
+/// As bright as the lobe in the middle, where the mirrored ray meets the eye, and no brighter than the matt floor
+/// beyond it.
+TEST(Renderer, ShowsTheLampInAGlossyFloorWhereItIsMirrored) {
+  Lighting lighting;
+  lighting.ambient = 0.0;
+  lighting.lamps = {lamp_at({0.96, 0.0, 2.0})};
+  Scene scene = floor_scene(lighting);
+  const Rendering matt = Renderer(kCamera, scene).render(above(2.0));
+  scene.lighting->gloss = 0.04;
+  const Rendering glossy = Renderer(kCamera, scene).render(above(2.0));
+  const auto gain = [&](int x) { return glossy.radiance[40 * 101 + x] / matt.radiance[40 * 101 + x] - 1.0; };
+  // Camera and lamp are equally high, so that the floor mirrors the lamp half way, at x = 0.48 m.
+  EXPECT_NEAR(gain(50 + 12), 0.04 * 31.0, 0.05);
+  EXPECT_GT(gain(50 + 12), 2.0 * gain(50));
+  EXPECT_LT(gain(0), 1e-3);
+}
+
+/// A lamp to the left of the centre: a ghost to the right, and a veil over all of the image.
+TEST(Renderer, FlareOfAGlowingFaceIsAGhostAndAVeil) {
+  Lighting lighting;
+  lighting.ambient = 0.1;
+  Scene scene = floor_scene(lighting);
+  Face lamp = scene.faces.front();
+  lamp.centre_W = {-0.8, 0.4, 0.01};
+  lamp.half_u = lamp.half_v = 0.12;
+  lamp.glows = true;
+  lamp.brightness = 8.0F;
+  scene.faces.push_back(lamp);
+  const Rendering clear = Renderer(kCamera, scene).render(above(2.0));
+  const Rendering flared = Renderer(kCamera, scene, {}, 0.05).render(above(2.0));
+  const auto added = [&](int x, int y) { return flared.radiance[y * 101 + x] - clear.radiance[y * 101 + x]; };
+  const auto brightest = std::ranges::max_element(clear.radiance) - clear.radiance.begin();
+  const int x = static_cast<int>(brightest % 101), y = static_cast<int>(brightest / 101);
+  EXPECT_NEAR(added(100 - x, 80 - y), 0.05 * 8.0, 0.02);
+  EXPECT_GT(added(5, 5), 0.0);
+  EXPECT_NEAR(added(5, 5), added(95, 75), 1e-5);
 }
 
 TEST(BeamLight, IsBrightestInItsMiddleAndFallsWithTheSquareOfTheDistance) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace edged {
 namespace {
@@ -49,14 +50,27 @@ std::pair<int, int> overlap(const std::vector<float>& low, const std::vector<flo
   return {first, last};
 }
 
+/// The lamps with the power that varnish reflects, in the camera frame.
+std::vector<Lamp> highlights_at(const Lighting& lighting, const SE3& T_C_W, double t_s) {
+  if (lighting.gloss == 0.0) return {};
+  std::vector<Lamp> highlights = lighting.lamps;
+  for (Lamp& lamp : highlights) {
+    lamp.power *= lighting.gloss * lamp_level(lamp, t_s);
+    lamp.centre_W = T_C_W * lamp.centre_W;
+    lamp.axis_W = T_C_W.rotation() * lamp.axis_W;
+  }
+  return highlights;
+}
+
 }  // namespace
 
-Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual)
+Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual, double flare)
     : width_(camera.width()),
       height_(camera.height()),
       focal_(static_cast<float>(camera.mean_focal())),
       wide_(camera.view_limit().has_value()),
       scene_(std::move(scene)),
+      flare_(static_cast<float>(flare)),
       light_(scene_) {
   const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   constexpr float kMax = std::numeric_limits<float>::max();
@@ -105,6 +119,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     beam_.axis = R_C_W * beam_.axis;
   }
   if (scene_.flicker) flicker_ = scene_.flicker->at(t_s, T_C_W);
+  if (scene_.lighting) highlights_ = highlights_at(*scene_.lighting, T_C_W, t_s);
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
     Face face = scene_.faces[i];
     Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();
@@ -131,6 +146,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     cast(views_[i], box, static_cast<int>(i));
   }
   shade();
+  if (flare_ > 0.0F) flare();
   blur();
   return out_;
 }
@@ -178,7 +194,23 @@ void Renderer::shade() {
     if (flicker_.deviation != 0.0F) light *= flicker_.factor(z * b);
     scratch_[i] = face.brightness * light *
                   texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
+    if (!face.glows) scratch_[i] += highlight(z * b, view.normal);
   }
+}
+
+float Renderer::highlight(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {
+  double sum = 0.0;
+  for (const Lamp& lamp : highlights_) sum += lamp_highlight(lamp, p.cast<double>(), normal.cast<double>());
+  return static_cast<float>(sum);
+}
+
+void Renderer::flare() {
+  const std::size_t n = seen_.size();
+  std::vector<float> glow(n, 0.0F);
+  for (std::size_t i = 0; i < n; ++i)
+    if (seen_[i] >= 0 && scene_.faces[static_cast<std::size_t>(seen_[i])].glows) glow[i] = scratch_[i];
+  const float veil = std::accumulate(glow.begin(), glow.end(), 0.0F) / static_cast<float>(n);
+  for (std::size_t i = 0; i < n; ++i) scratch_[i] += flare_ * (veil + glow[n - 1 - i]);
 }
 
 float Renderer::squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const {

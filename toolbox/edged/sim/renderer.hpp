@@ -22,8 +22,9 @@ struct Rendering {
 
 class Renderer {
  public:
-  /// residual: of the lens over its model.
-  Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual = {});
+  /// residual: of the lens over its model. flare: share of the light of glowing faces that the lens scatters evenly,
+  /// and as much that it mirrors about the centre of the image.
+  Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual = {}, double flare = 0.0);
 
   /// The picture from T_W_C in the light of t_s seconds after the start. The reference is valid until the next call.
   const Rendering& render(const SE3& T_W_C, double t_s = 0.0);
@@ -56,6 +57,9 @@ class Renderer {
   PixelBox bounds(const Face& face, const SE3& T_C_W) const;
   void cast(const View& view, const PixelBox& box, int index);
   void shade();
+  /// Of the lamps on a surface, in the camera frame.
+  float highlight(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const;
+  void flare();
   /// Largest squared speed of the edge of the light [px^2/s^2].
   float squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const;
   void blur();
@@ -64,14 +68,16 @@ class Renderer {
   float focal_;
   bool wide_;  // bearings are unit vectors in all directions
   Scene scene_;
+  float flare_;
   LightField light_;
   std::vector<float> bearing_x_, bearing_y_, bearing_z_;
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
   std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, unless wide_
   std::vector<View> views_;
-  Beam beam_;              // of the spotlight in the camera frame; dark without one
-  FlickerNow flicker_;     // in the camera frame; none without flicker
-  std::vector<int> seen_;  // face at each pixel, -1 for none
+  Beam beam_;                     // of the spotlight in the camera frame; dark without one
+  FlickerNow flicker_;            // in the camera frame; none without flicker
+  std::vector<Lamp> highlights_;  // what the varnish reflects of each lamp, in the camera frame; none without gloss
+  std::vector<int> seen_;         // face at each pixel, -1 for none
   std::vector<float> scratch_;
   Rendering out_;
 };

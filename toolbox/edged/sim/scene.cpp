@@ -294,7 +294,9 @@ void add_hall(Scene& scene, const SceneConfig& config, std::span<const SE3> path
   // Poses are 20 ms apart.
   const double duration_s = 0.02 * static_cast<double>(path_W_C.size());
   scene.lighting = make_lighting(config.lighting, kHall, config.light, duration_s, random);
-  if (scene.lighting) add_light_sources(scene);
+  if (!scene.lighting) return;
+  scene.lighting->gloss = config.gloss;
+  add_light_sources(scene);
 }
 
 void add_wall(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C) {
@@ -344,6 +346,9 @@ void SceneConfig::visit(ConfigFields& fields) {
                  {"sun", LightingKind::Sun}},
                 {.effect = "of the hall: the same everywhere, panels at the ceiling, lamps on the walls that go on and "
                            "off, or the sun through a window"});
+  fields.add(
+      "gloss", gloss,
+      {"", 0, 1, "of the hall: share of the light of its lamps that surfaces reflect like varnish; 0.04: varnish"});
   fields.group("target", target);
 }
 

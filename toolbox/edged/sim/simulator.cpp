@@ -109,6 +109,10 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("w", w, {"rad", 0, 3.1, "of fov: angle of view of an ideal lens of that kind"});
   fields.add("residual_px", residual_px,
              {"px", 0, 5, "rms of a smooth error of the lens that its calibration does not have"});
+  fields.add("flare", flare,
+             {"", 0, 1,
+              "share of the light of lamps in view that the lens scatters over the image, and as much that it "
+              "mirrors about its centre"});
 }
 
 double SimulatedCameraConfig::coefficient(std::string_view name) const {
@@ -207,7 +211,7 @@ Simulator::Impl::Impl(const SimulatorConfig& config)
     : config_(checked(config)),
       trajectory_(trajectory_of(config_)),
       renderer_(config.camera.model(), scene_of(trajectory_, config_),
-                LensResidual(config.camera.residual_px, config.camera.width, noise_seed(config))),
+                LensResidual(config.camera.residual_px, config.camera.width, noise_seed(config)), config.camera.flare),
       event_camera_(config.events, config.camera.width, config.camera.height, noise_seed(config)),
       frame_camera_(config.frames, config.camera.width, config.camera.height, noise_seed(config)),
       imu_model_(config.imu, static_cast<std::uint64_t>(config.seed)),

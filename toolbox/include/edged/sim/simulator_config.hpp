@@ -55,6 +55,7 @@ struct SceneConfig {
   double poster_distance_m = 1.3;
   double light = 1.0;
   LightingKind lighting = LightingKind::Even;
+  double gloss = 0.0;
   TargetSpec target{.rows = 3, .columns = 4, .size_m = 0.08};
 
   void visit(ConfigFields& fields);
@@ -70,6 +71,7 @@ struct SimulatedCameraConfig {
   double k3 = 0.0, k4 = 0.0, k5 = 0.0, k6 = 0.0;
   double xi = 0.1, alpha = 0.6, beta = 1.1, w = 0.9;
   double residual_px = 0.0;
+  double flare = 0.0;
 
   void visit(ConfigFields& fields);
   CameraModel model() const;
