@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPanel_m = 0.3;
 constexpr double kShininess = 60.0;  // exponent of the cosine to the mirrored ray
+constexpr double kLobe = 0.85;       // least such cosine: below it there is a ten-thousandth of the light
 constexpr double kSunWidth_rad = 0.0093;
 // Spotlight: extent and speed of its motion; the edge of its cone, from full light to none.
 constexpr double kYaw_rad = 0.5, kPitch_rad = 0.3, kYaw_hz = 0.23, kPitch_hz = 0.37;
@@ -89,7 +90,7 @@ double lamp_light(const Lamp& lamp, const Eigen::Vector3d& p_W, const Eigen::Vec
 double lamp_highlight(const Lamp& lamp, const Eigen::Vector3d& p, const Eigen::Vector3d& n) {
   const Eigen::Vector3d ray = (p - lamp.centre_W).normalized();
   const double cosine = (ray - 2.0 * n.dot(ray) * n).dot(-p.normalized());
-  if (cosine <= 0.0) return 0.0;
+  if (cosine < kLobe) return 0.0;
   return 0.5 * (kShininess + 2.0) * std::pow(cosine, kShininess) * lamp_light(lamp, p, n);
 }
 
