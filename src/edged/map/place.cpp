@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/map/place.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -11,7 +14,8 @@
 namespace edged {
 namespace {
 
-constexpr int kPairs = 300;             // pairs: with 20 % inliers all but 5e-6 of the runs draw a pair of inliers
+constexpr int kPairs = 300;  // pairs: with 20 % inliers all but 5e-6 of the runs draw a pair of inliers
+constexpr int kRefinements = 5;
 constexpr double kLeastHeight = 0.05;   // slope of a ray against the horizon, to derive a distance from a height
 constexpr double kLeastUpright = 0.42;  // sine of 25 deg, of a ray against gravity
 
@@ -48,14 +52,35 @@ std::vector<SE3> poses_of(const PlaceMatch& a, const PlaceMatch& b, const Eigen:
   return poses;
 }
 
+bool agrees(const PlaceMatch& match, const SE3& T_C_M, double max_error) {
+  const Eigen::Vector3d p_C = T_C_M * match.p_M;
+  return p_C.z() > 0.0 && (p_C.hnormalized() - match.point).norm() < max_error;
+}
+
 std::size_t count_agreeing(std::span<const PlaceMatch> matches, const SE3& T_M_C, double max_error) {
   const SE3 T_C_M = T_M_C.inverse();
-  std::size_t agreeing = 0;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(matches, [&](const PlaceMatch& match) { return agrees(match, T_C_M, max_error); }));
+}
+
+/// A Gauss-Newton step of position and heading for the matches that agree.
+SE3 refined(std::span<const PlaceMatch> matches, const SE3& T_M_C, double max_error) {
+  const SE3 T_C_M = T_M_C.inverse();
+  Eigen::Matrix4d H = 1e-9 * Eigen::Matrix4d::Identity();
+  Eigen::Vector4d b = Eigen::Vector4d::Zero();
   for (const PlaceMatch& match : matches) {
-    const Eigen::Vector3d p_C = T_C_M * match.p_M;
-    agreeing += p_C.z() > 0.0 && (p_C.hnormalized() - match.point).norm() < max_error ? 1 : 0;
+    if (!agrees(match, T_C_M, max_error)) continue;
+    const Eigen::Vector3d p_C = T_C_M * match.p_M, from_C = match.p_M - T_M_C.translation();
+    Eigen::Matrix<double, 2, 3> projection;
+    projection << 1.0, 0.0, -p_C.x() / p_C.z(), 0.0, 1.0, -p_C.y() / p_C.z();
+    Eigen::Matrix<double, 3, 4> by_pose;  // of p_C, by the position and a rotation of the camera about z of M
+    by_pose << -T_C_M.R(), -T_C_M.R() * Eigen::Vector3d::UnitZ().cross(from_C);
+    const Eigen::Matrix<double, 2, 4> J = projection / p_C.z() * by_pose;
+    H += J.transpose() * J;
+    b += J.transpose() * (match.point - p_C.hnormalized());
   }
-  return agreeing;
+  const Eigen::Vector4d step = H.ldlt().solve(b);
+  return {so3::exp({0.0, 0.0, step[3]}) * T_M_C.rotation(), T_M_C.translation() + step.head<3>()};
 }
 
 }  // namespace
@@ -106,6 +131,12 @@ std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, co
       const std::size_t agreeing = count_agreeing(matches, T_M_C, max_error);
       if (!best || agreeing > best->agreeing) best = PlacePose{T_M_C, agreeing};
     }
+  }
+  for (int i = 0; best && i < kRefinements; ++i) {
+    const SE3 T_M_C = refined(matches, best->T_M_C, max_error);
+    const std::size_t agreeing = count_agreeing(matches, T_M_C, max_error);
+    if (agreeing < best->agreeing) break;
+    best = PlacePose{T_M_C, agreeing};
   }
   return best;
 }

@@ -38,8 +38,8 @@ struct PlacePose {
   std::size_t agreeing;  ///< of the matches
 };
 
-/// The pose with most inliers, within max_error on the unit plane. R_O_C: of the camera in any frame whose
-/// z points up; the pose has the same tilt. Deterministic. Nothing with fewer than two matches.
+/// The pose with most inliers, within max_error on the unit plane, refined by these. R_O_C: of the camera in any frame
+/// whose z points up; the pose has the same tilt. Deterministic. Nothing with fewer than two matches.
 std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, const Eigen::Quaterniond& R_O_C,
                                          double max_error);
 

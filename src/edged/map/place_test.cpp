@@ -49,8 +49,8 @@ TEST(PoseByGravity, IsFoundAmongManyWrongMatches) {
     const auto found = pose_by_gravity(made.matches, R_O_C, 0.015);
     ASSERT_TRUE(found);
     EXPECT_GE(found->agreeing, 17U);
-    EXPECT_LT((found->T_M_C.translation() - made.T_M_C.translation()).norm(), 0.05) << "seed " << seed;
-    EXPECT_LT(so3::log(found->T_M_C.rotation().conjugate() * made.T_M_C.rotation()).norm(), 0.02);
+    EXPECT_LT((found->T_M_C.translation() - made.T_M_C.translation()).norm(), 0.008) << "seed " << seed;
+    EXPECT_LT(so3::log(found->T_M_C.rotation().conjugate() * made.T_M_C.rotation()).norm(), 0.003);
   }
 }
 
