@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import unittest
 
-from browser import CHROMIUM, pictures_folder
+from browser import CHROMIUM, Browser, pictures_folder
 from program import WithFlight, edged
 
 PICTURES = None
@@ -149,6 +149,37 @@ class Page(WithFlight):
             self.assertEqual(facts["duration"], f"{self.metrics['duration_s']:.1f} s")
             self.assertEqual(facts["losses"], "none")
             self.assertEqual(facts["poses, keyframes"], f"{self.metrics['poses']}, {self.metrics['keyframes']}")
+
+    def test_dense_points_and_voxels_are_shown_as_the_boxes_say(self):
+        if not CHROMIUM:
+            self.skipTest("no chromium here: apt-get install chromium")
+        out = self.folder / "run"
+        made = edged("run", self.flight, "--mode", "frames", "--dense", "--occupancy", self.folder / "space", "--out", out, "--quiet")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        points, voxels = (int((out / name).read_bytes().split(b"element vertex ")[1].split()[0]) for name in ("dense.ply", "voxels.ply"))
+        self.assertGreater(min(points, voxels), 100)
+        browser = Browser(self.folder / "profile")
+        self.addCleanup(browser.close)
+        browser.show(1400, 900)
+        browser.open((out / "report.html").as_uri())
+        browser.wait_for("document.documentElement.dataset.ready === 'yes'")
+        self.assertEqual(browser.value("document.getElementById('drawn').textContent"),
+                         f"{points} of {points} dense points are in this page. {voxels} of {voxels} occupied voxels are in this page.")
+        view = "document.getElementById('path').toDataURL()"
+        seen = [browser.value(view)]
+        for box in ("dense points", "occupied voxels", "coloured by height", "fit the map"):
+            browser.value(f"[...document.querySelectorAll('label')].find(e => e.textContent === '{box}').click()")
+            seen.append(browser.value(view))
+            if PICTURES:
+                browser.picture(PICTURES / f"space-{len(seen)}.png")
+        self.assertEqual(len(set(seen)), 4)  # voxels have no other colour than that of their height
+        self.assertEqual(browser.complaints, [])
+
+    def test_damaged_points_are_refused_in_a_line(self):
+        broken = self.folder / "broken"
+        shutil.copytree(self.run_folder, broken)
+        (broken / "dense.ply").write_bytes(b"ply\nformat binary_little_endian 1.0\nelement vertex 9\n")
+        self.assert_refused(edged("report", broken), "dense.ply", "damaged", "run it again")
 
     def test_several_runs_stand_side_by_side(self):
         second, out = self.folder / "room-events", self.folder / "both.html"

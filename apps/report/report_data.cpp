@@ -17,6 +17,7 @@
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "program.hpp"
+#include "report/point_cloud.hpp"
 #include "report/report_rows.hpp"
 
 namespace edged {
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRows = 3000, kMostRowsInAll = 6000, kMostPicturesInAll = 60, kMostMapKeyframes = 2000;
+constexpr std::size_t kMostDensePoints = 1'000'000, kMostVoxels = 250'000;  // in all
 constexpr std::size_t kLogLines = 300;
 
 /// The files of a run, all but its poses as they are.
@@ -253,7 +255,28 @@ Json pictures_json(const Json& album, Timestamp origin, std::size_t most) {
   return out;
 }
 
-Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::size_t pictures) {
+/// dense.ply or voxels.ply of the run, in the world that is shown; null where there are no points. axes: of voxels, the
+/// directions of their edges.
+Json cloud_json(const LoadedRun& run, const char* file, std::size_t most) {
+  PointCloud cloud = run.given ? read_cloud(run.path / file, most) : PointCloud{};
+  if (cloud.points.empty()) return nullptr;
+  const Similarity& alignment = run.poses.alignment;
+  for (Eigen::Vector3f& p : cloud.points) p = (alignment * p.cast<double>()).cast<float>();
+  Json json = packed_json(cloud.points, cloud.grey);
+  json["all"] = cloud.all;
+  if (cloud.size_m == 0.0F) return json;
+  json["edge_m"] = alignment.scale * static_cast<double>(cloud.size_m);
+  const Eigen::Matrix3d axes = alignment.T.R();
+  json["axes"] = std::vector<double>(axes.data(), axes.data() + axes.size());
+  return json;
+}
+
+/// How much of one run is shown.
+struct Shares {
+  std::size_t rows, pictures, dense_points, voxels;
+};
+
+Json run_json(const LoadedRun& run, Timestamp origin, const Shares& most) {
   const fs::path name = run.path.has_filename() ? run.path.filename() : run.path.parent_path().filename();
   Json json = {{"name", name.string()},
                {"folder", run.path.string()},
@@ -265,19 +288,21 @@ Json run_json(const LoadedRun& run, Timestamp origin, std::size_t rows, std::siz
                {"not_compared", run.poses.not_compared},
                {"path_m", path_length(run.poses.shown, &StampedPose::T)}};
   if (run.poses.evaluation) json["evaluation"] = to_json(*run.poses.evaluation);
-  json["rows"] = rows_json(run.states, run.poses, origin, rows);
-  json["pose_errors"] = pose_errors_json(run.poses.pose_errors, origin, rows);
-  json["external"] = run.given ? external_json(run.path, origin, rows) : Json::object();
-  json["truth"] = path_json(run.poses.true_path, rows);
-  json["final"] = path_json(final_path(run), rows);
+  json["rows"] = rows_json(run.states, run.poses, origin, most.rows);
+  json["pose_errors"] = pose_errors_json(run.poses.pose_errors, origin, most.rows);
+  json["external"] = run.given ? external_json(run.path, origin, most.rows) : Json::object();
+  json["truth"] = path_json(run.poses.true_path, most.rows);
+  json["final"] = path_json(final_path(run), most.rows);
   json["map_keyframes"] = map_keyframes_json(run, origin);
   json["map"] = map_json(run.album, run.poses.alignment);
+  json["dense"] = cloud_json(run, "dense.ply", most.dense_points);
+  json["voxels"] = cloud_json(run, "voxels.ply", most.voxels);
   json["changes"] = changes_json(run.states, run.album, origin);
   json["options"] = changed_options(run.path / "config_resolved.yaml");
   json["calibration"] = calibration_json(run);
   json["stages"] = run.timing.is_null() ? Json::array() : run.timing.at("stages");
   json["log"] = last_lines(run.path / "run.log");
-  json["pictures"] = pictures_json(run.album, origin, pictures);
+  json["pictures"] = pictures_json(run.album, origin, most.pictures);
   return json;
 }
 
@@ -295,10 +320,9 @@ Json report_data(const std::vector<fs::path>& paths, const ReportOptions& option
   const std::vector<LoadedRun> runs = load_runs(paths, options);
   Json json = {{"version", kVersion}, {"runs", Json::array()}};
   const std::size_t n = std::max<std::size_t>(1, runs.size());
-  for (const LoadedRun& run : runs) {
-    json["runs"].push_back(
-        run_json(run, origin_of(run, runs.front()), std::min(kMostRows, kMostRowsInAll / n), kMostPicturesInAll / n));
-  }
+  const Shares most{std::min(kMostRows, kMostRowsInAll / n), kMostPicturesInAll / n, kMostDensePoints / n,
+                    kMostVoxels / n};
+  for (const LoadedRun& run : runs) json["runs"].push_back(run_json(run, origin_of(run, runs.front()), most));
   return json;
 } catch (const Json::exception& e) {
   throw InputError::format("{}: a json file there is damaged ({}); run it again",

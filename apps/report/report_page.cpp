@@ -33,9 +33,9 @@ std::string script_safe(const nlohmann::ordered_json& data) {
 /// start: the script to run at the end; sources: allowed sources of images and data.
 std::string filled_page(const nlohmann::ordered_json& data, const char* start, const char* sources) {
   const std::map<std::string_view, std::string> parts = {
-      {"css", kReportCss}, {"data", script_safe(data)}, {"tools", kToolsJs},   {"plot", kPlotJs},
-      {"start", start},    {"view3d", kView3dJs},       {"report", kReportJs}, {"sections", kSectionsJs},
-      {"sources", sources}};
+      {"css", kReportCss},       {"data", script_safe(data)}, {"tools", kToolsJs},   {"plot", kPlotJs},
+      {"start", start},          {"clouds", kCloudsJs},       {"view3d", kView3dJs}, {"report", kReportJs},
+      {"sections", kSectionsJs}, {"sources", sources}};
   constexpr std::string_view kOpen = "{{", kClose = "}}";
   std::string page;
   std::string_view rest = kReportHtml;

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +14,7 @@
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
+#include "report/point_cloud.hpp"
 #include "report/report_data.hpp"
 #include "report/report_page.hpp"
 #include "report/report_rows.hpp"
@@ -258,6 +261,72 @@ TEST_F(Report, OfAKilledRunShowsWhatThereIs) {
   EXPECT_EQ(run["rows"]["t"].size(), 200u);
   EXPECT_EQ(run["changes"].size(), 5u);
   EXPECT_TRUE(run["calibration"][0]["after"].is_null());
+}
+
+/// Points of dense.ply or, with an edge, of voxels.ply: the second is at x + 1 of the first, and so on.
+std::string row_of_points(int count, float edge_m = 0.0F) {
+  std::string ply = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment a row\nelement vertex {}\nproperty float x\nproperty float "
+      "y\nproperty float z\nproperty float {}\n{}end_header\n",
+      count, edge_m > 0.0F ? "size" : "sigma",
+      edge_m > 0.0F ? "" : "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+  for (int i = 0; i < count; ++i) {
+    const std::array numbers = {static_cast<float>(i), 2.0F, 3.0F, edge_m};
+    ply.append(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+    if (edge_m == 0.0F) ply.append(3, static_cast<char>(i));
+  }
+  return ply;
+}
+
+TEST_F(Report, PacksDensePointsAndVoxelsInTheWorldThatIsShown) {
+  const fs::path folder = make_run("circle", true);
+  nlohmann::json run = report_data({folder})["runs"][0];
+  EXPECT_TRUE(run["dense"].is_null());
+  EXPECT_TRUE(run["voxels"].is_null());
+  write_file(folder / "dense.ply", row_of_points(3));
+  write_file(folder / "voxels.ply", row_of_points(2, 0.05F));
+  run = report_data({folder})["runs"][0];
+  const nlohmann::json &dense = run["dense"], &voxels = run["voxels"];
+  EXPECT_EQ(dense["all"], 3);
+  EXPECT_EQ(dense["grey"], base64({0, 1, 2}));
+  EXPECT_EQ(dense["xyz"].get<std::string>().size(), 24U);  // 18 bytes
+  EXPECT_FALSE(dense.contains("edge_m"));
+  // The truth is (1, 2, 3) away from an estimate that is 1 % too large, aligned in SE(3).
+  EXPECT_NEAR(dense["low"][0].get<double>(), 1.0, 0.1);
+  EXPECT_NEAR(dense["low"][1].get<double>(), 4.0, 0.1);
+  EXPECT_NEAR(dense["low"][2].get<double>(), 6.0, 0.1);
+  EXPECT_NEAR(dense["step"][0].get<double>(), 2.0 / 65535.0, 1e-6);
+  EXPECT_NEAR(voxels["edge_m"].get<double>(), 0.05, 1e-9);
+  EXPECT_EQ(voxels["axes"].size(), 9U);
+  EXPECT_EQ(voxels["grey"], "");
+}
+
+TEST_F(Report, ThinsOutDensePointsEvenly) {
+  fs::create_directories(top);
+  write_file(top / "dense.ply", row_of_points(1000));
+  const PointCloud cloud = read_cloud(top / "dense.ply", 10);
+  EXPECT_EQ(cloud.all, 1000U);
+  ASSERT_EQ(cloud.points.size(), 10U);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(cloud.points[i].x(), 100.0F * static_cast<float>(i));
+  EXPECT_TRUE(read_cloud(top / "none.ply", 10).points.empty());
+}
+
+TEST_F(Report, RefusesDamagedPointsInOneLine) {
+  const fs::path folder = make_run("circle", true);
+  const std::string whole = row_of_points(3);
+  for (const std::string& damaged :
+       {whole.substr(0, whole.size() - 1), whole + "x", whole.substr(0, 40), std::string(), std::string("\0\1", 2),
+        std::string("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+        std::string("ply\nformat binary_little_endian 1.0\nelement vertex 0\nend_header\n")}) {
+    write_file(folder / "dense.ply", damaged);
+    try {
+      report_data({folder});
+      ADD_FAILURE() << damaged;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("dense.ply: damaged ("), std::string::npos) << e.what();
+      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+    }
+  }
 }
 
 TEST_F(Report, RefusesWhatIsNoRun) {

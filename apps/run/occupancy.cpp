@@ -5,6 +5,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <opencv2/core.hpp>
@@ -18,6 +20,8 @@
 
 namespace edged {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "voxels are written as they lie in memory");
 
 constexpr std::size_t kFewestViews = 4;
 constexpr double kMostSigma = 0.5;   // of a point along the ray, over the voxel
@@ -154,6 +158,31 @@ octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::s
   tree.updateInnerOccupancy();
   tree.prune();
   return tree;
+}
+
+std::string voxels_ply(const octomap::OcTree& tree) {
+  std::string vertices;
+  std::size_t count = 0;
+  const auto edge_m = static_cast<float>(tree.getResolution());
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    if (!tree.isNodeOccupied(*leaf)) continue;
+    const int edge = 1 << (tree.getTreeDepth() - leaf.getDepth());  // [voxels]: equal ones are one leaf
+    const octomap::OcTreeKey first = leaf.getIndexKey();
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const auto at = [&](unsigned axis, int steps) {
+        return static_cast<float>(tree.keyToCoord(static_cast<octomap::key_type>(first[axis] + steps)));
+      };
+      const std::array vertex = {at(0, i % edge), at(1, i / edge % edge), at(2, i / edge / edge), edge_m};
+      vertices.append(reinterpret_cast<const char*>(vertex.data()), sizeof(vertex));
+      ++count;
+    }
+  }
+  return fmt::format(
+             "ply\nformat binary_little_endian 1.0\ncomment centres of occupied voxels in the world (z up) [m]; size: "
+             "their edge [m]\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty "
+             "float size\nend_header\n",
+             count) +
+         vertices;
 }
 
 void write_occupancy(const std::filesystem::path& folder, const octomap::OcTree& tree, const HeightRange& heights) {

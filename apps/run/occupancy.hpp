@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "run/dense_scan.hpp"
 #include "run/reconstruction.hpp"
@@ -18,6 +19,9 @@ namespace edged {
 /// likely they hold it. The rays to all of them are free up to a voxel and three sigmas before the point. What no ray
 /// crosses stays unknown. Dense points of frames only make voxels occupied. voxel_m: edge of a voxel [m].
 octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::span<const DenseScan> dense = {});
+
+/// The occupied voxels: centres and edge, binary.
+std::string voxels_ply(const octomap::OcTree& tree);
 
 /// Heights [m] in the map, the second above the first.
 struct HeightRange {

@@ -6,10 +6,15 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <tuple>
 
+#include "common/files.hpp"
 #include "edged/io/test_support.hpp"
+#include "report/point_cloud.hpp"
 
 namespace edged {
 namespace {
@@ -110,6 +115,28 @@ TEST_F(OccupancyFiles, AreReadAsByTheRosMapServer) {
   EXPECT_EQ(space(2.02, -0.08), Space::Unknown);
   EXPECT_EQ(space(0.02, 0.42), Space::Free) << "left of the middle is up in the image";
   EXPECT_EQ(space(0.02, 0.48), Space::Unknown);
+}
+
+TEST_F(OccupancyFiles, ListTheOccupiedVoxelsForTheReport) {
+  const std::filesystem::path file = folder_.path() / "voxels.ply";
+  octomap::OcTree tree(0.05);
+  for (unsigned i = 0; i < 8; ++i)  // equal neighbours: one leaf of the pruned tree
+    tree.updateNode(0.025F + 0.05F * (i % 2), 0.025F + 0.05F * (i / 2 % 2), 0.025F + 0.05F * (i / 4), true);
+  tree.updateNode(1.025, 0.025, 0.025, true);
+  tree.updateNode(2.025, 0.025, 0.025, false);
+  ASSERT_EQ(tree.getNumLeafNodes(), 3U);
+  write_file(file, voxels_ply(tree));
+  const PointCloud cloud = read_cloud(file, 100);
+  EXPECT_EQ(cloud.all, 9U);
+  ASSERT_EQ(cloud.points.size(), 9U);
+  EXPECT_FLOAT_EQ(cloud.size_m, 0.05F);
+  std::set<std::tuple<int, int, int>> places;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    EXPECT_EQ(tree.search(p.x(), p.y(), p.z()) != nullptr, true);
+    places.insert(
+        {std::lround(p.x() / 0.05F - 0.5F), std::lround(p.y() / 0.05F - 0.5F), std::lround(p.z() / 0.05F - 0.5F)});
+  }
+  EXPECT_EQ(places.size(), 9U);
 }
 
 TEST_F(OccupancyFiles, ThatCannotBeWrittenAreRefused) {

@@ -37,6 +37,7 @@ constexpr std::array kRunFiles = {"config_resolved.yaml",
                                   "keyframes.csv",
                                   "map.ply",
                                   "dense.ply",
+                                  "voxels.ply",
                                   "pace.csv",
                                   "results.mcap",
                                   "external.csv"};

@@ -42,6 +42,7 @@ class RunOccupancy : public RunObserver {
       throw InputError::format(
           "--occupancy {}: the depth of no feature is known; record for longer, and move sideways to the scene",
           options_.folder.string());
+    write_file(run_.folder / "voxels.ply", voxels_ply(tree));  // for the report
     write_occupancy(options_.folder, tree, heights(end.known.poses));
   }
 

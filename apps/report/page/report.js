@@ -4,7 +4,7 @@
 'use strict';
 
 let report = null, runs = [], time = null, space = null;
-const show = {error: true, truth: true, final: false, map: true, whole: false, keyframes: false, kept: false, links: true};
+const show = {error: true, truth: true, final: false, map: true, dense: true, voxels: false, heights: true, whole: false, keyframes: false, kept: false, links: true};
 const kLinkedAfter_s = 5;  // matches of younger keyframes are no return to an earlier place
 const kStatusColours = {Good: 'good', Degraded: 'degraded', Lost: 'lost', Initializing: 'initializing'};
 /** The colour of a verdict. */
@@ -120,6 +120,9 @@ function take(data) {
   const end = Math.max(...runs.map(run => run.rows.t.length ? run.rows.t[run.rows.t.length - 1] : -Infinity));
   time = new TimeGroup(isFinite(begin) ? begin : 0, isFinite(end) ? end : 1);
   show.error = runs.length === 1;
+  for (const run of runs) for (const kind of ['dense', 'voxels']) if (run[kind] && run[kind].low) Object.assign(run[kind], unpacked(run[kind]));
+  show.voxels = !runs.some(run => run.dense);  // they would hide the points within
+  show.whole = runs.some(run => run.dense || run.voxels);
 }
 
 function axisOf(flat, k) {
@@ -138,6 +141,22 @@ function linksOf(run) {
     if (from[0] !== null && to[0] !== null) links.push({from, to});
   });
   return links;
+}
+
+/** The lowest and the highest of most points of the runs, for colours. */
+function heightsOf(clouds) {
+  const sorted = clouds.flatMap(cloud => sortedSample(cloud.xyz, 2, 4000)).sort((a, b) => a - b);
+  return sorted.length ? [quantile(sorted, 0.02), quantile(sorted, 0.98)] : [0, 1];
+}
+
+/** The dense points and voxels that are shown, in colours of their heights or, points alone, in their own grey. */
+function fillClouds() {
+  const chosen = runs.flatMap(run => ['voxels', 'dense'].filter(kind => run[kind] && show[kind]).map(kind => run[kind])), heights = heightsOf(chosen);
+  space.clouds = chosen.map(cloud => {
+    const own = !show.heights && cloud.grey.length > 0;
+    return {xyz: cloud.xyz, edge_m: cloud.edge_m, axes: cloud.axes, tones: own ? cloud.grey : heightTones(cloud.xyz, heights), own};
+  });
+  return space.clouds.every(cloud => cloud.own) ? null : heights;
 }
 
 function fillSpace() {
@@ -165,8 +184,9 @@ function fillSpace() {
   for (const run of runs.filter(each => show.truth && each.truth.length)) {
     space.paths.push({x: axisOf(run.truth, 0), y: axisOf(run.truth, 1), z: axisOf(run.truth, 2), colour: 'ink', width: 1, dash: true});
   }
-  space.fit(show.map && show.whole);
-  return shadeMax;
+  const heights = fillClouds();
+  space.fit(show.whole);
+  return [shadeMax, heights];
 }
 
 function moveMarks() {
@@ -181,25 +201,36 @@ function moveMarks() {
   space.draw();
 }
 
+/** How many points of how many there are. */
+function drawnText() {
+  const sum = (kind, count) => runs.reduce((all, run) => all + (run[kind] ? count(run[kind]) : 0), 0);
+  const text = (kind, name) => sum(kind, cloud => cloud.all) ? [sum(kind, cloud => cloud.xyz.length / 3) + ' of ' + sum(kind, cloud => cloud.all) + ' ' + name] : [];
+  return [...text('dense', 'dense points'), ...text('voxels', 'occupied voxels')].map(each => each + ' are in this page.').join(' ');
+}
+
 function pathCard() {
   const canvas = make('canvas', {tabindex: '0', role: 'img', id: 'path',
                                  'aria-label': 'Path in space; arrows turn, with shift move, plus and minus zoom, t looks from above, Home resets'});
   const tools = make('div', {class: 'tools'});
   space = new SpaceView(canvas);
-  const scale = make('span', {class: 'scale'});
+  const scale = make('span', {class: 'scale'}), drawn = make('p', {class: 'hint', id: 'drawn'});
+  const legend = (from, colours, to) => {
+    const bar = make('i', {});
+    bar.style.background = 'linear-gradient(90deg,' + colours.map(c => 'rgb(' + c.join(',') + ')').join(',') + ')';
+    return make('span', {class: 'scale'}, from, bar, to);
+  };
   const refresh = () => {
-    const most = fillSpace();
+    const [most, heights] = fillSpace();
     scale.replaceChildren();
-    if (show.error && runs.some(run => run.rows.error_m)) {
-      const bar = make('i', {});
-      bar.style.background = 'linear-gradient(90deg,' + kErrorColours.map(c => 'rgb(' + c.join(',') + ')').join(',') + ')';
-      scale.append('error 0', bar, length(most));
-    }
+    if (show.error && runs.some(run => run.rows.error_m)) scale.append(legend('error 0', kErrorColours, length(most)));
+    if (heights) scale.append(legend('height ' + number(heights[0], 'm', 2), kHeightColours, number(heights[1], 'm', 2)));
+    drawn.textContent = drawnText();
     moveMarks();
   };
-  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length), keyframes: runs.some(run => run.rows.keyframe),
+  const has = {error: runs.some(run => run.rows.error_m), truth: runs.some(run => run.truth.length), final: runs.some(run => run.final && run.final.length), map: runs.some(run => run.live || run.map.length), whole: runs.some(run => run.live || run.map.length || run.dense || run.voxels),
+               dense: runs.some(run => run.dense), voxels: runs.some(run => run.voxels), heights: runs.some(run => run.dense), keyframes: runs.some(run => run.rows.keyframe),
                kept: runs.some(run => run.map_keyframes && run.map_keyframes.t), links: runs.some(run => run.live || linksOf(run).length)};
-  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (thin, above)'], ['final', 'final path (wide grey)'], ['map', 'map points'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
+  for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (thin, above)'], ['final', 'final path (wide grey)'], ['map', 'map points'], ['dense', 'dense points'], ['voxels', 'occupied voxels'], ['heights', 'coloured by height'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
                               ['links', 'seen again (lines)']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
@@ -216,7 +247,7 @@ function pathCard() {
                button('From the side', () => { space.turn = 0; space.tilt = 0; space.draw(); }),
                button('Reset', () => { space.home(); space.draw(); }), scale);
   const world = runs.some(run => run.evaluation) ? 'World of the ground truth, z up.' : 'World of the estimate, z up; it begins at the origin.';
-  const card = make('div', {class: 'card view'}, canvas, tools,
+  const card = make('div', {class: 'card view'}, canvas, tools, drawn,
                     make('p', {class: 'hint'}, world + ' Drag turns, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.' +
                          (has.links ? ' A line leads from where a place was seen again, ' + kLinkedAfter_s + ' s later or more, to where it was seen first.' : '')));
   return [card, refresh];

@@ -6,13 +6,12 @@
 /** From small to large errors, distinguishable by brightness as well. */
 const kErrorColours = [[42, 120, 190], [66, 168, 150], [214, 184, 60], [226, 120, 46], [190, 30, 60]];
 
-function errorColour(share) {
-  const at = Math.min(Math.max(share, 0), 1) * (kErrorColours.length - 1), i = Math.min(Math.floor(at), kErrorColours.length - 2);
-  const mixed = kErrorColours[i].map((c, k) => Math.round(c + (kErrorColours[i + 1][k] - c) * (at - i)));
-  return 'rgb(' + mixed.join(',') + ')';
-}
+const errorColour = share => 'rgb(' + mixed(kErrorColours, share).join(',') + ')';
 
-/** paths: [{x, y, z, colour, dash, width, shade: values, shadeMax}], points: [{xyz: flat, colour, size}], marks: [{p, colour, size}], links: [{from, to}]. */
+/**
+ * paths: [{x, y, z, colour, dash, width, shade: values, shadeMax}], points: [{xyz: flat, colour, size}], marks: [{p, colour, size}], links: [{from, to}],
+ * clouds: [{xyz: flat, tones, own: tones are greys, not heights}], of voxels with edge_m and axes, the directions of their edges.
+ */
 class SpaceView {
   constructor(canvas) {
     this.canvas = canvas;
@@ -20,6 +19,9 @@ class SpaceView {
     this.points = [];
     this.marks = [];
     this.links = [];
+    this.clouds = [];
+    this.image = new CloudImage();
+    this.full_ms = 0;  // of the last drawing with all points
     this.home();
     this.listen();
   }
@@ -38,10 +40,10 @@ class SpaceView {
       if (value !== null) low[k] = Math.min(low[k], value), high[k] = Math.max(high[k], value);
     });
     for (const path of this.paths) ['x', 'y', 'z'].forEach((axis, k) => hold(k, path[axis]));
-    for (const cloud of withPoints ? this.points : []) {
+    for (const cloud of withPoints ? [...this.points, ...this.clouds] : []) {
       for (let k = 0; k < 3; ++k) {
-        const sorted = cloud.xyz.filter((value, i) => i % 3 === k && value !== null).sort((a, b) => a - b);
-        if (sorted.length) hold(k, [sorted[Math.floor(0.05 * sorted.length)], sorted[Math.floor(0.95 * sorted.length)]]);
+        const sorted = sortedSample(cloud.xyz, k, 4000);
+        if (sorted.length) hold(k, [quantile(sorted, 0.05), quantile(sorted, 0.95)]);
       }
     }
     this.empty = low[0] > high[0];
@@ -56,7 +58,11 @@ class SpaceView {
     return [this.middle[0] + this.scale * right, this.middle[1] - this.scale * (this.cosTilt * dz + this.sinTilt * away)];
   }
 
-  draw() {
+  /** quick: with fewer points where all take too long; all follow when the view rests. */
+  draw(quick) {
+    clearTimeout(this.rest);
+    const every = quick ? Math.max(1, Math.ceil(this.full_ms / kRenderGoal_ms)) : 1;
+    if (every > 1) this.rest = setTimeout(() => this.draw(), 200);
     const [context, width, height] = sized(this.canvas);
     this.cosTurn = Math.cos(this.turn), this.sinTurn = Math.sin(this.turn);
     this.cosTilt = Math.cos(this.tilt), this.sinTilt = Math.sin(this.tilt);
@@ -70,6 +76,7 @@ class SpaceView {
       return;
     }
     this.drawFloor(context);
+    this.drawClouds(context, width, height, every);
     for (const cloud of this.points) this.drawPoints(context, cloud);
     this.drawLinks(context);
     for (const path of this.paths) this.drawPath(context, path);
@@ -92,6 +99,34 @@ class SpaceView {
     context.stroke();
     context.fillStyle = colour('soft');
     context.fillText('squares of ' + tickText(step, step) + ' m', 12, 20);
+  }
+
+  /** Right, up and towards the viewer: the part of a direction of the world in each. */
+  inView(x, y, z) {
+    const away = -this.sinTurn * x + this.cosTurn * y;
+    return [this.cosTurn * x + this.sinTurn * y, this.cosTilt * z + this.sinTilt * away, this.sinTilt * z - this.cosTilt * away];
+  }
+
+  drawClouds(context, width, height, every) {
+    if (!this.clouds.length) return;
+    const begin = performance.now(), ratio = this.canvas.width / width, scale = this.scale * ratio, image = this.image;
+    const axes = [this.inView(1, 0, 0), this.inView(0, 1, 0), this.inView(0, 0, 1)], centre = this.inView(...this.centre);
+    // Of pixels of the screen: columns, rows downwards, nearness.
+    const view = [scale, -scale, scale].map((factor, k) => [...axes.map(axis => factor * axis[k]), -factor * centre[k]]);
+    view[0][3] += ratio * this.middle[0];
+    view[1][3] += ratio * this.middle[1];
+    image.clear(this.canvas.width, this.canvas.height);
+    for (const cloud of this.clouds) {
+      const colours = cloud.own ? greyColours() : kHeightColours;
+      if (cloud.edge_m) {
+        const edges = [0, 3, 6].map(i => this.inView(cloud.axes[i], cloud.axes[i + 1], cloud.axes[i + 2]));
+        image.cubes(cloud, view, cubeSprite(scale * cloud.edge_m, edges), kSides.map(side => inksOf(colours, side)), every);
+      } else {
+        image.points(cloud, view, Math.max(1, Math.round(1.5 * ratio)), inksOf(colours, 1), every);
+      }
+    }
+    context.drawImage(image.finished(), 0, 0, width, height);
+    if (every === 1) this.full_ms = performance.now() - begin;
   }
 
   drawPoints(context, cloud) {
@@ -173,15 +208,15 @@ class SpaceView {
   rotate(dx, dy) {
     this.turn -= 0.008 * dx;
     this.tilt = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.tilt + 0.008 * dy));
-    this.draw();
+    this.draw(true);
   }
   magnify(factor) {
     this.zoom = Math.min(200, Math.max(0.2, this.zoom * factor));
-    this.draw();
+    this.draw(true);
   }
   move(dx, dy) {
     this.shift = [this.shift[0] + dx, this.shift[1] + dy];
-    this.draw();
+    this.draw(true);
   }
 
   listen() {
