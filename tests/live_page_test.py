@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The live page as its viewers meet it: `edged run --serve` with one that listens, one that never reads, and headless Chromium
 where there is one. Usage: EDGED=path/to/edged live_page_test.py [--pictures FOLDER]; the option leaves screenshots."""
+import base64
 import contextlib
 import json
 import re
@@ -95,6 +96,18 @@ class LivePage(WithFlight):
         self.assertTrue(any(update.get("map") for update in updates))
         self.assertEqual(updates[-1]["changes"][-1]["status"], "Good")
 
+    def test_dense_points_come_while_it_goes_on_each_once(self):
+        with self.serving("--live", "--mode", "frames", "--dense") as (_, url):
+            listener = Listener(url)
+            listener.join()
+        told = 0
+        for dense in [update["dense"] for update in listener.updates if "dense" in update]:
+            self.assertEqual((dense["halved"], dense["from"]), (0, told))
+            told += len(base64.b64decode(dense["grey"]))
+            self.assertEqual(len(base64.b64decode(dense["xyz"])), 6 * len(base64.b64decode(dense["grey"])))
+            self.assertLessEqual(told, dense["all"])
+        self.assertGreater(told, 1000)
+
     def test_the_rows_are_those_of_the_report(self):
         with self.serving("--live", "--duration", 2) as (_, url):
             listener = Listener(url)
@@ -180,9 +193,10 @@ class LivePage(WithFlight):
         self.addCleanup(browser.close)
         views = [(width, dark) for width in (360, 1600) for dark in (False, True)]
         browser.show(1600, 900)
-        with self.serving("--live") as (_, url):
+        with self.serving("--live", "--dense") as (_, url):
             browser.open(url)
             browser.wait_for("document.querySelector('.says')?.textContent === 'Running, with a good pose.'")
+            browser.wait_for("/^[1-9].* dense points/.test(document.getElementById('drawn').textContent)")
             browser.wait_for("document.querySelectorAll('.shot img').length === 2 && [...document.images].every(i => i.naturalWidth > 100)")
             before = browser.value(FACTS)
             self.assertGreaterEqual(browser.value("document.querySelectorAll('.plot canvas').length"), 20)

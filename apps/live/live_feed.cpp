@@ -70,7 +70,8 @@ nlohmann::ordered_json progress_json(const RunProgress& progress) {
 
 }  // namespace
 
-LiveFeed::LiveFeed(OutputFrame frame) : frame_(std::move(frame)), angles_(Eigen::Vector3d::Constant(kUnknown)) {
+LiveFeed::LiveFeed(OutputFrame frame, const LivePoints& dense)
+    : frame_(std::move(frame)), dense_(dense), angles_(Eigen::Vector3d::Constant(kUnknown)) {
   newest_.values.fill(kUnknown);
 }
 
@@ -201,6 +202,7 @@ std::string LiveFeed::news(Place& place) const {
     auto& map = json["map"] = nlohmann::ordered_json::array();
     for (const float x : now.new_map) map.push_back(rounded(x, 3));
   }
+  if (nlohmann::ordered_json dense = dense_.news(place.dense); !dense.is_null()) json["dense"] = std::move(dense);
   return compact_json(json);
 }
 

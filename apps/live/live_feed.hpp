@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Data for viewers of a running run: rows of its plots, status changes, map points, images.
+// Data for viewers of a running run: rows of its plots, status changes, map points, dense points, images.
 #pragma once
 
 #include <array>
@@ -20,6 +20,7 @@
 #include "common/step_facts.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/step.hpp"
+#include "run/live_points.hpp"
 #include "run/run_album.hpp"
 #include "run/run_statistics.hpp"
 
@@ -43,10 +44,11 @@ class LiveFeed {
   struct Place {
     std::size_t rows = 0, thinned = 0, changes = 0, map = 0;
     std::size_t left_out = 0;  ///< updates skipped because this viewer was too slow
+    LivePoints::Place dense = {};
   };
 
-  /// Positions are those of `frame`, as in the trajectory files.
-  explicit LiveFeed(OutputFrame frame);
+  /// Positions are those of `frame`, as in the trajectory files. dense: lives longer.
+  LiveFeed(OutputFrame frame, const LivePoints& dense);
 
   void add(const Step& step, RunProgress progress, const RunAlbum& album);
   /// The final numbers, as the last measurements are after the last step.
@@ -93,6 +95,7 @@ class LiveFeed {
   static nlohmann::ordered_json columns(const std::vector<Row>& rows);
 
   OutputFrame frame_;
+  const LivePoints& dense_;
   std::atomic<std::size_t> viewers_ = 0;
   std::optional<Timestamp> origin_;  ///< set before there are rows or changes, and no more afterwards
   Eigen::Vector3d angles_;           ///< of the row before [deg]

@@ -65,13 +65,14 @@ nlohmann::ordered_json about_run(const RunContext& run) {
           {"format", info.format},
           {"mode", mode_name(run.mode)},
           {"frame", run.frame.name()},
+          {"dense", run.options.dense},
           {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
 }
 
 class ServedPage : public RunObserver {
  public:
   explicit ServedPage(const RunContext& run)
-      : run_(run), page_(*parse_serve_address(run.options.serve), about_run(run), run.frame) {}
+      : run_(run), page_(*parse_serve_address(run.options.serve), about_run(run), run.frame, run.live_points) {}
   const char* stage() const override { return "serve"; }
   void on_begin() override { fmt::print(stderr, "edged: watch at {}\n", page_.url()); }
   void on_step(const Step& step) override { page_.add(step, progress(), run_.album); }
@@ -88,7 +89,7 @@ class ServedPage : public RunObserver {
 
 class LivePage::Server {
  public:
-  Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame);
+  Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame, const LivePoints& dense);
   ~Server();
   void finish(RunProgress progress, const nlohmann::ordered_json& metrics, const std::filesystem::path& folder);
 
@@ -124,8 +125,9 @@ class LivePage::Server {
   std::jthread thread_;  ///< last: it uses the others
 };
 
-LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
-    : feed(std::move(frame)), page_(live_report_page(about)) {
+LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+                         const LivePoints& dense)
+    : feed(std::move(frame), dense), page_(live_report_page(about)) {
   http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   // An idle connection blocks a thread, and the end of the program: browsers open some in advance.
   http_.set_keep_alive_max_count(1);
@@ -275,8 +277,9 @@ void LivePage::Server::part_from_viewers() {
       fmt::format("live page: at most {} viewers at once, {} updates skipped for slow ones", most_viewers_, left_out_));
 }
 
-LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame)
-    : server_(std::make_unique<Server>(address, about, std::move(frame))) {}
+LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+                   const LivePoints& dense)
+    : server_(std::make_unique<Server>(address, about, std::move(frame), dense)) {}
 
 LivePage::~LivePage() = default;
 

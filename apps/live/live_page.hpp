@@ -30,8 +30,10 @@ void add_serve_option(CLI::App& command, std::string& text);
 /// Calls by the thread of the run do not block, whatever browsers do, except `finish`.
 class LivePage {
  public:
-  /// Starts to serve url(). about: the title of the run. Throws InputError if the address is not available.
-  LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame);
+  /// Starts to serve url(). about: the title of the run; dense: lives longer. Throws InputError if the address is not
+  /// available.
+  LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+           const LivePoints& dense);
   ~LivePage();
   LivePage(const LivePage&) = delete;
   LivePage& operator=(const LivePage&) = delete;

@@ -41,7 +41,8 @@ class LiveRun : public ::testing::Test {
   int made = 0;
   RunStatistics statistics;
   RunAlbum album;
-  LiveFeed feed{OutputFrame(kHead, "events")};
+  LivePoints dense;
+  LiveFeed feed{OutputFrame(kHead, "events"), dense};
 };
 
 TEST_F(LiveRun, TellsEachViewerWhatItDoesNotKnowYet) {
@@ -110,6 +111,61 @@ TEST_F(LiveRun, TellsTheMapOnce) {
   go_on(2);
   EXPECT_EQ(news(place)["map"].size(), 3u);  // at the first step; the next one comes within the same two seconds
   EXPECT_FALSE(news(place).contains("map"));
+}
+
+/// So many points on a line, of a keyframe at t.
+DepthMap line_of_points(Timestamp t, int count) {
+  DepthMap map{t, "frames", CameraModel(240, 180, 200, 200, 120, 90), SE3(), 0, {}};
+  for (int i = 0; i < count; ++i)
+    map.points.push_back({120, 90, 1.0F / static_cast<float>(1 + i), 0.01F, static_cast<std::uint8_t>(i % 251), 5});
+  return map;
+}
+
+/// As the page does.
+std::size_t with_news(std::size_t points, const nlohmann::json& news) {
+  for (int i = 0; i < news["halved"]; ++i) points = (points + 1) / 2;
+  return points + news["grey"].get<std::string>().size() / 4 * 3 - (news["grey"].get<std::string>().ends_with("=")) -
+         (news["grey"].get<std::string>().ends_with("=="));
+}
+
+TEST_F(LiveRun, TellsEachDensePointOnceAndFewAtATime) {
+  const Timestamp t = timestamp_from_seconds(3);
+  LiveFeed::Place place;
+  go_on(1);
+  EXPECT_FALSE(news(place).contains("dense"));
+  dense.add(line_of_points(t, 5));
+  EXPECT_FALSE(news(place).contains("dense")) << "a keyframe that is not known";
+  dense.note_keyframe(t, SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, 10.0}));
+  dense.add(line_of_points(t, 5));
+  nlohmann::json told = news(place)["dense"];
+  EXPECT_EQ(told["all"], 5);
+  EXPECT_NEAR(told["low"][2].get<double>(), 11.0, 1e-4);
+  EXPECT_EQ(told["grey"], base64({0, 1, 2, 3, 4}));
+  EXPECT_FALSE(news(place).contains("dense"));
+  dense.add(line_of_points(t, static_cast<int>(LivePoints::kMostAtOnce) + 7));
+  EXPECT_EQ(with_news(0, news(place)["dense"]), LivePoints::kMostAtOnce);
+  EXPECT_EQ(with_news(0, news(place)["dense"]), 7U);
+}
+
+TEST(LivePointsOfALongRun, AreBoundedAndTheSameForEarlyAndLateViewers) {
+  LivePoints points;
+  const Timestamp t = timestamp_from_seconds(3);
+  points.note_keyframe(t, SE3());
+  LivePoints::Place early, late;
+  std::size_t of_early = 0, of_late = 0;
+  const auto take_all = [&points](LivePoints::Place& place, std::size_t& count) {
+    for (auto news = points.news(place); !news.is_null(); news = points.news(place)) count = with_news(count, news);
+  };
+  const DepthMap map = line_of_points(t, 99'999);
+  for (int i = 0; i < 25; ++i) {
+    points.add(map);
+    if (i % 6 == 0) take_all(early, of_early);
+  }
+  take_all(early, of_early);
+  take_all(late, of_late);
+  EXPECT_EQ(of_early, of_late);
+  EXPECT_LT(of_late, LivePoints::kMost);
+  EXPECT_GE(of_late, LivePoints::kMost / 2);
 }
 
 TEST(LivePage, HasTheScriptThatAsksAndMayAsk) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // --dense of `edged run`: semi-dense depth beside the odometry, dense.ply at the end.
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -17,11 +18,12 @@ class RunDense : public RunObserver {
   explicit RunDense(RunContext& run)
       : run_(run),
         images_(image_cameras(run.used)),
-        worker_({}, run.options.live ? DenseOverload::Drop : DenseOverload::Wait) {}
+        worker_({}, run.options.live ? DenseOverload::Drop : DenseOverload::Wait, show_in(run)) {}
 
   void on_step(const Step& step) override {
     restart_ = restart_ || !is_tracking(step.status) || !step.started.empty();
     if (!is_tracking(step.status)) return;
+    if (step.keyframe && !run_.options.serve.empty()) run_.live_points.note_keyframe(step.t, step.T_M_O);
     DenseInstant instant = dense_instant(step, images_, run_.odometry.rig());
     instant.restart = std::exchange(restart_, false);
     worker_.add(std::move(instant));
@@ -41,6 +43,11 @@ class RunDense : public RunObserver {
   }
 
  private:
+  static std::function<void(const DepthMap&)> show_in(RunContext& run) {
+    if (run.options.serve.empty()) return {};
+    return [&run](const DepthMap& map) { run.live_points.add(map); };
+  }
+
   RunContext& run_;
   std::vector<RigCamera> images_;
   bool restart_ = false;

@@ -15,6 +15,7 @@
 #include "edged/odometry.hpp"
 #include "report/report_path.hpp"
 #include "run/dense_scan.hpp"
+#include "run/live_points.hpp"
 #include "run/run_album.hpp"
 #include "run/run_options.hpp"
 #include "run/run_statistics.hpp"
@@ -48,6 +49,7 @@ struct RunContext {
   RunStatistics statistics;      ///< with all steps, the newest included
   RunAlbum album;                ///< the same
   std::vector<DenseScan> dense;  ///< points of --dense, once its observer has ended
+  LivePoints live_points;        ///< the same so far, with --serve
 };
 
 /// The results at the end of the steps.

@@ -24,6 +24,42 @@ function unpacked(packed) {
   return {xyz, grey: bytesOf(packed.grey)};
 }
 
+/** Points that become more as updates bring them: {halved, from, all, low, step, xyz, grey}. */
+class GrowingCloud {
+  constructor() {
+    this.all = this.count = 0;
+    this.room = {xyz: new Float32Array(3 * 4096), grey: new Uint8Array(4096)};
+  }
+
+  get xyz() { return this.room.xyz.subarray(0, 3 * this.count); }
+  get grey() { return this.room.grey.subarray(0, this.count); }
+
+  take(update) {
+    for (let times = 0; times < update.halved; ++times) this.halve();
+    this.count = update.from;  // 0 after the connection was lost
+    const more = unpacked(update), count = this.count + more.grey.length;
+    if (count > this.room.grey.length) {
+      const before = this.room, size = 2 * count;
+      this.room = {xyz: new Float32Array(3 * size), grey: new Uint8Array(size)};
+      this.room.xyz.set(before.xyz);
+      this.room.grey.set(before.grey);
+    }
+    this.room.xyz.set(more.xyz, 3 * this.count);
+    this.room.grey.set(more.grey, this.count);
+    this.count = count;
+    this.all = update.all;
+  }
+
+  /** Drops every second point, as the program does. */
+  halve() {
+    this.count = Math.ceil(this.count / 2);
+    for (let i = 1; i < this.count; ++i) {
+      this.room.xyz.copyWithin(3 * i, 6 * i, 6 * i + 3);
+      this.room.grey[i] = this.room.grey[2 * i];
+    }
+  }
+}
+
 /** About so many values of one axis, evenly chosen, in their order. */
 function sortedSample(xyz, axis, count) {
   const every = 3 * Math.ceil(xyz.length / 3 / count), sample = [];

@@ -17,7 +17,7 @@ function emptyRun(about) {
                    'event_tracks', 'frame_tracks', 'landmarks', 'event_track_survival_rate', 'frame_track_survival_rate', 'map_matches', 'map_reach', 'event_rate', 'depth',
                    'processing', 'latency', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
   return {name: about.recording, folder: '', is_file: false, metrics: null, live: about, frame: about.frame, evaluation: null,
-          rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], changes: [], pictures: []};
+          rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], dense: about.dense ? new GrowingCloud() : null, changes: [], pictures: []};
 }
 
 /** Adds new rows and changes; also the newest row, even if it is not kept. */
@@ -30,6 +30,7 @@ function takeUpdate(run, update) {
   }
   run.changes.splice(update.changes_from, Infinity, ...update.changes);
   if (update.map) run.map.splice(0, Infinity, ...update.map);
+  if (update.dense) run.dense.take(update.dense);
 }
 
 /** Name by name; null is left out. */

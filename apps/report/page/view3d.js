@@ -108,7 +108,7 @@ class SpaceView {
   }
 
   drawClouds(context, width, height, every) {
-    if (!this.clouds.length) return;
+    if (!this.clouds.length || !this.canvas.width || !this.canvas.height) return;  // a canvas off the page has no size
     const begin = performance.now(), ratio = this.canvas.width / width, scale = this.scale * ratio, image = this.image;
     const axes = [this.inView(1, 0, 0), this.inView(0, 1, 0), this.inView(0, 0, 1)], centre = this.inView(...this.centre);
     // Of pixels of the screen: columns, rows downwards, nearness.

@@ -12,8 +12,8 @@ constexpr std::size_t kMostWithout = 16 * DenseWorker::kCapacity;  // instants, 
 
 }  // namespace
 
-DenseWorker::DenseWorker(const DenseConfig& config, DenseOverload overload)
-    : overload_(overload), mapper_(config), thread_([this] { work(); }) {}
+DenseWorker::DenseWorker(const DenseConfig& config, DenseOverload overload, std::function<void(const DepthMap&)> on_map)
+    : overload_(overload), on_map_(std::move(on_map)), mapper_(config), thread_([this] { work(); }) {}
 
 DenseWorker::~DenseWorker() {
   {
@@ -72,6 +72,7 @@ void DenseWorker::work() {
         mapper_.add(std::move(instant));
       else
         mapper_.finish();
+      for (; on_map_ && shown_ < mapper_.maps().size(); ++shown_) on_map_(mapper_.maps()[shown_]);
       timing_.add(std::chrono::duration<double>(Clock::now() - begin).count(), thread_cpu_s() - cpu_begin_s);
     }
   } catch (...) {

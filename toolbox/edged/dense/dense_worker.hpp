@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -25,7 +26,9 @@ class DenseWorker {
  public:
   static constexpr std::size_t kCapacity = 64;  // instants with images: two seconds
 
-  DenseWorker(const DenseConfig& config, DenseOverload overload);
+  /// on_map: gets each depth map when it has been measured, from the thread of the worker; later keyframes may still
+  /// change the one that mapper() has. May be empty.
+  DenseWorker(const DenseConfig& config, DenseOverload overload, std::function<void(const DepthMap&)> on_map = {});
   ~DenseWorker();
 
   /// In order of time, from one thread, before finish.
@@ -42,6 +45,8 @@ class DenseWorker {
   void work();
 
   const DenseOverload overload_;
+  const std::function<void(const DepthMap&)> on_map_;
+  std::size_t shown_ = 0;  // maps, of the thread
   DenseMapper mapper_;
   StageTiming timing_;
   std::mutex mutex_;

@@ -13,7 +13,8 @@ namespace {
 TEST(DenseWorker, GivesTheSamePointsAsTheMapperAlone) {
   const TestPlane plane;
   DenseMapper alone;
-  DenseWorker worker({}, DenseOverload::Wait);
+  std::vector<Timestamp> shown;
+  DenseWorker worker({}, DenseOverload::Wait, [&shown](const DepthMap& map) { shown.push_back(map.t); });
   for (int i = 0; i < 90; ++i) {
     const DenseInstant instant = plane.instant(i, shifted(0.02 * i));
     alone.add(instant);
@@ -24,8 +25,10 @@ TEST(DenseWorker, GivesTheSamePointsAsTheMapperAlone) {
   EXPECT_EQ(worker.dropped_keyframes(), 0U);
   EXPECT_GT(worker.timing().count(), 0U);
   ASSERT_EQ(worker.mapper().maps().size(), alone.maps().size());
+  ASSERT_EQ(shown.size(), alone.maps().size()) << "each map when it has been measured";
   for (std::size_t i = 0; i < alone.maps().size(); ++i) {
     const std::vector<DensePoint>&a = worker.mapper().maps()[i].points, &b = alone.maps()[i].points;
+    EXPECT_EQ(shown[i], alone.maps()[i].t);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t j = 0; j < a.size(); ++j) EXPECT_EQ(a[j].inverse_depth, b[j].inverse_depth);
   }

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "run/live_points.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "report/point_cloud.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::size_t kMostKeyframes = 1000;  // whose depth map has not come
+
+}  // namespace
+
+void LivePoints::note_keyframe(Timestamp t, const SE3& T_M_O) {
+  const std::lock_guard lock(mutex_);
+  keyframes_.push_back({t, T_M_O});
+  if (keyframes_.size() > kMostKeyframes) keyframes_.pop_front();
+}
+
+void LivePoints::add(const DepthMap& map) {
+  SE3 T_M_C = map.T_O_C;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto keyframe = std::ranges::lower_bound(keyframes_, map.t, {}, &Keyframe::t);
+    if (keyframe == keyframes_.end() || keyframe->t != map.t) return;
+    T_M_C = keyframe->T_M_O * T_M_C;
+  }
+  std::vector<Point> points;
+  for (const DensePoint& point : map.points)
+    points.push_back({(T_M_C * point.in_camera(map.pinhole)).cast<float>(), point.grey});
+  const std::lock_guard lock(mutex_);
+  for (const Point& point : points) thinned_ += points_.add(point);
+  all_ += points.size();
+}
+
+nlohmann::ordered_json LivePoints::news(Place& place) const {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint8_t> grey;
+  std::size_t halved = 0, from = 0, all = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    halved = thinned_ - std::exchange(place.thinned, thinned_);
+    for (std::size_t i = 0; i < halved; ++i) place.points = (place.points + 1) / 2;
+    from = place.points;
+    const std::size_t end = std::min(points_.all().size(), place.points + kMostAtOnce);
+    for (; place.points < end; ++place.points) {
+      points.push_back(points_.all()[place.points].p_M);
+      grey.push_back(points_.all()[place.points].grey);
+    }
+    all = all_;
+  }
+  if (points.empty() && halved == 0) return nullptr;
+  nlohmann::ordered_json json = packed_json(points, grey);
+  json["halved"] = halved;
+  json["from"] = from;
+  json["all"] = all;
+  return json;
+}
+
+}  // namespace edged

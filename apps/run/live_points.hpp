@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The dense points of a run that goes on, for its viewers: a bounded number, spread evenly, each sent once.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/evenly.hpp"
+#include "edged/dense/depth_map.hpp"
+
+namespace edged {
+
+/// For any thread. Points lie where their keyframe was when it was measured; only dense.ply has their final places.
+class LivePoints {
+ public:
+  static constexpr std::size_t kMost = 1'000'000, kMostAtOnce = 10'000;
+
+  /// What one viewer has received.
+  struct Place {
+    std::size_t points = 0, thinned = 0;
+  };
+
+  /// The odometry frame in the map at a keyframe; before the depth map of that keyframe.
+  void note_keyframe(Timestamp t, const SE3& T_M_O);
+  /// Without effect if the keyframe is not known.
+  void add(const DepthMap& map);
+
+  /// The next points for a viewer as packed_json, with "halved": how often it is to drop every second point that it has
+  /// (the second, the fourth ...), before it adds these; "from": number of points that it has then; "all": number of
+  /// points so far. Null if there is nothing new.
+  nlohmann::ordered_json news(Place& place) const;
+
+ private:
+  struct Point {
+    Eigen::Vector3f p_M;
+    std::uint8_t grey;
+  };
+  struct Keyframe {
+    Timestamp t;
+    SE3 T_M_O;
+  };
+
+  mutable std::mutex mutex_;  ///< guards all below
+  std::deque<Keyframe> keyframes_;
+  Evenly<Point> points_{kMost};
+  std::size_t thinned_ = 0, all_ = 0;
+};
+
+}  // namespace edged
