@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iostream>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "edged/camera/undistort.hpp"
 #include "edged/eval/alignment.hpp"
+#include "edged/occupancy/occupancy_scan.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/scene.hpp"
 #include "end_to_end.hpp"
@@ -73,6 +76,7 @@ bool is_solid(const Scene& scene, const Vector3d& p_W) {
 struct MappedRoom {
   Reconstruction model;
   octomap::OcTree tree, dense_tree;  ///< the second: of dense points, too
+  octomap::OcTree live_tree;         ///< of keyframes as they are marginalized, as the nodes publish it
   SE3 T_W_M;                         ///< the true world: of the final trajectory, laid onto the truth
 };
 
@@ -81,6 +85,7 @@ MappedRoom map_of(const Flight& flight, Mode mode) {
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});
   Reconstruction model;
   DenseMapper mapper;
+  octomap::OcTree live_tree(kVoxel_m);
   const Rig used = used_cameras(flight.calibration.rig, mode, config.cameras);
   const std::vector<RigCamera> images = image_cameras(used);
   for (const RigCamera& camera : used.cameras)
@@ -90,6 +95,7 @@ MappedRoom map_of(const Flight& flight, Mode mode) {
       odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
       [&](const Step& step) {
         if (!is_tracking(step.status)) return true;
+        for (const KeyframeRecord& keyframe : step.marginalized_keyframes) insert_keyframe(live_tree, keyframe);
         if (step.keyframe) add_images(model, step);
         mapper.add(dense_instant(step, images, odometry.rig()));
         return true;
@@ -99,7 +105,8 @@ MappedRoom map_of(const Flight& flight, Mode mode) {
   triangulate(model);
   mapper.finish();
   const std::vector<DenseScan> dense = place(mapper.maps(), poses, odometry.rig());
-  return {model, occupancy_of(model, kVoxel_m), occupancy_of(model, kVoxel_m, dense),
+  live_tree.updateInnerOccupancy();
+  return {model, occupancy_of(model, kVoxel_m), occupancy_of(model, kVoxel_m, dense), live_tree,
           align_rigidly(associate(flight.truth->trajectory, poses).pairs).T};
 }
 
@@ -195,11 +202,13 @@ TEST(OccupancyOfARoom, IsOccupiedAtTrueSurfacesAndNotFreeThroughWalls) {
   const Flight flight = read_flight(simulator, simulator.calibration());
   for (const Mode mode : kAllModes) {
     const MappedRoom room = map_of(flight, mode);
-    for (const bool dense : {false, true}) {
-      const octomap::OcTree& tree = dense ? room.dense_tree : room.tree;
-      const Agreement count = agreement(room, tree, simulator.scene());
-      const Completeness share = completeness(room, tree, simulator.scene());
-      const std::string what = mode_name(mode) + (dense ? ", dense" : "");
+    const std::initializer_list<std::pair<const char*, const octomap::OcTree*>> trees = {
+        {"", &room.tree}, {", dense", &room.dense_tree}, {", live", &room.live_tree}};
+    for (const auto& [kind, tree] : trees) {
+      const bool dense = tree == &room.dense_tree;
+      const Agreement count = agreement(room, *tree, simulator.scene());
+      const Completeness share = completeness(room, *tree, simulator.scene());
+      const std::string what = mode_name(mode) + kind;
       std::cout << fmt::format(
           "{}: {} of {} occupied voxels within a voxel of a surface, the farthest {:.0f} mm; {} free ones, {} in solid "
           "bodies, {} deeper than 5 cm; of what keyframes show, {:.1f} % of the surface is occupied, {:.0f} % of the "

@@ -102,7 +102,9 @@ void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
   ros2->add_flag("--quiet", options->quiet, "Only warnings while it runs");
   ros2->footer(
       "Subscribes to events, image, imu, height and velocity (of a further camera NAME: NAME/events, NAME/image);\n"
-      "publishes ~/odometry, ~/prediction, ~/pose, ~/path, ~/landmarks, ~/tracks/..., /tf, /tf_static, /diagnostics.\n"
+      "publishes ~/odometry, ~/prediction, ~/pose, ~/path, ~/landmarks, ~/map, ~/occupancy, ~/tracks/..., /tf, "
+      "/tf_static,\n"
+      "/diagnostics.\n"
       "Obeys ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY, CYCLONEDDS_URI.\n"
       "Examples:\n"
       "  edged ros2 --rig davis240c_ecd -r events:=/event_camera/events -r image:=/camera/image_raw -r imu:=/imu/data\n"

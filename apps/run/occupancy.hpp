@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "edged/occupancy/occupancy_slice.hpp"
 #include "run/dense_scan.hpp"
 #include "run/reconstruction.hpp"
 
@@ -22,11 +23,6 @@ octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::s
 
 /// The occupied voxels: centres and edge, binary.
 std::string voxels_ply(const octomap::OcTree& tree);
-
-/// Heights [m] in the map, the second above the first.
-struct HeightRange {
-  double low_m, high_m;
-};
 
 /// occupancy.ot (with probabilities) and occupancy.bt (occupied or free) of OctoMap; for the ROS map server map.pgm and
 /// map.yaml, what lies between two heights: a pixel is occupied if a voxel there is, else free if one is. Throws

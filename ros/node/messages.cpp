@@ -145,6 +145,19 @@ std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> 
   return out.message();
 }
 
+std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slice, double voxel_m,
+                              const FrameNames& frames) {
+  WireWriter out(wire);
+  write_header(out, wire, t, frames.world);
+  out.time(std::clamp(t, timestamp_from_ns(0), latest_stamp(wire)));
+  out.number(static_cast<float>(voxel_m));
+  out.number(static_cast<std::uint32_t>(slice.cells.cols));
+  out.number(static_cast<std::uint32_t>(slice.cells.rows));
+  write_pose(out, {Eigen::Quaterniond::Identity(), {slice.corner_W.x(), slice.corner_W.y(), 0.0}});
+  out.bytes({slice.cells.data, slice.cells.total()});
+  return out.message();
+}
+
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera) {
   const cv::Mat rendered = with_tracks(camera.image, camera.tracks);
   WireWriter out(wire);

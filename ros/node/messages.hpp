@@ -11,6 +11,7 @@
 
 #include "edged/autopilot/vehicle_odometry.hpp"
 #include "edged/io/ros/message_source.hpp"
+#include "edged/occupancy/occupancy_slice.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
 #include "node/diagnostics.hpp"
@@ -42,6 +43,10 @@ std::string camera_transforms_message(Wire wire, Timestamp t, const Rig& rig, co
 
 /// sensor_msgs/PointCloud2: points with x, y, z in the world, and the id of the feature (its lower 32 bits).
 std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> landmarks, const FrameNames& frames);
+
+/// nav_msgs/OccupancyGrid: a slice whose cells have edges of voxel_m, at height 0.
+std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slice, double voxel_m,
+                              const FrameNames& frames);
 
 /// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);

@@ -7,6 +7,14 @@
 
 namespace edged::node {
 
+void OccupancyGridConfig::visit(ConfigFields& fields) {
+  fields.add("voxel_m", voxel_m, {"m", 0, 10, "edge of the voxels of the occupancy grid that is published; 0: none"});
+  fields.add("period_s", period_s, {"s", 0.1, 3600, "between occupancy grids"});
+  fields.add("low_m", low_m,
+             {"m", -1e4, 1e4, "heights that the grid shows, from this one on; both 0: those of the path, and a voxel"});
+  fields.add("high_m", high_m, {"m", -1e4, 1e4, "up to this one"});
+}
+
 void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("rig", rig, {"", 0, 0, "name of a rig that ships, or a calibration file"});
   fields.choice("mode", mode, {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}},
@@ -25,6 +33,7 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("max_age_s", max_age_s,
              {"s", 0.05, 3600, "when the odometry lags so far behind, events are left out; frames at twice that"});
   fields.add("path_step_s", path_step_s, {"s", 0.001, 3600, "between poses of the path"});
+  fields.group("occupancy", occupancy);
   fields.add("mavlink", mavlink,
              {"", 0, 0, "send the state to an autopilot: udp:HOST:PORT, udpin:HOST:PORT or serial:DEVICE:BAUD"});
   fields.add("publish_px4", publish_px4,

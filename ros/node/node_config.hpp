@@ -18,6 +18,15 @@ struct FrameNames {
   std::string body = "body";   ///< B, the IMU
 };
 
+/// The occupancy map that is published as a grid seen from above.
+struct OccupancyGridConfig {
+  double voxel_m = 0.0;              ///< edge of its voxels; 0: none is made
+  double period_s = 5.0;             ///< between messages
+  double low_m = 0.0, high_m = 0.0;  ///< what it shows: heights in the world; both 0: those of the path, and a voxel
+
+  void visit(ConfigFields& fields);
+};
+
 struct NodeConfig {
   std::string rig;
   Mode mode = Mode::Fused;
@@ -27,6 +36,7 @@ struct NodeConfig {
   SensorDelays delays;
   double max_age_s = 0.25;
   double path_step_s = 0.1;
+  OccupancyGridConfig occupancy;
   std::string mavlink;       ///< URL of an autopilot, as of `edged run --mavlink`; "" without one
   bool publish_px4 = false;  ///< ROS 2: px4_msgs/VehicleOdometry
   AutopilotConfig autopilot;

@@ -5,6 +5,8 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,7 +14,7 @@
 
 namespace edged::node {
 
-/// Keeps what is published.
+/// Keeps what is published, by any threads.
 class KeptTransport : public Transport {
  public:
   explicit KeptTransport(Wire wire) : wire_(wire) {}
@@ -21,7 +23,8 @@ class KeptTransport : public Transport {
   Timestamp now() const override { return {}; }
   std::unique_ptr<Publisher> advertise(const Advertised& topic) override {
     topics.push_back(topic.name + " " + topic.type);
-    return std::make_unique<Kept>(messages);
+    if (topic.latched) latched.insert(topic.name);
+    return std::make_unique<Kept>(*this, topic.name);
   }
   std::string full_name(const std::string& topic) const override {
     const auto found = remapped.find(topic);
@@ -34,17 +37,25 @@ class KeptTransport : public Transport {
   std::map<std::string, TopicTroubles> troubles() const override { return {}; }
 
   std::vector<std::string> topics, messages;
+  std::set<std::string> latched;            ///< topics
+  std::map<std::string, std::string> last;  ///< message of each topic
   std::map<std::string, std::string> remapped;
   bool runs = false;
 
  private:
   struct Kept : Publisher {
-    explicit Kept(std::vector<std::string>& to) : messages(to) {}
+    Kept(KeptTransport& to, std::string name) : transport(to), topic(std::move(name)) {}
     bool wanted() const override { return true; }
-    void publish(const std::string& message) override { messages.push_back(message); }
-    std::vector<std::string>& messages;
+    void publish(const std::string& message) override {
+      const std::lock_guard lock(transport.mutex_);
+      transport.messages.push_back(message);
+      transport.last[topic] = message;
+    }
+    KeptTransport& transport;
+    std::string topic;
   };
   Wire wire_;
+  std::mutex mutex_;
 };
 
 }  // namespace edged::node

@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "node/outputs.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <chrono>
+#include <utility>
+
+#include "edged/core/check.hpp"
 
 namespace edged::node {
 namespace {
 
 constexpr std::size_t kQueue = 100, kImuQueue = 200, kImageQueue = 2;  // messages that may wait for a slow listener
 constexpr std::size_t kMostMapPoints = 20'000;
+constexpr double kMostCells = 16e6;             // of the occupancy grid: 200 m by 200 m in voxels of 5 cm
 constexpr std::size_t kMostPathPoses = 36'000;  // an hour by the default distance
 constexpr Duration kPathPeriod = std::chrono::milliseconds(500), kCamerasPeriod = std::chrono::seconds(1),
                    kMapPeriod = std::chrono::seconds(2);
@@ -36,7 +43,27 @@ Outputs::Outputs(Transport& transport, const NodeConfig& config)
       landmarks_(transport.advertise({"~/landmarks", "sensor_msgs/PointCloud2", kImageQueue})),
       map_(transport.advertise({"~/map", "sensor_msgs/PointCloud2", 1})),
       diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kQueue})),
-      map_points_(kMostMapPoints) {}
+      map_points_(kMostMapPoints) {
+  if (config.occupancy.voxel_m > 0.0) make_grid(config.occupancy);
+}
+
+void Outputs::make_grid(const OccupancyGridConfig& config) {
+  const bool of_path = config.low_m == 0.0 && config.high_m == 0.0;
+  if (!of_path && config.low_m >= config.high_m)
+    throw InputError::format("occupancy.low_m {:g}: must be below occupancy.high_m {:g}", config.low_m, config.high_m);
+  grid_ = transport_.advertise({"~/occupancy", "nav_msgs/OccupancyGrid", 1, true});
+  const auto show = [this, config, of_path](const OccupancyMap& map) {
+    const HeightRange heights = of_path ? HeightRange{map.path.low_m - config.voxel_m, map.path.high_m + config.voxel_m}
+                                        : HeightRange{config.low_m, config.high_m};
+    try {
+      if (const auto slice = slice_of(map.tree, heights, kMostCells))
+        grid_->publish(occupancy_message(wire_, map.t, *slice, config.voxel_m, frames_));
+    } catch (const InputError& e) {
+      if (!std::exchange(grid_too_large_, true)) spdlog::warn(fmt::format("occupancy grid: {}", e.what()));
+    }
+  };
+  occupancy_ = std::make_unique<OccupancyWorker>(config.voxel_m, config.period_s, show);
+}
 
 void Outputs::add_camera(const std::string& name, const std::string& topic) {
   tracks_[name] = transport_.advertise({"~/tracks/" + topic, "sensor_msgs/Image", kImageQueue});
@@ -63,6 +90,7 @@ void Outputs::publish(const Step& step, const Eigen::Vector3d& gyro_B) {
   if (!step.landmarks.empty() && landmarks_->wanted())
     landmarks_->publish(landmarks_message(wire_, step.t, step.landmarks, frames_));
   if (step.keyframe) map_points_.add(step.landmarks);
+  if (occupancy_) occupancy_->add(step.marginalized_keyframes);
   publish_map(step.t);
 }
 

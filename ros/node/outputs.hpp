@@ -9,14 +9,17 @@
 #include <string>
 
 #include "edged/live/seen_points.hpp"
+#include "edged/occupancy/occupancy_worker.hpp"
 #include "node/messages.hpp"
 #include "node/transport.hpp"
 
 namespace edged::node {
 
-/// Images, landmarks and the path are made only for subscribers.
+/// Images, landmarks and the path are made only for subscribers. The occupancy grid is made in a thread of its own, and
+/// kept for those who subscribe later.
 class Outputs {
  public:
+  /// Throws InputError for heights of the grid in the wrong order.
   Outputs(Transport& transport, const NodeConfig& config);
 
   /// Advertises the tracked images of a camera. topic: "events", "frames", or its name.
@@ -35,6 +38,7 @@ class Outputs {
   void publish_images(const Step& step) const;
   void extend_path(const NavState& state);
   void publish_map(Timestamp t);
+  void make_grid(const OccupancyGridConfig& config);
 
   Transport& transport_;
   const Wire wire_;
@@ -50,6 +54,9 @@ class Outputs {
   std::optional<Timestamp> path_sent_;
   std::map<std::string, SE3> sent_cameras_;  ///< T_B_C
   std::optional<Timestamp> cameras_sent_;    ///< stamp
+  std::unique_ptr<Publisher> grid_;
+  bool grid_too_large_ = false;                 ///< that has been reported
+  std::unique_ptr<OccupancyWorker> occupancy_;  ///< none without a grid; its thread alone publishes that. Last member
 };
 
 }  // namespace edged::node

@@ -126,6 +126,26 @@ TEST_F(Ros2Outputs, Landmarks) {
   EXPECT_TRUE(cloud->is_dense);
 }
 
+TEST_F(Ros2Outputs, OccupancyGrid) {
+  TypedPeer<nav_msgs_msg_dds__OccupancyGrid_> peer("/out", nav_msgs_msg_dds__OccupancyGrid__desc);
+  OccupancySlice slice{cv::Mat(2, 3, CV_8SC1, cv::Scalar(OccupancySlice::kUnknown)), {-1.0, 2.0}};
+  slice.cells.at<schar>(0, 1) = OccupancySlice::kOccupied;
+  slice.cells.at<schar>(1, 2) = OccupancySlice::kFree;
+  const auto* grid =
+      passed(peer, "nav_msgs/OccupancyGrid", node::occupancy_message(Wire::Cdr, kOutputTime, slice, 0.05, kNames));
+  ASSERT_TRUE(grid);
+  expect_header(grid->header, "odom");
+  EXPECT_EQ(grid->info.map_load_time.nanosec, 123'456'789U);
+  EXPECT_EQ(grid->info.resolution, 0.05F);
+  EXPECT_EQ(grid->info.width, 3U);
+  EXPECT_EQ(grid->info.height, 2U);
+  EXPECT_EQ(grid->info.origin.position.x, -1.0);
+  EXPECT_EQ(grid->info.origin.position.y, 2.0);
+  EXPECT_EQ(grid->info.origin.orientation.w, 1.0);
+  ASSERT_EQ(grid->data._length, 6U);
+  EXPECT_THAT(std::vector<int>(grid->data._buffer, grid->data._buffer + 6), ElementsAre(-1, 100, -1, -1, -1, 0));
+}
+
 TEST_F(Ros2Outputs, TrackedImages) {
   TypedPeer<sensor_msgs_msg_dds__Image_> peer("/out", sensor_msgs_msg_dds__Image__desc);
   const CameraStep camera{"cam", Modality::Frames, cv::Mat(20, 30, CV_8UC1, cv::Scalar(50))};

@@ -125,6 +125,7 @@ const Output kOutputs[] = {
     {"~/path", "nav_msgs::msg::dds_::Path_", {true, false, 10}},
     {"~/landmarks", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 10}},
     {"~/map", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 1}},
+    {"~/occupancy", "nav_msgs::msg::dds_::OccupancyGrid_", {true, true, 1}},
     {"~/tracks/events", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"~/tracks/frames", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"/tf", "tf2_msgs::msg::dds_::TFMessage_", {true, false, 1000}},
@@ -184,6 +185,24 @@ Json cloud_fields(const std::string& bytes) {
   json["row_step"] = in.get<std::uint32_t>();
   json["bytes"] = in.get<std::vector<std::uint8_t>>().size();
   json["is_dense"] = in.get<bool>();
+  json["complete"] = in.at_end();
+  return json;
+}
+
+Json grid_fields(const std::string& bytes) {
+  Decoder in(bytes);
+  const auto header = in.header();
+  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}};
+  json["load_time_s"] = in.get<std::int32_t>();
+  json["load_time_ns"] = in.get<std::uint32_t>();
+  json["resolution"] = in.get<float>();
+  json["width"] = in.get<std::uint32_t>();
+  json["height"] = in.get<std::uint32_t>();
+  json["origin"] = in.doubles(7);
+  std::map<std::string, int> cells = {{"occupied", 0}, {"free", 0}, {"unknown", 0}, {"others", 0}};
+  for (const std::int8_t cell : in.get<std::vector<std::int8_t>>())
+    ++cells[cell == 100 ? "occupied" : cell == 0 ? "free" : cell == -1 ? "unknown" : "others"];
+  json["cells"] = cells;
   json["complete"] = in.at_end();
   return json;
 }
@@ -259,7 +278,8 @@ Json fields_of(const std::string& type, const std::string& bytes) {
       {"Odometry", odometry_fields},   {"PoseWithCovarianceStamped", pose_fields},
       {"Path", path_fields},           {"PointCloud2", cloud_fields},
       {"Image", image_fields},         {"TFMessage", transforms_fields},
-      {"VehicleOdometry", px4_fields}, {"DiagnosticArray", diagnostics_fields}};
+      {"VehicleOdometry", px4_fields}, {"DiagnosticArray", diagnostics_fields},
+      {"OccupancyGrid", grid_fields}};
   const std::size_t begin = type.rfind(':') + 1;
   return decoders.at(type.substr(begin, type.size() - begin - 1))(bytes);
 }

@@ -110,7 +110,7 @@ class PeerOnFastDds(unittest.TestCase):
         return json.loads((self.folder / f"{name}.json").read_text())
 
     def test_all_arrives_and_all_that_is_published_can_be_read(self):
-        node = Node(self, "--set", "publish_px4=true")
+        node = Node(self, "--set", "publish_px4=true", "--set", "occupancy.voxel_m=0.05", "--set", "occupancy.period_s=1")
         seen = self.peer(self.recording, "peer")
         counters = node.end()
         self.assertEqual(counters.get("/events messages missed"), None)
@@ -142,6 +142,12 @@ class PeerOnFastDds(unittest.TestCase):
         cloud = last["~/landmarks"]
         self.assertEqual([field["name"] for field in cloud["fields"]], ["x", "y", "z", "id"])
         self.assertEqual(cloud["bytes"], cloud["width"] * cloud["point_step"])
+        grid, cells = last["~/occupancy"], last["~/occupancy"]["cells"]
+        self.assertEqual((grid["frame"], round(grid["resolution"], 6), grid["origin"][2:]), ("odom", 0.05, [0, 0, 0, 0, 1]))
+        self.assertEqual(10**9 * grid["load_time_s"] + grid["load_time_ns"], grid["stamp_ns"])
+        self.assertEqual((sum(cells.values()), cells["others"]), (grid["width"] * grid["height"], 0))
+        self.assertGreater(cells["free"], 100)
+        print(f"grid of {grid['width']} x {grid['height']}: {cells}")
         for camera in ("events", "frames"):
             image = last[f"~/tracks/{camera}"]
             self.assertEqual(image["bytes"], 3 * image["width"] * image["height"])
@@ -173,7 +179,8 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertTrue(51 <= last["quality"] <= 100, last["quality"])
 
     def test_a_late_joiner_and_a_second_node_get_the_same_and_another_domain_nothing(self):
-        nodes = [Node(self), Node(self, name="second")]
+        # A grid of the first keyframe alone, kept for those who come later.
+        nodes = [Node(self), Node(self, "--set", "occupancy.voxel_m=0.1", "--set", "occupancy.period_s=3600", name="second")]
         other_domain = Node(self, domain=self.domain % 100 + 101, name="other")
         first = self.start_peer(self.recording, "peer")
         time.sleep(SECONDS / 2)
@@ -189,6 +196,7 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertLess(largest_difference(late_poses, all_poses), 1e-12)
         seen = json.loads((self.folder / "late.json").read_text())
         self.assertGreater(seen["/tf_static"]["count"], 0)
+        self.assertEqual(seen["~/occupancy"]["count"], 1)
 
     def test_a_driver_that_is_killed_and_started_again_is_survived(self):
         node = Node(self)

@@ -71,6 +71,16 @@ constexpr std::array kFields = {
            "string child_frame_id\n"
            "geometry_msgs/PoseWithCovariance pose\n"
            "geometry_msgs/TwistWithCovariance twist\n"},
+    Fields{"nav_msgs/MapMetaData", "",
+           "TIME map_load_time\n"
+           "float32 resolution\n"
+           "uint32 width\n"
+           "uint32 height\n"
+           "geometry_msgs/Pose origin\n"},
+    Fields{"nav_msgs/OccupancyGrid", "3381f2d731d4076ec5c71b0759edbe4e",
+           "std_msgs/Header header\n"
+           "nav_msgs/MapMetaData info\n"
+           "int8[] data\n"},
     Fields{"nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7",
            "std_msgs/Header header\n"
            "geometry_msgs/PoseStamped[] poses\n"},
