@@ -108,6 +108,15 @@ class LivePage(WithFlight):
             self.assertLessEqual(told, dense["all"])
         self.assertGreater(told, 1000)
 
+    def test_occupied_voxels_come_while_it_goes_on(self):
+        with self.serving("--mode", "frames", "--occupancy", self.folder / "space") as (_, url):
+            listener = Listener(url)
+            listener.join()
+        voxels = [update["voxels"] for update in listener.updates if "voxels" in update]
+        self.assertGreater(len(voxels), 0)
+        self.assertEqual(len(base64.b64decode(voxels[-1]["xyz"])), 6 * voxels[-1]["all"])
+        self.assertEqual(voxels[-1]["edge_m"], 0.05)
+
     def test_the_rows_are_those_of_the_report(self):
         with self.serving("--live", "--duration", 2) as (_, url):
             listener = Listener(url)

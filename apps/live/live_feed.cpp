@@ -203,6 +203,8 @@ std::string LiveFeed::news(Place& place) const {
     for (const float x : now.new_map) map.push_back(rounded(x, 3));
   }
   if (nlohmann::ordered_json dense = dense_.news(place.dense); !dense.is_null()) json["dense"] = std::move(dense);
+  if (nlohmann::ordered_json voxels = dense_.new_voxels(place.dense); !voxels.is_null())
+    json["voxels"] = std::move(voxels);
   return compact_json(json);
 }
 

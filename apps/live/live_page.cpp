@@ -66,6 +66,7 @@ nlohmann::ordered_json about_run(const RunContext& run) {
           {"mode", mode_name(run.mode)},
           {"frame", run.frame.name()},
           {"dense", run.options.dense},
+          {"voxels", !run.options.occupancy.folder.empty()},
           {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
 }
 

@@ -147,6 +147,22 @@ TEST_F(LiveRun, TellsEachDensePointOnceAndFewAtATime) {
   EXPECT_EQ(with_news(0, news(place)["dense"]), 7U);
 }
 
+TEST_F(LiveRun, TellsTheVoxelsWhenTheyHaveChanged) {
+  LiveFeed::Place place;
+  go_on(1);
+  EXPECT_FALSE(news(place).contains("voxels"));
+  dense.set_voxels({{1.0F, 2.0F, 3.0F}, {2.0F, 2.0F, 3.0F}}, 0.1);
+  const nlohmann::json told = news(place)["voxels"];
+  EXPECT_EQ(told["all"], 2);
+  EXPECT_EQ(told["edge_m"], 0.1);
+  EXPECT_EQ(told["low"][0], 1.0);
+  EXPECT_FALSE(news(place).contains("voxels"));
+  dense.set_voxels(std::vector<Eigen::Vector3f>(3 * LivePoints::kMostVoxels, {1.0F, 2.0F, 3.0F}), 0.1);
+  const nlohmann::json more = news(place)["voxels"];
+  EXPECT_EQ(more["all"], 3 * LivePoints::kMostVoxels);
+  EXPECT_EQ(more["xyz"].get<std::string>().size(), 8 * LivePoints::kMostVoxels) << "6 bytes each, in base64";
+}
+
 TEST(LivePointsOfALongRun, AreBoundedAndTheSameForEarlyAndLateViewers) {
   LivePoints points;
   const Timestamp t = timestamp_from_seconds(3);

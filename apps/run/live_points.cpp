@@ -62,4 +62,29 @@ nlohmann::ordered_json LivePoints::news(Place& place) const {
   return json;
 }
 
+void LivePoints::set_voxels(const std::vector<Eigen::Vector3f>& centres, double edge_m) {
+  std::vector<Eigen::Vector3f> chosen;
+  const std::size_t kept = std::min(kMostVoxels, centres.size());
+  for (std::size_t i = 0; i < kept; ++i) chosen.push_back(centres[i * centres.size() / kept]);
+  const std::lock_guard lock(mutex_);
+  voxels_ = std::move(chosen);
+  voxel_m_ = edge_m;
+  all_voxels_ = centres.size();
+  ++voxels_number_;
+}
+
+nlohmann::ordered_json LivePoints::new_voxels(Place& place) const {
+  std::unique_lock lock(mutex_);
+  if (std::exchange(place.voxels, voxels_number_) == voxels_number_) return nullptr;
+  const std::vector<Eigen::Vector3f> voxels = voxels_;
+  const double edge_m = voxel_m_;
+  const std::size_t all = all_voxels_;
+  lock.unlock();
+  nlohmann::ordered_json json = packed_json(voxels, {});
+  json["all"] = all;
+  json["edge_m"] = edge_m;
+  json["axes"] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  return json;
+}
+
 }  // namespace edged

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The dense points of a run that goes on, for its viewers: a bounded number, spread evenly, each sent once.
+// The dense points and occupied voxels of a run that goes on, for its viewers: a bounded number, spread evenly; each
+// point is sent once, voxels all together when they have changed.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include <deque>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "common/evenly.hpp"
 #include "edged/dense/depth_map.hpp"
@@ -18,11 +20,11 @@ namespace edged {
 /// For any thread. Points lie where their keyframe was when it was measured; only dense.ply has their final places.
 class LivePoints {
  public:
-  static constexpr std::size_t kMost = 1'000'000, kMostAtOnce = 10'000;
+  static constexpr std::size_t kMost = 1'000'000, kMostAtOnce = 10'000, kMostVoxels = 20'000;
 
   /// What one viewer has received.
   struct Place {
-    std::size_t points = 0, thinned = 0;
+    std::size_t points = 0, thinned = 0, voxels = 0;
   };
 
   /// The odometry frame in the map at a keyframe; before the depth map of that keyframe.
@@ -34,6 +36,11 @@ class LivePoints {
   /// (the second, the fourth ...), before it adds these; "from": number of points that it has then; "all": number of
   /// points so far. Null if there is nothing new.
   nlohmann::ordered_json news(Place& place) const;
+
+  /// Replaces those before. centres: in the map [m]; edge_m: of a voxel.
+  void set_voxels(const std::vector<Eigen::Vector3f>& centres, double edge_m);
+  /// The voxels as the report has them, or null if this viewer has them.
+  nlohmann::ordered_json new_voxels(Place& place) const;
 
  private:
   struct Point {
@@ -49,6 +56,9 @@ class LivePoints {
   std::deque<Keyframe> keyframes_;
   Evenly<Point> points_{kMost};
   std::size_t thinned_ = 0, all_ = 0;
+  std::vector<Eigen::Vector3f> voxels_;
+  double voxel_m_ = 0.0;
+  std::size_t all_voxels_ = 0, voxels_number_ = 0;  ///< the second: how often they have been set
 };
 
 }  // namespace edged

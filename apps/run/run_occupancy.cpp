@@ -7,15 +7,19 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <memory>
 
 #include "common/files.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
+#include "edged/occupancy/occupancy_worker.hpp"
 #include "run/occupancy.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {
 namespace {
+
+constexpr double kShowPeriod_s = 5.0;
 
 /// Observations at keyframes are kept until the final poses are known: 40 bytes each, about 2 MB a minute.
 class RunOccupancy : public RunObserver {
@@ -28,9 +32,14 @@ class RunOccupancy : public RunObserver {
     for (const RigCamera& camera : run.used.cameras)
       model_.cameras.push_back({camera.name, ideal_pinhole(camera.model), camera.modality});
     make_picture_folder(options_.folder);
+    if (!run.options.serve.empty())
+      so_far_ = std::make_unique<OccupancyWorker>(options_.voxel_m, kShowPeriod_s, [&run](const OccupancyMap& map) {
+        run.live_points.set_voxels(occupied_voxels(map.tree), map.tree.getResolution());
+      });
   }
 
   void on_step(const Step& step) override {
+    if (so_far_) so_far_->add(step.marginalized_keyframes);
     if (is_tracking(step.status) && step.keyframe) add_images(model_, step);
   }
 
@@ -55,9 +64,10 @@ class RunOccupancy : public RunObserver {
     return {low.T.translation().z() - options_.voxel_m, high.T.translation().z() + options_.voxel_m};
   }
 
-  const RunContext& run_;
+  RunContext& run_;
   const OccupancyOptions& options_;
   Reconstruction model_;
+  std::unique_ptr<OccupancyWorker> so_far_;  ///< for the live page
 };
 
 }  // namespace

@@ -17,7 +17,8 @@ function emptyRun(about) {
                    'event_tracks', 'frame_tracks', 'landmarks', 'event_track_survival_rate', 'frame_track_survival_rate', 'map_matches', 'map_reach', 'event_rate', 'depth',
                    'processing', 'latency', 'sigma3_x', 'sigma3_y', 'sigma3_z'];
   return {name: about.recording, folder: '', is_file: false, metrics: null, live: about, frame: about.frame, evaluation: null,
-          rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], dense: about.dense ? new GrowingCloud() : null, changes: [], pictures: []};
+          rows: Object.fromEntries(columns.map(name => [name, []])), pose_errors: {}, truth: [], map: [], dense: about.dense ? new GrowingCloud() : null,
+          voxels: about.voxels ? {xyz: new Float32Array(0), grey: new Uint8Array(0), all: 0} : null, changes: [], pictures: []};
 }
 
 /** Adds new rows and changes; also the newest row, even if it is not kept. */
@@ -31,6 +32,7 @@ function takeUpdate(run, update) {
   run.changes.splice(update.changes_from, Infinity, ...update.changes);
   if (update.map) run.map.splice(0, Infinity, ...update.map);
   if (update.dense) run.dense.take(update.dense);
+  if (update.voxels) run.voxels = {...update.voxels, ...unpacked(update.voxels)};
 }
 
 /** Name by name; null is left out. */
