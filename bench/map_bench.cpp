@@ -75,9 +75,28 @@ constexpr int kKeyframesInView = 8, kSightsOfOne = 8;
 
 Eigen::Vector3d point_ahead(int i) { return {i % 3 - 1.0, i % 4 - 1.5, 3.0 + 0.3 * i}; }
 
-/// range(0): keyframes, of which eight are seen.
+/// range(0): keyframes along a street, 0.4 m apart, that looks ahead. Some of the points of thirty of them are in view.
+void BM_SelectCandidates(benchmark::State& state) {
+  std::mt19937_64 random(1);
+  const double before_mb = resident_mb();
+  KeyframeMap map = map_of(static_cast<int>(state.range(0)), random);
+  state.counters["kB_per_keyframe"] =
+      1024.0 * (resident_mb() - before_mb) / static_cast<double>(map.keyframes().size());
+  std::vector<SE3> T_M_K;
+  for (std::size_t k = 0; k < map.keyframes().size(); ++k)
+    T_M_K.emplace_back(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 0.4 * static_cast<double>(k)));
+  const SE3 T_M_C(Eigen::Quaterniond::Identity(), T_M_K[T_M_K.size() / 2].translation());
+  const CameraModel camera(240, 180, kFocalOfTheMap, kFocalOfTheMap, 119.5, 89.5);
+  for (auto _ : state) benchmark::DoNotOptimize(map.visible({"frames", {}, T_M_K}, T_M_C, camera, 80));
+}
+BENCHMARK(BM_SelectCandidates)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+/// range(0): keyframes, of which eight are seen; range(1): those with a joint covariance.
 void BM_TakeUpWhatWasFound(benchmark::State& state) {
-  MapFilter filter{MapFilterConfig{}};
+  MapFilterConfig config;
+  config.max_active = static_cast<int>(state.range(1));
+  const double before_mb = resident_mb();
+  MapFilter filter{config};
   filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
   for (int k = 0; k < state.range(0); ++k) {
     const Timestamp t = timestamp_from_seconds(0.3 * k);
@@ -91,9 +110,41 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
       observations.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
     }
   }
+  filter.wake(std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7});
+  state.counters["MB"] = resident_mb() - before_mb;
   for (auto _ : state) benchmark::DoNotOptimize(filter.update(observations, observations.size(), {SE3()}));
 }
-BENCHMARK(BM_TakeUpWhatWasFound)->Arg(25)->Arg(100)->Arg(400)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_TakeUpWhatWasFound)
+    ->Args({25, 100})
+    ->Args({100, 100})
+    ->Args({400, 400})
+    ->Args({1000, 1000})
+    ->Args({1000, 100})
+    ->Args({10000, 100})
+    ->Unit(benchmark::kMillisecond);
+
+/// range(0): keyframes of a street. The body comes back to its beginning, by the other side: eight of them wake, and
+/// what is between is tied to them; then it goes on at its end, and they rest again.
+void BM_ComeBack(benchmark::State& state) {
+  MapFilter filter{MapFilterConfig{}};
+  filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
+  std::vector<std::uint32_t> begin, end;
+  for (std::uint32_t k = 0; k < state.range(0); ++k) {
+    const Timestamp t = timestamp_from_seconds(0.3 * k);
+    filter.predict(SE3(), SE3(), t);
+    filter.add_keyframe(SE3(), SE3(), t);
+    (k < kKeyframesInView ? begin : end).push_back(k);
+  }
+  end.erase(end.begin(), end.end() - 100);
+  double t = 0.3 * static_cast<double>(state.range(0));
+  for (auto _ : state) {
+    filter.wake(begin);
+    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
+    filter.wake(end);
+    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
+  }
+}
+BENCHMARK(BM_ComeBack)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
 
 constexpr double kLook_s = 0.25, kPose_s = 0.05;
 constexpr int kMapKeyframes = 100, kLooksPerKeyframe = 12;

@@ -20,7 +20,7 @@ struct KeyframeMapConfig {
   double min_age_s = 2.0;            ///< younger keyframes share their points with the window
   double max_view_angle_deg = 35.0;  ///< between the rays of a point now and then
   static constexpr double max_scale = 1.5;  ///< a point is at most so much nearer or farther than then
-  int max_keyframes = 100;                  ///< kept; time and memory of the filter grow with the square
+  int max_keyframes = 1000;                 ///< kept
   int candidates = 30;                      ///< nearest keyframes that are searched for an image
   void visit(ConfigFields& fields);
 };
@@ -34,6 +34,7 @@ struct MapFilterConfig {
   int min_observations = 8;
   double min_found_share = 0.4;
   double max_misfit = 0.75;  ///< median residual of the map matches after the update [sigma]
+  int max_active = 100;      ///< keyframes in one joint covariance: time and memory grow with the square
   void visit(ConfigFields& fields);
 };
 

@@ -17,7 +17,7 @@ void KeyframeMapConfig::visit(ConfigFields& fields) {
              {"deg", 1, 90, "A point is not matched when its viewing direction has changed by more."});
   fields.add(
       "max_keyframes", max_keyframes,
-      {"", 2, 1000, "Largest number of keyframes. Beyond it the one that was not matched for longest is removed."});
+      {"", 2, 10000, "Largest number of keyframes. Beyond it the one that was not matched for longest is removed."});
   fields.add("candidates", candidates,
              {"", 1, 1000, "Number of nearest keyframes whose points are matched in an image."});
 }
@@ -32,6 +32,10 @@ void MapFilterConfig::visit(ConfigFields& fields) {
              {"", 0, 1, "A match with a smaller share of the expected points is rejected."});
   fields.add("max_misfit", max_misfit,
              {"sigma", 0.01, 100, "A match with a larger median residual after the fit is rejected."});
+  fields.add("max_active", max_active,
+             {"", 10, 1000,
+              "Number of keyframes with a joint covariance: those in view last. The others rest, and move with these. "
+              "More cost time, with the square."});
 }
 
 void MapConfig::visit(ConfigFields& fields) {

@@ -5,7 +5,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "edged/core/statistics.hpp"
@@ -18,8 +20,10 @@ using Eigen::VectorXd;
 
 constexpr double kCauchy = 2.0;             // [sigma]
 constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
-
-Eigen::Index block_of(std::size_t keyframe) { return 6 * static_cast<Eigen::Index>(keyframe + 1); }
+// Ties of a keyframe that comes to rest. With one, what it has in common with the others is lost at each return.
+constexpr std::size_t kTies = 3;
+constexpr std::size_t kCompared = 10;  // keyframes that come into question for the next tie, after the first
+constexpr double kLeast = 1e-12;       // variance that keeps an inverse finite [m^2, rad^2]
 
 }  // namespace
 
@@ -35,6 +39,7 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
 }
 
 void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift) {
+  rest_beyond_limit();
   const Matrix6d F = transport(T_M_B_, T_O_B_.inverse() * T_O_B);
   const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = P_.leftCols<6>() * F.transpose();
   P_.leftCols<6>() = moved;
@@ -54,25 +59,127 @@ void MapFilter::add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t) {
   grown.bottomLeftCorner(6, n) = F * P_.topRows<6>();
   grown.topRightCorner(n, 6) = grown.bottomLeftCorner(6, n).transpose();
   T_M_K_.push_back(T_M_O * T_O_K);
+  woken_.push_back(t_);
+  row_.push_back(n);
   grown.bottomRightCorner<6, 6>() = F * P_.topLeftCorner<6, 6>() * F.transpose() +
                                     drift_covariance(config_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
   P_ = std::move(grown);
 }
 
-void MapFilter::load(std::vector<SE3> T_M_K, const MatrixXd& covariance) {
+void MapFilter::load(std::vector<SE3> T_M_K, const MatrixXd& covariance, std::span<const TiedPose> resting) {
   T_M_K_ = std::move(T_M_K);
+  woken_.assign(T_M_K_.size(), Timestamp::min());
+  row_.assign(T_M_K_.size(), 0);
+  resting_ = RestingPoses();
+  for (const TiedPose& pose : resting) {
+    resting_.rest(pose);
+    row_[pose.keyframe] = kResting;
+  }
   P_ = MatrixXd::Zero(6 + covariance.rows(), 6 + covariance.cols());
   P_.bottomRightCorner(covariance.rows(), covariance.cols()) = covariance;
+  Eigen::Index next = 6;
+  for (const std::size_t keyframe : awake()) row_[keyframe] = std::exchange(next, next + 6);
 }
 
 MatrixXd MapFilter::keyframe_covariance() const { return P_.bottomRightCorner(P_.rows() - 6, P_.cols() - 6); }
 
 void MapFilter::remove_keyframe(std::size_t keyframe) {
-  const Eigen::Index k = block_of(keyframe), after = P_.rows() - k - 6;
-  P_.middleRows(k, after) = P_.bottomRows(after).eval();
-  P_.middleCols(k, after) = P_.rightCols(after).eval();
-  P_.conservativeResize(k + after, k + after);
-  T_M_K_.erase(T_M_K_.begin() + static_cast<std::ptrdiff_t>(keyframe));
+  if (resting_.depend_on(keyframe) && !resting_.contains(keyframe)) rest(std::array{keyframe});
+  resting_.remove(keyframe);
+  const auto at = static_cast<std::ptrdiff_t>(keyframe);
+  T_M_K_.erase(T_M_K_.begin() + at);
+  woken_.erase(woken_.begin() + at);
+  row_.erase(row_.begin() + at);
+  select_rows();
+}
+
+/// In order of their rows.
+std::vector<std::size_t> MapFilter::awake() const {
+  std::vector<std::size_t> keyframes;
+  for (std::size_t k = 0; k < row_.size(); ++k) {
+    if (row_[k] != kResting) keyframes.push_back(k);
+  }
+  return keyframes;
+}
+
+/// Drops the rows of P_ that belong to no keyframe any more, and sorts the others by keyframe.
+void MapFilter::select_rows() {
+  std::vector<Eigen::Index> rows = {0, 1, 2, 3, 4, 5};
+  for (const std::size_t keyframe : awake()) {
+    const Eigen::Index first = std::exchange(row_[keyframe], std::ssize(rows));
+    for (Eigen::Index i = 0; i < 6; ++i) rows.push_back(first + i);
+  }
+  P_ = P_(rows, rows).eval();
+}
+
+void MapFilter::rest_beyond_limit() {
+  std::vector<std::size_t> keyframes = awake();
+  const std::ptrdiff_t many = std::ssize(keyframes) - config_.max_active;
+  if (many <= 0) return;
+  std::ranges::stable_sort(keyframes, {}, [&](std::size_t k) { return woken_[k]; });
+  rest(std::span(keyframes).first(static_cast<std::size_t>(many)));
+}
+
+/// One after the other, each tied to one that does not rest yet.
+void MapFilter::rest(std::span<const std::size_t> keyframes) {
+  for (const std::size_t keyframe : keyframes) {
+    const Eigen::Index row = std::exchange(row_[keyframe], kResting);
+    resting_.rest(tied(keyframe, row));
+  }
+  select_rows();
+}
+
+/// Its error given those of few others: one after the other that which leaves it least uncertain. row: its own in P_.
+TiedPose MapFilter::tied(std::size_t keyframe, Eigen::Index row) const {
+  std::vector<std::uint32_t> to, others;
+  for (const std::size_t other : awake()) others.push_back(static_cast<std::uint32_t>(other));
+  const auto given = [&] {
+    std::vector<Eigen::Index> rows(6 * (to.size() + 1));
+    std::iota(rows.begin(), rows.begin() + 6, row);
+    for (std::size_t i = 0; i < to.size(); ++i)
+      std::iota(rows.begin() + 6 * (i + 1), rows.begin() + 6 * (i + 2), row_[to[i]]);
+    return tied_pose(static_cast<std::uint32_t>(keyframe), to, P_(rows, rows));
+  };
+  while (!others.empty() && to.size() < kTies) {
+    std::vector<std::pair<double, std::uint32_t>> left;  // volume of its error
+    for (const std::uint32_t other : others) {
+      to.push_back(other);
+      left.emplace_back(Matrix6d(given().covariance + kLeast * Matrix6d::Identity()).determinant(), other);
+      to.pop_back();
+    }
+    std::ranges::sort(left);
+    to.push_back(left.front().second);
+    others.clear();
+    for (std::size_t i = 1; i < std::min(left.size(), kCompared); ++i) others.push_back(left[i].second);
+  }
+  return given();
+}
+
+void MapFilter::wake(std::span<const std::uint32_t> keyframes) {
+  for (const std::uint32_t keyframe : keyframes) woken_[keyframe] = t_;
+  const std::vector<TiedPose> woken = resting_.wake(keyframes);
+  if (woken.empty()) return;
+  const Eigen::Index n = P_.rows(), m = 6 * std::ssize(woken);
+  P_.conservativeResize(n + m, n + m);
+  P_.bottomRows(m).setZero();
+  P_.rightCols(m).setZero();
+  for (const TiedPose& pose : woken) {
+    row_[pose.keyframe] = n + 6 * (&pose - woken.data());
+    fill_rows(pose);
+  }
+  select_rows();
+}
+
+/// Its covariance with all others, which follows from that of its ties, and its own.
+void MapFilter::fill_rows(const TiedPose& pose) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> cross = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, P_.cols());
+  for (const TiedPose::Tie& tie : pose.ties) cross += tie.gain * P_.middleRows<6>(row_[tie.to]);
+  Matrix6d own = pose.covariance;
+  for (const TiedPose::Tie& tie : pose.ties) own += cross.middleCols<6>(row_[tie.to]) * tie.gain.transpose();
+  const Eigen::Index row = row_[pose.keyframe];
+  P_.middleRows<6>(row) = cross;
+  P_.middleCols<6>(row) = cross.transpose();
+  P_.block<6, 6>(row, row) = 0.5 * (own + own.transpose());
 }
 
 std::optional<LinearizedObservation> MapFilter::linearise(const MapObservation& observation, const SE3& T_B_C) const {
@@ -80,7 +187,7 @@ std::optional<LinearizedObservation> MapFilter::linearise(const MapObservation& 
 }
 
 Eigen::Matrix2d MapFilter::expected_covariance(const LinearizedObservation& row, std::size_t keyframe) const {
-  const Eigen::Index k = block_of(keyframe);
+  const Eigen::Index k = row_[keyframe];
   const Eigen::Matrix2d cross = row.by_body * P_.block<6, 6>(0, k) * row.by_keyframe.transpose();
   return row.R + row.by_body * P_.topLeftCorner<6, 6>() * row.by_body.transpose() + cross + cross.transpose() +
          row.by_keyframe * P_.block<6, 6>(k, k) * row.by_keyframe.transpose();
@@ -95,8 +202,11 @@ double MapFilter::expected_error(const MapObservation& observation, const SE3& T
 SE3 MapFilter::correct(const VectorXd& error) {
   const SE3 T_M_O = corrected(T_M_B_, error.head<6>()) * T_O_B_.inverse();
   T_M_B_ = T_M_O * T_O_B_;
-  for (std::size_t k = 0; k < T_M_K_.size() && !fixed_keyframes_; ++k)
-    T_M_K_[k] = corrected(T_M_K_[k], error.segment<6>(block_of(k)));
+  if (fixed_keyframes_) return T_M_O;
+  std::vector<Vector6d> errors(T_M_K_.size());
+  for (const std::size_t k : awake()) errors[k] = error.segment<6>(row_[k]);
+  resting_.follow(errors);
+  for (std::size_t k = 0; k < T_M_K_.size(); ++k) T_M_K_[k] = corrected(T_M_K_[k], errors[k]);
   return T_M_O;
 }
 
@@ -132,7 +242,7 @@ double MapFilter::misfit(std::span<const MapObservation> observations, std::span
   std::vector<double> squared;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Eigen::Vector2d left = rows[i].r + rows[i].by_body * error.head<6>() +
-                                 rows[i].by_keyframe * error.segment<6>(block_of(observations[i].keyframe));
+                                 rows[i].by_keyframe * error.segment<6>(row_[observations[i].keyframe]);
     squared.push_back(left.dot(rows[i].R.inverse() * left));
   }
   return std::sqrt(median(std::move(squared)) / kMedianOfSquares);
@@ -154,9 +264,9 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
   const Eigen::Index m = H.rows();
   MatrixXd P_t(P_.rows(), m), P_tt(m, m);
   P_t.leftCols<6>() = P_.leftCols<6>();
-  for (const auto& [keyframe, at] : place) P_t.middleCols<6>(at) = P_.middleCols<6>(block_of(keyframe));
+  for (const auto& [keyframe, at] : place) P_t.middleCols<6>(at) = P_.middleCols<6>(row_[keyframe]);
   P_tt.topRows<6>() = P_t.topRows<6>();
-  for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(block_of(keyframe));
+  for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(row_[keyframe]);
   const MatrixXd inverse = (MatrixXd::Identity(m, m) + H * P_tt).partialPivLu().inverse();
   // Keyframes without any correlation with these blocks do not change by a bit.
   std::vector<Eigen::Index> moved;

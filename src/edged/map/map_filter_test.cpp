@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace edged {
@@ -77,11 +79,13 @@ struct Walk {
   double early_m = 0.0, late_m = 0.0, odometry_late_m = 0.0, nees = 0.0;
 };
 
-/// Keyframes in the first round, of 8 s; after that their points are observed again.
-Walk walk(std::uint64_t seed) {
+/// Keyframes in the first round, of 8 s; after that their points are observed again. At most so many do not rest.
+Walk walk(std::uint64_t seed, int max_active = 100) {
   constexpr double kMapped_s = 8.0, kEarly_s = 60.0, kLate_s = 180.0, kEnd_s = 240.0;
   World world(seed);
-  MapFilter filter(config_of_world());
+  MapFilterConfig config = config_of_world();
+  config.max_active = max_active;
+  MapFilter filter(config);
   filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0);
   SE3 T_M_O;
   std::vector<SE3> keyframes;  // their true poses
@@ -98,6 +102,7 @@ Walk walk(std::uint64_t seed) {
       continue;
     }
     const std::vector<MapObservation> observations = world.observations(keyframes, nth / 4 % keyframes.size(), t);
+    filter.wake(std::array{observations.front().keyframe});
     T_M_O = filter.update(observations, observations.size(), {world.T_B_C}).value_or(T_M_O);
     Eigen::Matrix<double, 6, 1> error;
     error << T_M_B.translation() - filter.T_M_B().translation(),
@@ -114,19 +119,33 @@ Walk walk(std::uint64_t seed) {
           sum.nees / all};
 }
 
-TEST(MapFilter, HoldsTheBodyWhereTheOdometryWalksAwayAndKnowsHowWell) {
+Walk mean_of_walks(int max_active) {
   Walk mean;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const Walk walked = walk(seed);
+    const Walk walked = walk(seed, max_active);
     mean.early_m += walked.early_m / 12.0;
     mean.late_m += walked.late_m / 12.0;
     mean.odometry_late_m += walked.odometry_late_m / 12.0;
     mean.nees += walked.nees / 12.0;
   }
+  return mean;
+}
+
+TEST(MapFilter, HoldsTheBodyWhereTheOdometryWalksAwayAndKnowsHowWell) {
+  const Walk mean = mean_of_walks(100);
   EXPECT_LT(mean.late_m, 1.1 * mean.early_m) << "the drift of the first round remains, no more";
   EXPECT_LT(mean.late_m, 0.4 * mean.odometry_late_m);
   EXPECT_GT(mean.nees, 0.6);
   EXPECT_LT(mean.nees, 1.5);
+}
+
+/// Four of eight keyframes do not rest, and each comes back once a round, 29 times.
+TEST(MapFilter, IsAsGoodAndAsSureWhereMostKeyframesRest) {
+  const Walk full = mean_of_walks(100), mean = mean_of_walks(4);
+
+  EXPECT_LT(mean.late_m, 1.1 * full.late_m);
+  EXPECT_GT(mean.nees, 0.6);
+  EXPECT_LT(mean.nees, 1.15 * full.nees);
 }
 
 class OneKeyframe : public testing::Test {
@@ -242,6 +261,67 @@ TEST(MapFilter, TakesEachObservationByTheCameraOfItsImage) {
   };
   EXPECT_LT(error_with(true), 0.002);
   EXPECT_LT(error_with(true), 0.2 * error_with(false));
+}
+
+/// A street is walked along, then the first keyframe is observed from its end: of a chain, the ties lose nothing.
+TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
+  constexpr int kKeyframes = 12;
+  std::vector<MapFilter> filters;
+  for (const int max_active : {100, 3}) {
+    World world(5, 0.005, 0.001);
+    MapFilterConfig config = config_of_world();
+    config.drift_m = 0.005;
+    config.max_active = max_active;
+    MapFilter& filter = filters.emplace_back(config);
+    filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.1, 0.01);
+    std::vector<SE3> keyframes;
+    for (int k = 1; k <= kKeyframes; ++k) {
+      const Timestamp t = timestamp_from_seconds(kStep_s * k);
+      const SE3 T_O_B = world.odometry(kStep_s * k);
+      filter.predict(SE3(), T_O_B, t);
+      filter.add_keyframe(SE3(), T_O_B, t);
+      keyframes.push_back(World::truth(kStep_s * k));
+    }
+    EXPECT_EQ(filter.resting().size(), max_active == 3 ? kKeyframes - 4U : 0U);
+    SE3 T_M_O;
+    for (const std::uint32_t keyframe : {2U, 0U}) {
+      const std::vector<MapObservation> observations =
+          world.observations(keyframes, keyframe, kStep_s * kKeyframes, 0.2);
+      filter.wake(std::array{keyframe});
+      const auto corrected = filter.update(observations, observations.size(), {world.T_B_C});
+      ASSERT_TRUE(corrected);
+      T_M_O = *corrected;
+      filter.predict(T_M_O, T_M_O.inverse() * filter.T_M_B(), timestamp_from_seconds(kStep_s * kKeyframes));
+    }
+  }
+  MapFilter &full = filters[0], &few = filters[1];
+  for (std::size_t k = 0; k < kKeyframes; ++k)
+    EXPECT_LT((full.keyframes()[k].inverse() * few.keyframes()[k]).log().norm(), 1e-5) << k;
+  std::vector<std::uint32_t> all(kKeyframes);
+  std::iota(all.begin(), all.end(), 0U);
+  few.wake(all);
+  EXPECT_LT((full.keyframe_covariance() - few.keyframe_covariance()).norm(), 1e-3 * full.keyframe_covariance().norm());
+}
+
+TEST(MapFilter, RemovesAKeyframeThatOthersAreTiedTo) {
+  MapFilterConfig config = config_of_world();
+  config.max_active = 3;
+  MapFilter filter(config), full(config_of_world());
+  for (MapFilter* each : {&filter, &full}) {
+    World world(7);
+    each->restart(SE3(), World::truth(0.0), Timestamp{}, 0.1, 0.01);
+    for (int k = 1; k <= 10; ++k) {
+      const SE3 T_O_B = world.odometry(kStep_s * k);
+      each->predict(SE3(), T_O_B, timestamp_from_seconds(kStep_s * k));
+      each->add_keyframe(SE3(), T_O_B, timestamp_from_seconds(kStep_s * k));
+    }
+    for (const std::size_t keyframe : {8U, 3U, 0U}) each->remove_keyframe(keyframe);  // awake, resting, resting
+  }
+  ASSERT_EQ(filter.keyframes().size(), 7U);
+  filter.wake(std::array{0U, 1U, 2U, 3U, 4U, 5U, 6U});
+  EXPECT_TRUE(filter.resting().empty());
+  EXPECT_LT((full.keyframe_covariance() - filter.keyframe_covariance()).norm(),
+            1e-3 * full.keyframe_covariance().norm());
 }
 
 TEST(MapFilter, IsLessSureOfAnOdometryThatDriftsMore) {

@@ -64,17 +64,59 @@ bool agrees(const SE3& T_A_B, const Hypothesis& hypothesis) {
   return off.translation().norm() < kSamePlace_m && so3::log(off.rotation()).norm() < kSamePlace_rad;
 }
 
-/// Jacobian of keyframe poses by the error of T_A_B: six rows each, by position in A and rotation about A's axes at
-/// `centre`.
-Eigen::MatrixXd by_common_error(const std::vector<SE3>& T_A_K, const Eigen::Vector3d& centre) {
-  Eigen::MatrixXd J(6 * std::ssize(T_A_K), 6);
-  for (std::size_t k = 0; k < T_A_K.size(); ++k) {
-    auto rows = J.middleRows<6>(6 * static_cast<Eigen::Index>(k));
-    rows << Eigen::Matrix3d::Identity(), -skew(T_A_K[k].translation() - centre), Eigen::Matrix3d::Zero(),
-        T_A_K[k].R().transpose();
+/// The keyframes of the other map with their covariance in A, of which the error of T_A_B is a part: position in A and
+/// rotation about A's axes at the centre of the keyframes.
+class AddedPoses {
+ public:
+  AddedPoses(const SavedMap& other, const SE3& T_A_B, const std::vector<SE3>& T_A_K)
+      : other_(other), T_A_B_(T_A_B), T_A_K_(T_A_K) {
+    for (const SE3& T : T_A_K) centre_ += T.translation() / static_cast<double>(T_A_K.size());
+    std::vector<bool> rests(T_A_K.size(), false);
+    for (const TiedPose& pose : other.resting) rests[pose.keyframe] = true;
+    for (std::uint32_t k = 0; k < T_A_K.size(); ++k) {
+      row_.push_back(6 * std::ssize(awake_));
+      if (!rests[k]) awake_.push_back(k);
+    }
   }
-  return J;
-}
+
+  Eigen::MatrixXd covariance() const { return in_A(awake_, other_.covariance); }
+
+  std::vector<TiedPose> resting() const {
+    RestingPoses poses;
+    for (const TiedPose& pose : other_.resting) poses.rest(pose);
+    std::vector<TiedPose> all;
+    for (const TiedPose& pose : other_.resting) {
+      std::vector<std::uint32_t> keyframes = {pose.keyframe};
+      for (const TiedPose::Tie& tie : pose.ties) keyframes.push_back(tie.to);
+      const Eigen::MatrixXd joint = poses.joint(keyframes, [&](std::uint32_t a, std::uint32_t b) -> Matrix6d {
+        return other_.covariance.block<6, 6>(row_[a], row_[b]);
+      });
+      all.push_back(tied_pose(pose.keyframe, std::span(keyframes).subspan(1), in_A(keyframes, joint)));
+    }
+    return all;
+  }
+
+ private:
+  Eigen::MatrixXd in_A(std::span<const std::uint32_t> keyframes, const Eigen::MatrixXd& in_B) const {
+    Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(in_B.rows(), in_B.rows()), J(in_B.rows(), 6);
+    for (Eigen::Index row = 0; row < in_B.rows(); row += 6) {
+      const SE3& T_A_K = T_A_K_[keyframes[static_cast<std::size_t>(row / 6)]];
+      turn.block<3, 3>(row, row) = T_A_B_.R();
+      J.middleRows<6>(row) << Eigen::Matrix3d::Identity(), -skew(T_A_K.translation() - centre_),
+          Eigen::Matrix3d::Zero(), T_A_K.R().transpose();
+    }
+    Vector6d sigmas;
+    sigmas << Eigen::Vector3d::Constant(kPositionSigma_m), Eigen::Vector3d::Constant(kRotationSigma_rad);
+    return turn * in_B * turn.transpose() + J * sigmas.cwiseAbs2().asDiagonal() * J.transpose();
+  }
+
+  const SavedMap& other_;
+  SE3 T_A_B_;
+  const std::vector<SE3>& T_A_K_;
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  std::vector<std::uint32_t> awake_;
+  std::vector<Eigen::Index> row_;  ///< in the covariance, of those that do not rest
+};
 
 }  // namespace
 
@@ -96,25 +138,23 @@ SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {
   for (const SavedMap::Camera& camera : other.cameras) {
     if (focal_of(map, camera.name) == 0.0) both.cameras.push_back(camera);
   }
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const SE3& T_B_K : other.T_M_K) {
-    both.T_M_K.push_back(T_A_B * T_B_K);
-    centre += both.T_M_K.back().translation() / static_cast<double>(other.T_M_K.size());
-  }
+  for (const SE3& T_B_K : other.T_M_K) both.T_M_K.push_back(T_A_B * T_B_K);
   // Both end at the same instant before any other run: those of `other` come before those of `map`.
   const Duration by = Timestamp() - map.keyframes.front().t;
   for (MapKeyframe& keyframe : both.keyframes) keyframe.t -= by, keyframe.found_at -= by;
 
-  const Eigen::Index n = other.covariance.rows(), m = map.covariance.rows();
-  Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(n, n);
-  for (Eigen::Index k = 0; k < n; k += 6) turn.block<3, 3>(k, k) = T_A_B.R();
-  const Eigen::MatrixXd J = by_common_error(both.T_M_K, centre);
-  Eigen::Matrix<double, 6, 1> sigmas;
-  sigmas << Eigen::Vector3d::Constant(kPositionSigma_m), Eigen::Vector3d::Constant(kRotationSigma_rad);
-  both.covariance = Eigen::MatrixXd::Zero(n + m, n + m);
-  both.covariance.topLeftCorner(n, n) =
-      turn * other.covariance * turn.transpose() + J * sigmas.cwiseAbs2().asDiagonal() * J.transpose();
-  both.covariance.bottomRightCorner(m, m) = map.covariance;
+  const AddedPoses added(other, T_A_B, both.T_M_K);
+  both.resting = added.resting();
+  const auto n = static_cast<std::uint32_t>(other.keyframes.size());
+  for (TiedPose pose : map.resting) {
+    pose.keyframe += n;
+    for (TiedPose::Tie& tie : pose.ties) tie.to += n;
+    both.resting.push_back(std::move(pose));
+  }
+  const Eigen::Index rows = other.covariance.rows(), more = map.covariance.rows();
+  both.covariance = Eigen::MatrixXd::Zero(rows + more, rows + more);
+  both.covariance.topLeftCorner(rows, rows) = added.covariance();
+  both.covariance.bottomRightCorner(more, more) = map.covariance;
   both.keyframes.insert(both.keyframes.end(), map.keyframes.begin(), map.keyframes.end());
   both.T_M_K.insert(both.T_M_K.end(), map.T_M_K.begin(), map.T_M_K.end());
   return both;

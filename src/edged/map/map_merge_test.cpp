@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
+
+#include "edged/map/map_filter.hpp"
 
 namespace edged {
 namespace {
@@ -81,6 +84,29 @@ TEST(MapMerge, BothLieInOneFrame) {
   EXPECT_GT(P(0, 0), 0.04 * 0.04);
   EXPECT_LT(P(0, 0) + P(6, 6) - 2.0 * P(0, 6), 0.02 * 0.02);
   EXPECT_NO_THROW(saved_map_from_bytes(to_bytes(both)));  // in order of time, with valid values
+}
+
+/// Of the other map's first two keyframes, of which one rests: their uncertainty is that of keyframes that do not.
+TEST(MapMerge, KeepsTheUncertaintyOfKeyframesThatRest) {
+  const Wall wall(1);
+  const SavedMap map = wall.map_from(places(-0.5, 5), SE3());
+  SavedMap other = wall.map_from(places(-0.4, 4), kT_A_B);
+  const Eigen::MatrixXd root = 0.01 * Eigen::MatrixXd::Random(24, 24);
+  other.covariance = root * root.transpose();
+  const SavedMap none_rests = merged(map, other, kT_A_B);
+  MapFilterConfig config;
+  config.max_active = 3;
+  MapFilter filter(config);
+  filter.load(other.T_M_K, other.covariance);
+  filter.predict(SE3(), SE3(), Timestamp());
+  other.covariance = filter.keyframe_covariance();
+  other.resting = filter.resting();
+  ASSERT_EQ(other.resting.size(), 1U);
+  const SavedMap rests = saved_map_from_bytes(to_bytes(merged(map, other, kT_A_B)));
+  ASSERT_EQ(rests.resting.size(), 1U);
+  filter.load(rests.T_M_K, rests.covariance, rests.resting);
+  filter.wake(std::array{0U});
+  EXPECT_LT((filter.keyframe_covariance() - none_rests.covariance).norm(), 1e-6 * none_rests.covariance.norm());
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "maps are written and read as they lie in memory");
 
 constexpr std::string_view kMagic = "edged map\n";
-constexpr std::uint32_t kVersion = 2;
-constexpr std::uint32_t kOneView = 1;  // the version whose keyframes have one view each
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kOneView = 1;      // the version whose keyframes have one view each
+constexpr std::uint32_t kNoneResting = 2;  // the last version whose covariance is of all keyframes
 constexpr std::size_t kMostCameras = 16, kMostKeyframes = 10'000, kMostPoints = 10'000, kLongestName = 200;
 constexpr double kSameFocal = 0.02;  // share: difference of two calibrations of one lens
 constexpr Duration kBefore = std::chrono::seconds(1), kOldest = std::chrono::hours(24 * 365 * 100);
@@ -137,6 +138,16 @@ void fields_of(auto& archive, MapKeyframe& keyframe) {
   for (MapView& view : keyframe.views) fields_of(archive, view);
 }
 
+void fields_of(auto& archive, TiedPose& pose) {
+  archive(pose.keyframe);
+  archive.size(pose.ties, RestingPoses::kMostTies);
+  for (TiedPose::Tie& tie : pose.ties) {
+    archive(tie.to);
+    fields_of(archive, tie.gain);
+  }
+  fields_of(archive, pose.covariance);
+}
+
 void fields_of(auto& archive, SavedMap& map) {
   archive.size(map.cameras, kMostCameras);
   for (SavedMap::Camera& camera : map.cameras) {
@@ -149,11 +160,27 @@ void fields_of(auto& archive, SavedMap& map) {
   for (MapKeyframe& keyframe : map.keyframes) fields_of(archive, keyframe);
   map.T_M_K.resize(map.keyframes.size());
   for (SE3& T : map.T_M_K) fields_of(archive, T);
-  const Eigen::Index n = 6 * std::ssize(map.T_M_K);
+  if (archive.version > kNoneResting) {
+    archive.size(map.resting, map.keyframes.size());
+    for (TiedPose& pose : map.resting) fields_of(archive, pose);
+  }
+  const Eigen::Index n = 6 * (std::ssize(map.T_M_K) - std::ssize(map.resting));
   archive.expect(static_cast<std::size_t>(n * (n + 1) / 2) * sizeof(double));
   map.covariance.conservativeResize(n, n);
   for (Eigen::Index column = 0; column < n; ++column) {
     for (Eigen::Index row = column; row < n; ++row) archive(map.covariance(row, column));  // it is symmetric
+  }
+}
+
+/// Each rests once, and is tied to keyframes that do not rest or that do so later in the list.
+void check_resting(const SavedMap& map) {
+  std::vector<bool> usable(map.keyframes.size(), true);
+  for (const TiedPose& pose : map.resting) {
+    if (pose.keyframe >= usable.size() || !usable[pose.keyframe]) refuse("a pose in it rests twice or is missing");
+    usable[pose.keyframe] = false;
+    const auto known = [&](const TiedPose::Tie& tie) { return tie.to < usable.size() && usable[tie.to]; };
+    if (!std::ranges::all_of(pose.ties, known) || (pose.covariance.diagonal().array() < 0.0).any())
+      refuse("a pose in it is tied wrongly");
   }
 }
 
@@ -171,6 +198,7 @@ void check_values(const SavedMap& map) {
   }
   if (!std::ranges::all_of(map.T_M_K, unit) || (map.covariance.diagonal().array() < 0.0).any())
     refuse("a pose in it is invalid");
+  check_resting(map);
   if (!std::ranges::is_sorted(map.keyframes, {}, &MapKeyframe::t)) refuse("its keyframes are not in order");
 }
 
@@ -224,8 +252,8 @@ SavedMap saved_map_from_bytes(std::string_view bytes) {
   std::uint32_t version = 0;
   std::uint64_t sum = 0;
   head(version);
-  if (version != kVersion && version != kOneView)
-    throw InputError::format("a map of version {}, this program reads {} and {}", version, kOneView, kVersion);
+  if (version < kOneView || version > kVersion)
+    throw InputError::format("a map of version {}, this program reads {} to {}", version, kOneView, kVersion);
   head(sum);
   const std::string_view body = bytes.substr(kMagic.size() + sizeof(version) + sizeof(sum));
   if (checksum(body) != sum) refuse("it has been damaged or cut off");

@@ -65,12 +65,13 @@ void expect_equal(const MapView& a, const MapView& b) {
   }
 }
 
-/// As version 1 has it, whose keyframes have one view each and no number of views. Of a map without cameras and with
-/// one keyframe.
-std::string as_version_1(std::string bytes) {
-  constexpr std::size_t kVersionAt = 10, kSumAt = 14, kBodyAt = 22;
-  bytes.erase(kBodyAt + 8 + 16, 4);  // after the numbers of cameras and of keyframes, and two times
-  bytes[kVersionAt] = 1;
+/// As version 1 or 2 has it, without the number of resting keyframes; in version 1 keyframes have one view each and no
+/// number of views. Of a map without cameras and with one keyframe.
+std::string as_version(char version, std::string bytes) {
+  constexpr std::size_t kVersionAt = 10, kSumAt = 14, kBodyAt = 22, kCovariance = 21 * sizeof(double);
+  bytes.erase(bytes.size() - kCovariance - 4, 4);
+  if (version == 1) bytes.erase(kBodyAt + 8 + 16, 4);  // after the numbers of cameras and of keyframes, and two times
+  bytes[kVersionAt] = version;
   std::uint64_t sum = 0xcbf29ce484222325U;
   for (const char c : bytes.substr(kBodyAt)) sum = (sum ^ static_cast<std::uint8_t>(c)) * 0x100000001b3U;
   std::memcpy(bytes.data() + kSumAt, &sum, sizeof(sum));
@@ -118,20 +119,48 @@ TEST(SavedMap, DamagedOnesAreRefused) {
     EXPECT_NE(refusal(bad), "") << i;
   }
   std::string later = good;
-  later[10] = 3;
-  EXPECT_EQ(refusal(later), "a map of version 3, this program reads 1 and 2");
+  later[10] = 4;
+  EXPECT_EQ(refusal(later), "a map of version 4, this program reads 1 to 3");
 }
 
-TEST(SavedMap, OfVersion1IsRead) {
+TEST(SavedMap, OfEarlierVersionsIsRead) {
   SavedMap map = some_map();
   map.cameras.clear();
   map.keyframes.resize(1), map.T_M_K.resize(1);
   map.covariance.conservativeResize(6, 6);
-  const SavedMap back = saved_map_from_bytes(as_version_1(to_bytes(map)));
-  ASSERT_EQ(back.keyframes.size(), 1U);
-  ASSERT_EQ(back.keyframes[0].views.size(), 1U);
-  expect_equal(back.keyframes[0].views[0], map.keyframes[0].views[0]);
+  for (const char version : {1, 2}) {
+    const SavedMap back = saved_map_from_bytes(as_version(version, to_bytes(map)));
+    ASSERT_EQ(back.keyframes.size(), 1U);
+    ASSERT_EQ(back.keyframes[0].views.size(), 1U);
+    expect_equal(back.keyframes[0].views[0], map.keyframes[0].views[0]);
+    EXPECT_EQ(to_bytes(back), to_bytes(map));
+  }
+}
+
+/// The first keyframe rests, tied to the last.
+SavedMap map_with_one_that_rests() {
+  SavedMap map = some_map();
+  map.covariance.conservativeResize(12, 12);
+  map.resting = {{0, {{2, 0.9 * Matrix6d::Identity()}}, 1e-6 * Matrix6d::Identity()}};
+  return map;
+}
+
+TEST(SavedMap, KeepsWhatRestsAndRefusesWrongTies) {
+  const SavedMap map = map_with_one_that_rests(), back = saved_map_from_bytes(to_bytes(map));
+  ASSERT_EQ(back.resting.size(), 1U);
+  EXPECT_EQ(back.resting[0].ties[0].to, 2U);
+  EXPECT_EQ(back.resting[0].ties[0].gain, map.resting[0].ties[0].gain);
+  EXPECT_EQ(back.covariance.rows(), 12);
   EXPECT_EQ(to_bytes(back), to_bytes(map));
+  for (const std::uint32_t to : {0U, 3U}) {  // itself, none
+    SavedMap wrong = map;
+    wrong.resting[0].ties[0].to = to;
+    EXPECT_NE(refusal(to_bytes(wrong)), "") << to;
+  }
+  SavedMap twice = map;
+  twice.resting.push_back(twice.resting[0]);
+  twice.covariance.conservativeResize(6, 6);
+  EXPECT_NE(refusal(to_bytes(twice)), "");
 }
 
 TEST(SavedMap, WhatMakesNoSenseIsRefused) {

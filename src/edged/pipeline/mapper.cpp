@@ -98,13 +98,16 @@ void Mapper::load(const SavedMap& map) {
     map_.add(std::move(keyframe));
   }
   record_.load(map.T_M_K, config_.localize_only);
-  filter_.load(map.T_M_K, map.covariance);
+  filter_.load(map.T_M_K, map.covariance, map.resting);
+  if (config_.localize_only) fixed_ = SavedMap{{}, {}, {}, map.covariance, map.resting};
   if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
   if (unlocated_before_ && !config_.localize_only) return std::nullopt;
-  return SavedMap{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance()};
+  SavedMap now{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance(), filter_.resting()};
+  if (fixed_) now.covariance = fixed_->covariance, now.resting = fixed_->resting;
+  return now;
 }
 
 void Mapper::predict(const OdomState& now, bool at_rest) {
@@ -127,11 +130,14 @@ std::vector<MapObservation> Mapper::Search::observations() const {
 
 /// The points that should be in view of that image, and their matches; nothing if too few of them match, as when the
 /// lens is covered.
-std::vector<Candidate> Mapper::search_in(const TrackedImage& image, const MapFilter& filter, const SE3& T_M_C,
+std::vector<Candidate> Mapper::search_in(const TrackedImage& image, MapFilter& filter, const SE3& T_M_C,
                                          const SE3& T_B_C, Period made) {
   const CameraModel& camera = image.model;
   std::vector<Candidate> candidates =
       map_.visible({image.camera, made, filter.keyframes()}, T_M_C, camera, config_.max_observations);
+  std::vector<std::uint32_t> in_view;
+  for (const Candidate& candidate : candidates) in_view.push_back(candidate.observation.keyframe);
+  filter.wake(in_view);
   for (Candidate& candidate : candidates) {
     MapObservation& observation = candidate.observation;
     observation.seen = camera.pixel_to_point(candidate.pixel);
@@ -153,8 +159,7 @@ std::vector<Candidate> Mapper::search_in(const TrackedImage& image, const MapFil
   return candidates;
 }
 
-Mapper::Search Mapper::search(const MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images,
-                              Period made) {
+Mapper::Search Mapper::search(MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made) {
   Search search;
   for (const auto& [image, T_O_C] : images) {
     const auto camera = static_cast<std::uint32_t>(search.T_B_C.size());

@@ -78,9 +78,9 @@ class Mapper {
   /// it.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   void begin_start(const OdomState& now);
-  Search search(const MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made);
-  std::vector<Candidate> search_in(const TrackedImage& image, const MapFilter& filter, const SE3& T_M_C,
-                                   const SE3& T_B_C, Period made);
+  Search search(MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made);
+  std::vector<Candidate> search_in(const TrackedImage& image, MapFilter& filter, const SE3& T_M_C, const SE3& T_B_C,
+                                   Period made);
   bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
               std::span<const PosedImage> images);
   std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
@@ -94,6 +94,7 @@ class Mapper {
   double lost_after_s_;
   KeyframeMap map_;
   MapFilter filter_;
+  std::optional<SavedMap> fixed_;  ///< with localize_only: the covariance as loaded; the filter's may have other terms
   TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
