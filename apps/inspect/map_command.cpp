@@ -87,12 +87,12 @@ int run_show(const MapCommandOptions& options) {
 int run_merge(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file), other = read_map(options.other);
   check_writable(options.out, "--out");
-  const std::optional<SE3> T_A_B = find_map_in(map, other);
+  const auto [T_A_B, refusal] = find_map_in(map, other);
   if (!T_A_B)
     throw InputError::format(
-        "{}: not recognized in {}; run a recording of one in the map of the other instead: edged run RECORDING --map "
-        "{} --save-map BOTH",
-        options.other.string(), options.file.string(), options.file.string());
+        "{}: not recognized in {}, {}; run a recording of one in the map of the other instead: edged run RECORDING "
+        "--map {} --save-map BOTH",
+        options.other.string(), options.file.string(), refusal, options.file.string());
   const SavedMap both = merged(map, other, *T_A_B);
   write_file(options.out, to_bytes(both));
   const Eigen::Vector3d p = T_A_B->translation();

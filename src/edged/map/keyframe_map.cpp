@@ -19,10 +19,11 @@ constexpr int kJudged = 10;        // tries
 constexpr double kMinFound = 0.3;  // share of them
 constexpr double kFarthest = 1.5;  // [scene depths]: from keyframes farther away the place has a different appearance
 constexpr int kAlike = 64;         // bits of 256 by which descriptors of one point differ, at most
-constexpr std::size_t kFewestAgreeing = 8;
-constexpr double kAgreement_px = 3.0;   // of a feature, at the recognised place
-constexpr double kLeastAgreeing = 0.3;  // share of the features that match a point
-constexpr double kWidest_deg = 60.0;    // between the optical axes
+// Keyframes whose points are compared with those of an image, one by one: all of a small map, of a larger one those
+// that the index finds likeliest.
+constexpr std::size_t kCompared = 100;
+constexpr double kAgreement_px = 3.0;  // of a feature, at the recognised place
+constexpr double kWidest_deg = 60.0;   // between the optical axes
 
 /// How reliably it has been matched so far.
 double reliability(const MapPoint& point) { return (1.0 + point.found) / (2.0 + point.tried); }
@@ -75,7 +76,11 @@ void KeyframeMap::keep_best(std::vector<MapPoint>& points) const {
 void KeyframeMap::add(MapKeyframe keyframe) {
   for (MapView& view : keyframe.views) {
     std::vector<double> inverse;
-    for (const MapPoint& point : view.points) inverse.push_back(point.inverse_depth);
+    PlaceIndex& places = places_[view.camera];
+    for (const MapPoint& point : view.points) {
+      inverse.push_back(point.inverse_depth);
+      if (point.descriptor) places.add(keyframes_.size(), *point.descriptor);
+    }
     view.scene_depth = 1.0 / median(std::move(inverse));
   }
   keyframes_.push_back(std::move(keyframe));
@@ -92,6 +97,7 @@ std::optional<std::size_t> KeyframeMap::superfluous(Period made) const {
 }
 
 void KeyframeMap::remove(std::size_t keyframe) {
+  for (auto& [camera, places] : places_) places.remove(keyframe);
   keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(keyframe));
 }
 
@@ -166,12 +172,24 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
   return found;
 }
 
+/// Of the views that are asked for, those with the most votes of the descriptors, in the order of their keyframes.
+std::vector<KeyframeMap::Asked> KeyframeMap::likeliest(const MapQuery& query,
+                                                       std::span<const std::optional<Descriptor>> descriptors) const {
+  std::vector<Asked> views = asked(query);
+  if (views.size() <= kCompared) return views;
+  const std::vector<std::uint32_t> votes = places_.find(query.camera)->second.votes(descriptors, keyframes_.size());
+  std::ranges::stable_sort(views, std::ranges::greater{}, [&](const Asked& each) { return votes[each.keyframe]; });
+  views.resize(kCompared);
+  std::ranges::sort(views, {}, &Asked::keyframe);
+  return views;
+}
+
 /// For each descriptor the most similar point, the first of several. The outer loop is over points, as the descriptors
 /// of an image stay in the cache and those of the map do not.
 std::vector<KeyframeMap::Alike> KeyframeMap::most_alike(const MapQuery& query,
                                                         std::span<const std::optional<Descriptor>> descriptors) const {
   std::vector<Alike> alike(descriptors.size(), Alike{kAlike, {}, nullptr});
-  for (const Asked& each : asked(query)) {
+  for (const Asked& each : likeliest(query, descriptors)) {
     for (const MapPoint& point : keyframes_[each.keyframe].views[each.view].points) {
       if (!point.descriptor) continue;
       for (std::size_t i = 0; i < descriptors.size(); ++i) {
@@ -184,9 +202,9 @@ std::vector<KeyframeMap::Alike> KeyframeMap::most_alike(const MapQuery& query,
   return alike;
 }
 
-std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
-                                          std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
-                                          double focal) const {
+Recognition KeyframeMap::recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
+                                   std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
+                                   double focal) const {
   const std::vector<Alike> alike = most_alike(query, descriptors);
   std::vector<PlaceMatch> matches;
   for (std::size_t i = 0; i < alike.size(); ++i) {
@@ -196,11 +214,15 @@ std::optional<SE3> KeyframeMap::recognise(const MapQuery& query, std::span<const
     const Eigen::Vector3d p_K = T_B_C * (point->point.homogeneous() / point->inverse_depth);
     matches.push_back({points[i], query.T_M_K[of.keyframe] * p_K});
   }
+  Recognition found;
+  found.similar = matches.size();
   const std::optional<PlacePose> pose = pose_by_gravity(matches, R_O_C, kAgreement_px / focal);
-  if (!pose || pose->agreeing < kFewestAgreeing ||
-      pose->agreeing < kLeastAgreeing * static_cast<double>(matches.size()))
-    return std::nullopt;
-  return pose->T_M_C;
+  if (!pose) return found;
+  found.agreeing = pose->agreeing;
+  if (found.agreeing >= Recognition::kFewest &&
+      static_cast<double>(found.agreeing) >= Recognition::kLeastShare * static_cast<double>(found.similar))
+    found.T_M_C = pose->T_M_C;
+  return found;
 }
 
 }  // namespace edged

@@ -4,6 +4,8 @@
 // MapFilter and passed with each query.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +16,7 @@
 #include "edged/frontend/patch.hpp"
 #include "edged/map/map_errors.hpp"
 #include "edged/map/place.hpp"
+#include "edged/map/place_index.hpp"
 #include "edged/options/map.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
@@ -74,6 +77,15 @@ struct Candidate {
   bool found = false;
 };
 
+/// What the features of an image find in the map by their descriptors.
+struct Recognition {
+  static constexpr std::size_t kFewest = 8;   ///< that must agree
+  static constexpr double kLeastShare = 0.3;  ///< of `similar` that must
+  std::size_t similar = 0;                    ///< features with a similar map point
+  std::size_t agreeing = 0;                   ///< of these, with one pose of the camera
+  std::optional<SE3> T_M_C;                   ///< that pose; nothing where too few agree
+};
+
 class KeyframeMap {
  public:
   explicit KeyframeMap(const KeyframeMapConfig& config) : config_(config) {}
@@ -94,11 +106,10 @@ class KeyframeMap {
   /// Records that the point was searched for in the image of t.
   void note(const Candidate& candidate, Timestamp t);
 
-  /// The pose of the camera that observes features with these descriptors at those points of the unit plane. R_O_C as
-  /// in pose_by_gravity; focal: of the camera [px]. Nothing if no place of the map matches.
-  std::optional<SE3> recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
-                               std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C,
-                               double focal) const;
+  /// Where the camera is that observes features with these descriptors at those points of the unit plane. R_O_C as in
+  /// pose_by_gravity; focal: of the camera [px].
+  Recognition recognise(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors,
+                        std::span<const Eigen::Vector2d> points, const Eigen::Quaterniond& R_O_C, double focal) const;
 
   const std::vector<MapKeyframe>& keyframes() const { return keyframes_; }
 
@@ -114,11 +125,13 @@ class KeyframeMap {
   };
   std::vector<Alike> most_alike(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const;
   std::vector<Asked> asked(const MapQuery& query) const;
+  std::vector<Asked> likeliest(const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const;
   std::vector<Asked> near(const MapQuery& query, const SE3& T_M_C) const;
   void keep_best(std::vector<MapPoint>& points) const;
 
   KeyframeMapConfig config_;
   std::vector<MapKeyframe> keyframes_;
+  std::map<std::string, PlaceIndex, std::less<>> places_;  ///< by camera
 };
 
 }  // namespace edged

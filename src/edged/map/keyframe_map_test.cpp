@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <set>
 
 namespace edged {
@@ -142,6 +144,42 @@ TEST(KeyframeMap, LetsGoWhatWasNotFoundForLongest) {
   map.remove(1);
   EXPECT_EQ(map.keyframes().back().t, at(8.0));
   EXPECT_FALSE(map.superfluous());
+}
+
+/// More keyframes than are compared with an image one by one.
+TEST(KeyframeMap, RecognizesAPlaceAmongManyAfterOthersAreRemoved) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> place(-0.5, 0.5);
+  KeyframeMap map({});
+  const Eigen::Quaterniond R_M_C(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
+  std::vector<SE3> T_M_K;
+  for (int k = 0; k < 250; ++k) {
+    MapView view{kName, SE3(), {}};
+    for (int i = 0; i < 40; ++i) {
+      MapPoint& point = view.points.emplace_back();
+      point.point = {place(random), place(random)};
+      point.inverse_depth = 0.5;
+      point.descriptor = Descriptor{random(), random(), random(), random()};
+    }
+    map.add({at(k), at(k), {std::move(view)}});
+    T_M_K.emplace_back(R_M_C, Eigen::Vector3d(k, 0.0, 0.0));
+  }
+  std::vector<std::optional<Descriptor>> descriptors;
+  std::vector<Eigen::Vector2d> points;
+  for (const MapPoint& point : map.keyframes()[180].views.front().points) {
+    descriptors.push_back(point.descriptor);
+    (*descriptors.back())[0] ^= 0x00ff0000ff000000;
+    points.push_back(point.point);
+  }
+  for (const std::size_t gone : {200U, 20U}) {
+    map.remove(gone);
+    T_M_K.erase(T_M_K.begin() + gone);
+  }
+  const std::optional<SE3> T_M_C = map.recognise({kName, {}, T_M_K}, descriptors, points, R_M_C, 200.0).T_M_C;
+  ASSERT_TRUE(T_M_C);
+  EXPECT_LT((T_M_C->translation() - Eigen::Vector3d(180.0, 0.0, 0.0)).norm(), 0.01);
+  EXPECT_FALSE(map.recognise({kName, {.before = at(170.0)}, T_M_K}, descriptors, points, R_M_C, 200.0).T_M_C);
+  EXPECT_FALSE(map.recognise({"events", {}, T_M_K}, descriptors, points, R_M_C, 200.0).T_M_C);
 }
 
 }  // namespace

@@ -22,8 +22,7 @@ constexpr double kCauchy = 2.0;             // [sigma]
 constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
 // Ties of a keyframe that comes to rest. With one, what it has in common with the others is lost at each return.
 constexpr std::size_t kTies = 3;
-constexpr std::size_t kCompared = 10;  // keyframes that come into question for the next tie, after the first
-constexpr double kLeast = 1e-12;       // variance that keeps an inverse finite [m^2, rad^2]
+constexpr std::size_t kTieCandidates = 10;  // keyframes that come into question for the next tie, after the first
 
 }  // namespace
 
@@ -144,13 +143,14 @@ TiedPose MapFilter::tied(std::size_t keyframe, Eigen::Index row) const {
     std::vector<std::pair<double, std::uint32_t>> left;  // volume of its error
     for (const std::uint32_t other : others) {
       to.push_back(other);
-      left.emplace_back(Matrix6d(given().covariance + kLeast * Matrix6d::Identity()).determinant(), other);
+      left.emplace_back(Matrix6d(given().covariance + TiedPose::kLeastVariance * Matrix6d::Identity()).determinant(),
+                        other);
       to.pop_back();
     }
     std::ranges::sort(left);
     to.push_back(left.front().second);
     others.clear();
-    for (std::size_t i = 1; i < std::min(left.size(), kCompared); ++i) others.push_back(left[i].second);
+    for (std::size_t i = 1; i < std::min(left.size(), kTieCandidates); ++i) others.push_back(left[i].second);
   }
   return given();
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/map/map_merge.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -26,36 +28,42 @@ struct Hypothesis {
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
 };
 
-/// The pose of the body in A, by the descriptors of one view of a keyframe of B.
-std::optional<SE3> recognised_body(const KeyframeMap& places, const SavedMap& map, const MapView& view,
-                                   const SE3& T_B_K) {
-  const double focal = focal_of(map, view.camera);
-  if (focal <= 0.0) return std::nullopt;
+/// What the descriptors of one view of a keyframe of B find in A.
+Recognition recognised(const KeyframeMap& places, const SavedMap& map, const MapView& view, const SE3& T_B_K) {
   std::vector<std::optional<Descriptor>> descriptors;
   std::vector<Eigen::Vector2d> points;
   for (const MapPoint& point : view.points) {
     descriptors.push_back(point.descriptor);
     points.push_back(point.point);
   }
-  const std::optional<SE3> T_A_C =
-      places.recognise({view.camera, {}, map.T_M_K}, descriptors, points, (T_B_K * view.T_B_C).rotation(), focal);
-  return T_A_C ? std::optional(*T_A_C * view.T_B_C.inverse()) : std::nullopt;
+  return places.recognise({view.camera, {}, map.T_M_K}, descriptors, points, (T_B_K * view.T_B_C).rotation(),
+                          focal_of(map, view.camera));
 }
 
-std::vector<Hypothesis> hypotheses_of(const SavedMap& map, const SavedMap& other) {
-  KeyframeMapConfig config;
-  KeyframeMap places(config);
-  for (const MapKeyframe& keyframe : map.keyframes) places.add(keyframe);
+struct Search {
+  std::size_t keyframes = 0;  ///< with a view of a camera of both
+  Recognition nearest;        ///< the most that agree
   std::vector<Hypothesis> hypotheses;
+};
+
+Search search(const SavedMap& map, const SavedMap& other) {
+  KeyframeMap places{KeyframeMapConfig()};
+  for (const MapKeyframe& keyframe : map.keyframes) places.add(keyframe);
+  Search search;
   for (std::size_t k = 0; k < other.keyframes.size(); ++k) {
+    bool comparable = false;
     for (const MapView& view : other.keyframes[k].views) {
-      const std::optional<SE3> T_A_K = recognised_body(places, map, view, other.T_M_K[k]);
-      if (!T_A_K) continue;
-      hypotheses.push_back({*T_A_K, other.T_M_K[k]});
+      if (focal_of(map, view.camera) <= 0.0) continue;
+      comparable = true;
+      const Recognition found = recognised(places, map, view, other.T_M_K[k]);
+      if (found.agreeing > search.nearest.agreeing) search.nearest = found;
+      if (!found.T_M_C) continue;
+      search.hypotheses.push_back({*found.T_M_C * view.T_B_C.inverse(), other.T_M_K[k]});
       break;  // two views of a keyframe are not independent
     }
+    search.keyframes += comparable ? 1 : 0;
   }
-  return hypotheses;
+  return search;
 }
 
 /// Whether `hypothesis` agrees with T_A_B, too.
@@ -120,17 +128,30 @@ class AddedPoses {
 
 }  // namespace
 
-std::optional<SE3> find_map_in(const SavedMap& map, const SavedMap& other) {
-  const std::vector<Hypothesis> hypotheses = hypotheses_of(map, other);
-  const auto supporters = [&](const Hypothesis& hypothesis) {
-    return std::ranges::count_if(hypotheses, [&](const Hypothesis& c) { return agrees(hypothesis.T_A_B(), c); });
-  };
-  const auto best = std::ranges::max_element(hypotheses, {}, supporters);
-  if (best == hypotheses.end()) return std::nullopt;
-  const auto support = static_cast<std::size_t>(supporters(*best));
-  if (support < kFewestKeyframes || static_cast<double>(support) < kLeastShare * static_cast<double>(hypotheses.size()))
-    return std::nullopt;
-  return best->T_A_B();
+MapAlignment find_map_in(const SavedMap& map, const SavedMap& other) {
+  const auto [keyframes, nearest, hypotheses] = search(map, other);
+  if (keyframes == 0) return {{}, "no camera has keyframes in both"};
+  if (hypotheses.empty()) {
+    return {{},
+            fmt::format("none of its {} keyframes is recognized there: in the nearest {} features agree on a place, of "
+                        "{} that are similar; {} and {:.0f} % are needed",
+                        keyframes, nearest.agreeing, nearest.similar, Recognition::kFewest,
+                        100.0 * Recognition::kLeastShare)};
+  }
+  std::size_t most = 0;
+  SE3 T_A_B;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    const SE3 this_T_A_B = hypothesis.T_A_B();
+    const auto supporters = static_cast<std::size_t>(
+        std::ranges::count_if(hypotheses, [&](const Hypothesis& each) { return agrees(this_T_A_B, each); }));
+    if (supporters > most) most = supporters, T_A_B = this_T_A_B;
+  }
+  if (most >= kFewestKeyframes && static_cast<double>(most) >= kLeastShare * static_cast<double>(hypotheses.size()))
+    return {T_A_B, ""};
+  return {{},
+          fmt::format("{} of its {} keyframes are recognized there, {} of them at one place of the two maps to each "
+                      "other; {} and {:.0f} % are needed",
+                      hypotheses.size(), keyframes, most, kFewestKeyframes, 100.0 * kLeastShare)};
 }
 
 SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {

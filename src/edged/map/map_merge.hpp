@@ -4,14 +4,19 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "edged/map/saved_map.hpp"
 
 namespace edged {
 
-/// T_A_B: the frame B of `other` in the frame A of `map`, from keyframes of `other` recognized in `map` by descriptors.
-/// Nothing unless several agree.
-std::optional<SE3> find_map_in(const SavedMap& map, const SavedMap& other);
+struct MapAlignment {
+  std::optional<SE3> T_A_B;  ///< the frame B of the other map in the frame A of the map
+  std::string refusal;       ///< why there is none, with the numbers that are nearest: a clause
+};
+
+/// From keyframes of `other` recognized in `map` by descriptors; only where several agree.
+MapAlignment find_map_in(const SavedMap& map, const SavedMap& other);
 
 /// Both in the frame of `map`, `other` older. The covariance contains the uncertainty of T_A_B, so that a later run in
 /// both refines it.

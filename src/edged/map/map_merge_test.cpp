@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/map/map_merge.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -58,17 +59,27 @@ const SE3 kT_A_B(so3::exp({0.0, 0.0, 1.2}), {3.0, -1.0, 0.4});  // gravity is kn
 
 TEST(MapMerge, FindsTheOtherMapByItsLooks) {
   const Wall wall(1);
-  const auto T_A_B = find_map_in(wall.map_from(places(-0.5, 5), SE3()), wall.map_from(places(-0.4, 4), kT_A_B));
-  ASSERT_TRUE(T_A_B);
+  const auto [T_A_B, refusal] =
+      find_map_in(wall.map_from(places(-0.5, 5), SE3()), wall.map_from(places(-0.4, 4), kT_A_B));
+  ASSERT_TRUE(T_A_B) << refusal;
   EXPECT_LT((T_A_B->inverse() * kT_A_B).log().norm(), 1e-2);
 }
 
 TEST(MapMerge, TakesNoOtherPlaceForIt) {
   const SavedMap map = Wall(1).map_from(places(-0.5, 5), SE3());
-  EXPECT_FALSE(find_map_in(map, Wall(2).map_from(places(-0.4, 4), kT_A_B)));
-  EXPECT_FALSE(find_map_in(map, Wall(1).map_from(places(-0.4, 2), kT_A_B))) << "two keyframes are too few";
-  EXPECT_FALSE(find_map_in(map, SavedMap()));
-  EXPECT_FALSE(find_map_in(SavedMap(), map));
+  const auto refusal = [&](const SavedMap& one, const SavedMap& other) {
+    const MapAlignment found = find_map_in(one, other);
+    EXPECT_FALSE(found.T_A_B);
+    return found.refusal;
+  };
+  EXPECT_THAT(refusal(map, Wall(2).map_from(places(-0.4, 4), kT_A_B)),
+              testing::MatchesRegex("none of its 4 keyframes is recognized there: in the nearest [0-9]+ features agree "
+                                    "on a place, of [0-9]+ that are similar; 8 and 30 % are needed"));
+  EXPECT_EQ(refusal(map, Wall(1).map_from(places(-0.4, 2), kT_A_B)),
+            "2 of its 2 keyframes are recognized there, 2 of them at one place of the two maps to each other; 3 and 50 "
+            "% are needed");
+  EXPECT_EQ(refusal(map, SavedMap()), "no camera has keyframes in both");
+  EXPECT_EQ(refusal(SavedMap(), map), "no camera has keyframes in both");
 }
 
 TEST(MapMerge, BothLieInOneFrame) {

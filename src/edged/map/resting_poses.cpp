@@ -14,7 +14,6 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr double kNegligible = 1e-6;  // gain of a tie [m, rad per m, rad]
-constexpr double kLeast = 1e-12;      // variance that keeps an inverse finite [m^2, rad^2]
 
 bool tied(const TiedPose& pose, std::size_t to) {
   return std::ranges::find(pose.ties, to, &TiedPose::Tie::to) != pose.ties.end();
@@ -42,7 +41,8 @@ void turn(TiedPose& pose, TiedPose& former) {
   for (const TiedPose::Tie& t : former.ties) tie(pose, t.to, G * t.gain);
   pose.covariance += GQ * G.transpose();
   drop_negligible(pose);
-  const Matrix6d K = Matrix6d(pose.covariance + kLeast * Matrix6d::Identity()).ldlt().solve(GQ).transpose();
+  const Matrix6d K =
+      Matrix6d(pose.covariance + TiedPose::kLeastVariance * Matrix6d::Identity()).ldlt().solve(GQ).transpose();
   TiedPose given = former;
   for (const TiedPose::Tie& t : pose.ties) tie(given, t.to, -K * t.gain);
   tie(given, pose.keyframe, K);
@@ -57,8 +57,10 @@ void turn(TiedPose& pose, TiedPose& former) {
 TiedPose tied_pose(std::uint32_t keyframe, std::span<const std::uint32_t> to, const MatrixXd& joint) {
   const Eigen::Index n = joint.rows() - 6;
   const MatrixXd P = joint.bottomRightCorner(n, n);
-  const MatrixXd gain =
-      MatrixXd(P + kLeast * MatrixXd::Identity(n, n)).ldlt().solve(joint.bottomLeftCorner(n, 6)).transpose();
+  const MatrixXd gain = MatrixXd(P + TiedPose::kLeastVariance * MatrixXd::Identity(n, n))
+                            .ldlt()
+                            .solve(joint.bottomLeftCorner(n, 6))
+                            .transpose();
   const Matrix6d left = joint.topLeftCorner<6, 6>() - gain * P * gain.transpose();
   TiedPose pose{keyframe, {}, 0.5 * (left + left.transpose())};
   for (std::size_t i = 0; i < to.size(); ++i)

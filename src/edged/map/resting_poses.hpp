@@ -18,6 +18,8 @@ namespace edged {
 
 /// The error of a keyframe's pose given those of others: the sum of gain * error of each, and an independent error.
 struct TiedPose {
+  static constexpr double kLeastVariance = 1e-12;  ///< keeps inverses finite [m^2, rad^2]
+
   struct Tie {
     std::uint32_t to = 0;  ///< keyframe
     Matrix6d gain = Matrix6d::Zero();

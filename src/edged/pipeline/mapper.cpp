@@ -232,7 +232,8 @@ std::optional<SE3> Mapper::recognised(const PosedImage& posed, Period made) cons
   for (const Track& track : image.tracks) points.push_back(image.model.pixel_to_point(track.pixel));
   const std::optional<SE3> T_M_C =
       map_.recognise({image.camera, made, filter_.keyframes()}, descriptors_of(image, T_O_C), points, T_O_C.rotation(),
-                     image.model.mean_focal());
+                     image.model.mean_focal())
+          .T_M_C;
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
