@@ -32,10 +32,6 @@ void MapFilterConfig::visit(ConfigFields& fields) {
              {"", 0, 1, "A match with a smaller share of the expected points is rejected."});
   fields.add("max_misfit", max_misfit,
              {"sigma", 0.01, 100, "A match with a larger median residual after the fit is rejected."});
-  fields.add("max_active", max_active,
-             {"", 10, 1000,
-              "Number of keyframes with a joint covariance: those in view last. The others rest, and move with these. "
-              "More cost time, with the square."});
 }
 
 void MapConfig::visit(ConfigFields& fields) {

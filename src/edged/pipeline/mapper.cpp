@@ -136,6 +136,7 @@ std::vector<Candidate> Mapper::search_in(const TrackedImage& image, MapFilter& f
   std::vector<Candidate> candidates =
       map_.visible({image.camera, made, filter.keyframes()}, T_M_C, camera, config_.max_observations);
   std::vector<std::uint32_t> in_view;
+  in_view.reserve(candidates.size());
   for (const Candidate& candidate : candidates) in_view.push_back(candidate.observation.keyframe);
   filter.wake(in_view);
   for (Candidate& candidate : candidates) {
