@@ -194,7 +194,7 @@ void Renderer::shade() {
     if (flicker_.deviation != 0.0F) light *= flicker_.factor(z * b);
     scratch_[i] = face.brightness * light *
                   texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
-    if (!face.glows) scratch_[i] += highlight(z * b, view.normal);
+    if (!highlights_.empty() && !face.glows) scratch_[i] += highlight(z * b, view.normal);
   }
 }
 
