@@ -109,7 +109,7 @@ class LivePage(WithFlight):
         self.assertGreater(told, 1000)
 
     def test_occupied_voxels_come_while_it_goes_on(self):
-        with self.serving("--mode", "frames", "--occupancy", self.folder / "space") as (_, url):
+        with self.serving("--live", "--mode", "frames", "--occupancy", self.folder / "space") as (_, url):
             listener = Listener(url)
             listener.join()
         voxels = [update["voxels"] for update in listener.updates if "voxels" in update]
