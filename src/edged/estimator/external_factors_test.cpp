@@ -25,6 +25,7 @@ struct Flight {
   double scale = 1.0;                                    ///< of the velocity sensor
   double outliers = 0.0;                                 ///< share
   double gap_from = 0.0, gap_to = 0.0;                   ///< no samples
+  int noise = 0;                                         ///< another number: other noise
 };
 
 struct Errors {
@@ -60,6 +61,7 @@ Errors fly(const Flight& flight) {
   TestWorld world(flight.world);
   TestWorld sensors(flight.world);  // noise of its own
   std::mt19937_64 random(5);
+  for (int i = 0; i < flight.noise; ++i) world.height(0.0, 1.0), sensors.height(0.0, 1.0);
   Estimator estimator(world.rig(), world.noise(), {});
   std::optional<SE3> T_true_est;
   Errors errors;
@@ -167,9 +169,15 @@ TEST(ExternalFactors, FindTheScaleOfAVelocitySensorAndTakeItIntoTheDark) {
 
 TEST(ExternalFactors, DoNoHarmInAHover) {
   const TestWorldOptions hover = {.rest_s = 1.0, .speed = 0.05, .turn = 0.1};
-  const Errors without = fly({.world = hover, .blind_to = 5.0, .end = 20.0}),
-               with = fly({.world = hover, .height = true, .velocity = true, .blind_to = 5.0, .end = 20.0});
-  EXPECT_LT(with.position, without.position + 0.01);
+  constexpr int kFlights = 6;
+  double without = 0.0, with = 0.0;  // mean of the errors
+  for (int noise = 0; noise < kFlights; ++noise) {
+    Flight flight = {.world = hover, .blind_to = 5.0, .end = 20.0, .noise = noise};
+    without += fly(flight).position / kFlights;
+    flight.height = flight.velocity = true;
+    with += fly(flight).position / kFlights;
+  }
+  EXPECT_LT(with, without + 0.01);
 }
 
 TEST(ExternalFactors, StayInTheWindowWithOneFactorAStateAndSensor) {

@@ -118,8 +118,9 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
   }
 }
 
-/// Residuals at the present values, Jacobians where they are taken.
-void LandmarkEquations::linearise(const LandmarkTerm& term) {
+/// Residuals at the present values, Jacobians where they are taken; use(index of the residual, error, error before).
+template <typename Use>
+void LandmarkEquations::linearise(const LandmarkTerm& term, const Use& use) const {
   const CameraViews &now = present_, &taken = taken_;
   const std::size_t anchor = term.anchor.camera;
   const AnchoredLandmark landmark(now.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
@@ -133,7 +134,7 @@ void LandmarkEquations::linearise(const LandmarkTerm& term) {
     before_defined = defined;
     defined = derivatives.error(taken.at(at.seen.camera, at.place), at.point, error) &&
               (at_present_ || landmark.error(now.at(at.seen.camera, at.place), at.point, error.e));
-    if (defined && (before_defined || at.correlation == 0.0)) accumulate(i, error, before, term);
+    if (defined && (before_defined || at.correlation == 0.0)) use(i, error, before);
   }
 }
 
@@ -236,13 +237,41 @@ void LandmarkEquations::eliminate_depth() {
 void LandmarkEquations::add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated) {
   if (term.residuals.empty()) return;
   place(term);
-  linearise(term);
+  linearise(term, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
+    accumulate(residual, error, before, term);
+  });
   add_own();
   if (term.coupled) {
     add_depth(layout_.offset.at({BlockKind::InverseDepth, term.id}));
   } else if (depth_.h > kNoInformation) {
     eliminate_depth();
     if (eliminated != nullptr) eliminated->push_back(std::move(depth_));
+  }
+}
+
+void LandmarkEquations::add_gradient(const LandmarkTerm& term, DepthEquation* earlier) {
+  Eigen::VectorXd& g = equations_.g;
+  const Index anchor = poses_[term.anchor_place], anchor_calibration = calibrations_[term.anchor.camera];
+  double g_depth = 0.0;
+  linearise(term, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
+    const LandmarkResidual& at = term.residuals[residual];
+    const bool other_camera = at.seen.camera != term.anchor.camera;
+    const WeightedResidual J = weighted(at, error, before, *loss_, other_camera);
+    g.segment<6>(anchor) += J.anchor * J.r;
+    g.segment<6>(poses_[at.place]) += J.seen * J.r;
+    if (at.correlation != 0.0) g.segment<6>(poses_[term.residuals[residual - 1].place]) += J.before * J.r;
+    g.segment<kCalibrationSize>(anchor_calibration) += J.calibration * J.r;
+    if (other_camera) g.segment<kCalibrationSize>(calibrations_[at.seen.camera]) += J.seen_calibration * J.r;
+    g_depth += J.depth.dot(J.r);
+  });
+  if (term.coupled) {
+    g[layout_.offset.at({BlockKind::InverseDepth, term.id})] += g_depth;
+  } else if (earlier != nullptr) {
+    earlier->g = g_depth;
+    const double share = -g_depth / earlier->h;
+    for (const DepthByPose& pose : earlier->poses) g.segment<6>(pose.global) += share * pose.coupling;
+    for (const DepthByCalibration& camera : earlier->calibrations)
+      g.segment<kCalibrationSize>(camera.global) += share * camera.coupling;
   }
 }
 

@@ -16,10 +16,14 @@ class LandmarkEquations {
   LandmarkEquations(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations);
   /// An inverse depth without a place in the layout is eliminated, and added to `eliminated` if there is one.
   void add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated);
+  /// Adds to the gradient alone. An inverse depth is eliminated by its equation of an earlier linearization, if it has
+  /// one, which takes the new gradient.
+  void add_gradient(const LandmarkTerm& term, DepthEquation* earlier);
 
  private:
   void place(const LandmarkTerm& term);
-  void linearise(const LandmarkTerm& term);
+  template <typename Use>
+  void linearise(const LandmarkTerm& term, const Use& use) const;
   void accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
                   const LandmarkTerm& term);
   void add_own();

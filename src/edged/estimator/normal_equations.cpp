@@ -59,13 +59,16 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
   return true;
 }
 
-/// The window's prior, whose J^T J is known: only rotations change its derivatives away from its linearization point.
-void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at,
-               NormalEquations& equations) {
-  MatrixXd H = prior.information;
-  VectorXd d(H.cols());
+/// The gradient of the window's prior.
+struct PriorGradient {
+  VectorXd g;
   std::vector<Placed> blocks;
-  std::vector<std::pair<Index, Eigen::Matrix3d>> turns;
+  std::vector<std::pair<Index, Eigen::Matrix3d>> turns;  ///< first column of a rotation, its derivatives by a step
+};
+
+PriorGradient gradient_of(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at) {
+  PriorGradient out;
+  VectorXd d(prior.information.cols());
   Index column = 0;
   for (std::size_t i = 0; i < prior.blocks.size(); ++i) {
     const BlockKey& key = prior.blocks[i];
@@ -75,18 +78,32 @@ void add_prior(const Window& window, const LinearPrior& prior, const Layout& lay
     if (at == Linearisation::FirstEstimates && window.linearisation_point(key) != now) {
       d.segment(column, size).setZero();  // steps count from there
     } else if (key.kind == BlockKind::Pose) {
-      turns.emplace_back(column + 3, so3::right_jacobian_inverse(d.segment<3>(column + 3)));
+      out.turns.emplace_back(column + 3, so3::right_jacobian_inverse(d.segment<3>(column + 3)));
     }
-    blocks.push_back({column, size, layout.offset.at(key)});
+    out.blocks.push_back({column, size, layout.offset.at(key)});
     column += size;
   }
-  VectorXd g = H * d + prior.J.transpose() * prior.r;
-  for (const auto& [first, by_turn] : turns) {
+  out.g = prior.information * d + prior.J.transpose() * prior.r;
+  for (const auto& [first, by_turn] : out.turns)
+    out.g.segment<3>(first) = (by_turn.transpose() * out.g.segment<3>(first)).eval();
+  return out;
+}
+
+/// The window's prior, whose J^T J is known: only rotations change its derivatives away from its linearization point.
+void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at,
+               NormalEquations& equations) {
+  const PriorGradient gradient = gradient_of(window, prior, layout, at);
+  MatrixXd H = prior.information;
+  for (const auto& [first, by_turn] : gradient.turns) {
     H.middleCols<3>(first) *= by_turn;
     H.middleRows<3>(first) = (by_turn.transpose() * H.middleRows<3>(first)).eval();
-    g.segment<3>(first) = (by_turn.transpose() * g.segment<3>(first)).eval();
   }
-  equations.add(H, g, blocks);
+  equations.add(H, gradient.g, gradient.blocks);
+}
+
+/// Adds the parts of a term to the gradient of all.
+void add_gradient(const VectorXd& term, std::span<const Placed> blocks, VectorXd& g) {
+  for (const Placed& block : blocks) g.segment(block.global, block.size) += term.segment(block.local, block.size);
 }
 
 double value_of(const Window& window, const Factor& factor) {
@@ -116,6 +133,29 @@ NormalEquations normal_equations(const Window& window, const Cost& cost, const L
   LandmarkEquations landmarks(window, layout, at, equations);
   for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, eliminated);
   return equations;
+}
+
+Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& layout,
+                         std::vector<DepthEquation>& eliminated) {
+  NormalEquations equations(0);  // H is not used
+  equations.g.setZero(layout.size);
+  LinearFactor linear;
+  if (cost.prior) {
+    const PriorGradient prior = gradient_of(window, cost.prior->prior(), layout, Linearisation::Present);
+    add_gradient(prior.g, prior.blocks, equations.g);
+  }
+  for (const auto& factor : cost.factors) {
+    if (!linearise(window, *factor, layout, Linearisation::Present, linear)) continue;
+    add_gradient(linear.J.transpose() * linear.r, linear.blocks, equations.g);
+  }
+  LandmarkEquations landmarks(window, layout, Linearisation::Present, equations);
+  auto depth = eliminated.begin();
+  for (const LandmarkTerm& term : cost.landmarks) {
+    const bool known = depth != eliminated.end() && depth->landmark == term.id;
+    if (!term.residuals.empty()) landmarks.add_gradient(term, known ? &*depth : nullptr);
+    if (known) ++depth;
+  }
+  return std::move(equations.g);
 }
 
 double value_of(const Window& window, const Cost& cost) {

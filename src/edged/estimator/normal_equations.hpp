@@ -14,6 +14,11 @@ namespace edged {
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
                                  std::vector<DepthEquation>* eliminated = nullptr);
 
+/// Their gradient alone, at the present values. The inverse depths are eliminated by their equations of an earlier
+/// linearization of the same cost, whose gradients are replaced.
+Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& layout,
+                         std::vector<DepthEquation>& eliminated);
+
 /// Half the sum of squares, robust losses applied, at the present values; infinite where a term is not defined.
 double value_of(const Window& window, const Cost& cost);
 

@@ -19,7 +19,14 @@ using Eigen::VectorXd;
 constexpr double kDamping = 1e-9, kMoreDamping = 1e3;
 constexpr double kConverged = 1e-6;  // a step with a smaller relative decrease of the cost is the last
 
-/// The linear system of the window at its present values, with steps and their undo.
+// After a step that decreases the cost by less than this share the matrix is as good as new: the next step is by the
+// same factorization, with a new gradient (the simplified Newton method).
+constexpr double kSmall = 0.1;
+
+/// What of the linear system is that of the present values.
+enum class Current { All, Gradient, Nothing };
+
+/// The linear system of the window near its present values, with steps and their undo.
 class Neighbourhood {
  public:
   Neighbourhood(Window& window, const Cost& cost)
@@ -34,9 +41,14 @@ class Neighbourhood {
     g_ = scale_.asDiagonal() * equations.g;
   }
 
-  /// The step that solves the system; false when it has none.
-  bool step(double damping, VectorXd& d) {
-    if (!cholesky_.factorise(H_, damping)) return false;
+  /// The gradient at the present values; the matrix stays that of linearise().
+  void update_gradient() { g_ = scale_.asDiagonal() * gradient(window_, cost_, layout_, eliminated_); }
+
+  /// False if the system has no solution.
+  bool factorise(double damping) { return cholesky_.factorise(H_, damping); }
+
+  /// The step that solves the system; false if it is not finite.
+  bool step(VectorXd& d) const {
     d = scale_.asDiagonal() * cholesky_.solve(-g_);
     return d.allFinite();
   }
@@ -82,27 +94,34 @@ SolveSummary solve(Window& window, int max_iterations) {
   Neighbourhood around(window, cost);
   VectorXd d;
   double damping = kDamping;
-  bool fresh = false;  // linearised at the present values
+  Current current = Current::Nothing;
   while (summary.iterations < max_iterations) {
     ++summary.iterations;
-    if (!fresh) around.linearise();
-    fresh = true;
+    if (current == Current::Nothing) around.linearise();
     double value = std::numeric_limits<double>::infinity();
-    if (around.step(damping, d)) {
+    if ((current == Current::Gradient || around.factorise(damping)) && around.step(d)) {
       around.move(d);
       value = value_of(window, cost);
       if (!(value < summary.final_cost)) around.restore();
     }
     if (!(value < summary.final_cost)) {
+      if (current == Current::Gradient) {
+        current = Current::Nothing;  // the matrix is too old
+        --summary.iterations;
+        continue;
+      }
       if (std::isfinite(value) && value - summary.final_cost <= kConverged * value) break;  // converged
+      current = Current::All;
       damping *= kMoreDamping;
       continue;
     }
     const double gain = summary.final_cost - value;
     summary.final_cost = value;
+    if (current != Current::Gradient && gain <= kConverged * value) break;
+    const bool keep_matrix = current != Current::Gradient && damping == kDamping && gain < kSmall * value;
+    current = keep_matrix ? Current::Gradient : Current::Nothing;
+    if (keep_matrix) around.update_gradient();
     damping = kDamping;
-    fresh = false;
-    if (gain <= kConverged * value) break;
   }
   return summary;
 }

@@ -241,6 +241,22 @@ TEST_P(NormalEquationsOf, TheWindowHaveTheGradientOfTheCost) {
   }
 }
 
+TEST_P(NormalEquationsOf, TheWindowHaveTheGradientThatIsComputedAlone) {
+  const TestWorldOptions options{.cameras = 2, .shared_ids = GetParam()};
+  TestWorld world(options);
+  Window window = disturbed_window(world, options);
+  Cost cost = cost_of(window);
+  cost.landmarks.front().coupled = true;
+  const Layout layout(blocks_of(cost));
+  std::vector<DepthEquation> eliminated;
+  const Eigen::VectorXd g = normal_equations(window, cost, layout, Linearisation::Present, &eliminated).g;
+  std::vector<DepthEquation> kept = eliminated;
+  for (DepthEquation& depth : kept) depth.g = 1e9;
+  EXPECT_LT((gradient(window, cost, layout, kept) - g).norm(), 1e-9 * g.norm());
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    EXPECT_NEAR(kept[i].g, eliminated[i].g, 1e-9 * std::max(1.0, std::abs(eliminated[i].g)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Cameras, NormalEquationsOf, testing::Values(false, true), [](const auto& test) {
   return test.param ? "that_see_the_same_landmarks" : "with_landmarks_of_their_own";
 });
