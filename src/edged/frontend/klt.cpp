@@ -32,11 +32,11 @@ void ImagePyramid::build(const cv::Mat& image, const KltConfig& config) {
 }
 
 Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<cv::Point2f>& points,
-            const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config) {
+            const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config, double epsilon_px) {
   EDGED_CHECK(points.size() == seeds.size(), "{} points, {} seeds", points.size(), seeds.size());
   Flow flow{seeds, {}};
   if (points.empty()) return flow;
-  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, config.iterations, config.epsilon_px);
+  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, config.iterations, epsilon_px);
   const double min_eigenvalue = config.min_gradient * config.min_gradient * kEigenvalueScale;
   cv::calcOpticalFlowPyrLK(from.levels(), to.levels(), points, flow.points, flow.found, cv::noArray(),
                            cv::Size(config.window_px, config.window_px), top_level, stop, cv::OPTFLOW_USE_INITIAL_FLOW,

@@ -30,10 +30,12 @@ struct Flow {
   std::vector<uchar> found;         ///< 0 where the window left the image or has too little texture
 };
 
-/// Follows `points` of `from` to `to`, starting the search at `seeds` (same length), on the levels 0 .. top_level.
+/// Follows `points` of `from` to `to`, starting the search at `seeds` (same length), on the levels top_level .. 0, on
+/// each until a step is below epsilon_px.
 /// Bouguet, "Pyramidal implementation of the Lucas Kanade feature tracker" (2000).
 Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<cv::Point2f>& points,
-            const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config);
+            const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config,
+            double epsilon_px = KltConfig::epsilon_px);
 
 /// Normalised cross-correlation in [-1, 1] of the 11x11 patches around a in image_a and b in image_b: independent of
 /// gain and offset. 0 when one of them is flat.

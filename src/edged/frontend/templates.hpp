@@ -49,6 +49,7 @@ class Templates {
   /// Whether the newest image matches the reference patch.
   void note(FeatureId id, bool fits);
   void clear() { references_.clear(); }
+  bool empty() const { return references_.empty(); }
 
  private:
   struct Reference {

@@ -14,7 +14,8 @@
 namespace edged {
 namespace {
 
-constexpr int kBackwardTopLevel = 1;  // the backward search starts at its expected result
+constexpr int kPredictedTopLevel = 1;  // of a search that begins near its expected result
+constexpr double kCoarse_px = 0.03;    // convergence of a search whose result is aligned afterwards
 
 cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
@@ -241,31 +242,41 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
                                               std::vector<Eigen::Vector3d> expected_C) const {
   Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0),
                   std::move(expected_C)};
-  std::vector<std::size_t> alive;
+  // On event frames the predicted position is a better start of the alignment than that of the optical flow, which
+  // follows the appearance of an edge under the motion.
+  const bool on_events = !increments_.image.empty();
+  std::vector<std::size_t> unaligned;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (camera_.contains(to_eigen(seeds[i]))) alive.push_back(i);  // false for NaN
+    if (!camera_.contains(to_eigen(seeds[i]))) continue;  // NaN, too
+    if (!on_events || !align(i, matches)) unaligned.push_back(i);
   }
+  const bool aligned_later = !matches.expected_C.empty() && !templates_.empty();
   const Flow forward =
-      follow(previous_, current_, select(from, alive), select(seeds, alive), config_.klt.levels - 1, config_.klt);
+      follow(previous_, current_, select(from, unaligned), select(seeds, unaligned),
+             aligned_later ? std::min(kPredictedTopLevel, config_.klt.levels - 1) : config_.klt.levels - 1, config_.klt,
+             aligned_later ? kCoarse_px : KltConfig::epsilon_px);
   std::vector<std::size_t> otherwise;  // matches, or has no reference patch
-  for (std::size_t k = 0; k < alive.size(); ++k) {
-    const std::size_t i = alive[k];
+  for (std::size_t k = 0; k < unaligned.size(); ++k) {
+    const std::size_t i = unaligned[k];
     matches.points[i] = forward.points[k];
     const bool inside = camera_.contains(to_eigen(forward.points[k]), config_.border_px);
     matches.fates[i] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
-    if (matches.fates[i] != Fate::Kept) continue;
-    std::optional<Eigen::Vector2d> aligned;
-    if (!matches.expected_C.empty())
-      aligned = templates_.align(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches));
-    if (aligned && camera_.contains(*aligned, config_.border_px)) {
-      matches.points[i] = to_cv(*aligned);
-      matches.as_at_first[i] = 1;
-    } else {
-      otherwise.push_back(i);
-    }
+    if (matches.fates[i] == Fate::Kept && !align(i, matches)) otherwise.push_back(i);
   }
   match_back(from, otherwise, matches);
   return matches;
+}
+
+/// To the reference patch of the track, near the present match. False if it does not match there.
+bool FeatureTracker::align(std::size_t i, Matches& matches) const {
+  if (matches.expected_C.empty()) return false;
+  const std::optional<Eigen::Vector2d> aligned =
+      templates_.align(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches));
+  if (!aligned || !camera_.contains(*aligned, config_.border_px)) return false;
+  matches.points[i] = to_cv(*aligned);
+  matches.fates[i] = Fate::Kept;
+  matches.as_at_first[i] = 1;
+  return true;
 }
 
 /// Tracks that no reference patch confirms must pass the forward-backward check and the correlation with the last
@@ -273,7 +284,7 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
   const Flow backward =
-      follow(current_, previous_, select(matches.points, which), select(from, which), kBackwardTopLevel, config_.klt);
+      follow(current_, previous_, select(matches.points, which), select(from, which), kPredictedTopLevel, config_.klt);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const std::size_t i = which[k];
     if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {

@@ -115,6 +115,7 @@ class FeatureTracker {
   Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
   /// The i-th track in the newest image.
   static CornerMotion corner_of(const Track& track, std::size_t i, const Matches& matches);
+  bool align(std::size_t i, Matches& matches) const;
   void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
   void apply(const Matches& matches, TrackSummary& summary);
