@@ -93,10 +93,8 @@ BENCHMARK(BM_SelectCandidates)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark:
 
 /// range(0): keyframes, of which eight are seen; range(1): those with a joint covariance.
 void BM_TakeUpWhatWasFound(benchmark::State& state) {
-  MapFilterConfig config;
-  config.max_active = static_cast<int>(state.range(1));
   const double before_mb = resident_mb();
-  MapFilter filter{config};
+  MapFilter filter(MapFilterConfig{}, false, static_cast<int>(state.range(1)));
   filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
   for (int k = 0; k < state.range(0); ++k) {
     const Timestamp t = timestamp_from_seconds(0.3 * k);
@@ -110,7 +108,7 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
       observations.push_back({keyframe, p, 0.01 * p, p.hnormalized(), 0.01});
     }
   }
-  filter.wake(std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7});
+  filter.activate(std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7});
   state.counters["MB"] = resident_mb() - before_mb;
   for (auto _ : state) benchmark::DoNotOptimize(filter.update(observations, observations.size(), {SE3()}));
 }
@@ -123,8 +121,8 @@ BENCHMARK(BM_TakeUpWhatWasFound)
     ->Args({10000, 100})
     ->Unit(benchmark::kMillisecond);
 
-/// range(0): keyframes of a street. The body comes back to its beginning, by the other side: eight of them wake, and
-/// what is between is tied to them; then it goes on at its end, and they rest again.
+/// range(0): keyframes of a street. The body comes back to its beginning, by the other side: eight of them become
+/// active, and parents of what is between; then it goes on at its end, and they are deactivated again.
 void BM_ComeBack(benchmark::State& state) {
   MapFilter filter{MapFilterConfig{}};
   filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
@@ -138,9 +136,9 @@ void BM_ComeBack(benchmark::State& state) {
   end.erase(end.begin(), end.end() - 100);
   double t = 0.3 * static_cast<double>(state.range(0));
   for (auto _ : state) {
-    filter.wake(begin);
+    filter.activate(begin);
     filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
-    filter.wake(end);
+    filter.activate(end);
     filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
   }
 }

@@ -34,7 +34,6 @@ struct MapFilterConfig {
   int min_observations = 8;
   double min_found_share = 0.4;
   double max_misfit = 0.75;  ///< median residual of the map matches after the update [sigma]
-  int max_active = 100;      ///< keyframes in one joint covariance: time and memory grow with the square
   void visit(ConfigFields& fields);
 };
 

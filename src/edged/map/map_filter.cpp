@@ -20,9 +20,9 @@ using Eigen::VectorXd;
 
 constexpr double kCauchy = 2.0;             // [sigma]
 constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
-// Ties of a keyframe that comes to rest. With one, what it has in common with the others is lost at each return.
-constexpr std::size_t kTies = 3;
-constexpr std::size_t kTieCandidates = 10;  // keyframes that come into question for the next tie, after the first
+// Parents of a keyframe that is deactivated. With one, what it has in common with the others is lost at each return.
+constexpr std::size_t kParents = 3;
+constexpr std::size_t kParentCandidates = 10;  // keyframes that come into question for the next parent, after the first
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
 }
 
 void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift) {
-  rest_beyond_limit();
+  deactivate_beyond_limit();
   const Matrix6d F = transport(T_M_B_, T_O_B_.inverse() * T_O_B);
   const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = P_.leftCols<6>() * F.transpose();
   P_.leftCols<6>() = moved;
@@ -58,45 +58,45 @@ void MapFilter::add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t) {
   grown.bottomLeftCorner(6, n) = F * P_.topRows<6>();
   grown.topRightCorner(n, 6) = grown.bottomLeftCorner(6, n).transpose();
   T_M_K_.push_back(T_M_O * T_O_K);
-  woken_.push_back(t_);
+  activated_.push_back(t_);
   row_.push_back(n);
   grown.bottomRightCorner<6, 6>() = F * P_.topLeftCorner<6, 6>() * F.transpose() +
                                     drift_covariance(config_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
   P_ = std::move(grown);
 }
 
-void MapFilter::load(std::vector<SE3> T_M_K, const MatrixXd& covariance, std::span<const TiedPose> resting) {
+void MapFilter::load(std::vector<SE3> T_M_K, const MatrixXd& covariance, std::span<const ConditionalPose> inactive) {
   T_M_K_ = std::move(T_M_K);
-  woken_.assign(T_M_K_.size(), Timestamp::min());
+  activated_.assign(T_M_K_.size(), Timestamp::min());
   row_.assign(T_M_K_.size(), 0);
-  resting_ = RestingPoses();
-  for (const TiedPose& pose : resting) {
-    resting_.rest(pose);
-    row_[pose.keyframe] = kResting;
+  inactive_ = InactiveKeyframes();
+  for (const ConditionalPose& pose : inactive) {
+    inactive_.add(pose);
+    row_[pose.keyframe] = kInactive;
   }
   P_ = MatrixXd::Zero(6 + covariance.rows(), 6 + covariance.cols());
   P_.bottomRightCorner(covariance.rows(), covariance.cols()) = covariance;
   Eigen::Index next = 6;
-  for (const std::size_t keyframe : awake()) row_[keyframe] = std::exchange(next, next + 6);
+  for (const std::size_t keyframe : active()) row_[keyframe] = std::exchange(next, next + 6);
 }
 
 MatrixXd MapFilter::keyframe_covariance() const { return P_.bottomRightCorner(P_.rows() - 6, P_.cols() - 6); }
 
 void MapFilter::remove_keyframe(std::size_t keyframe) {
-  if (resting_.depend_on(keyframe) && !resting_.contains(keyframe)) rest(std::array{keyframe});
-  resting_.remove(keyframe);
+  if (inactive_.depend_on(keyframe) && !inactive_.contains(keyframe)) deactivate(std::array{keyframe});
+  inactive_.remove(keyframe);
   const auto at = static_cast<std::ptrdiff_t>(keyframe);
   T_M_K_.erase(T_M_K_.begin() + at);
-  woken_.erase(woken_.begin() + at);
+  activated_.erase(activated_.begin() + at);
   row_.erase(row_.begin() + at);
   select_rows();
 }
 
 /// In order of their rows.
-std::vector<std::size_t> MapFilter::awake() const {
+std::vector<std::size_t> MapFilter::active() const {
   std::vector<std::size_t> keyframes;
   for (std::size_t k = 0; k < row_.size(); ++k) {
-    if (row_[k] != kResting) keyframes.push_back(k);
+    if (row_[k] != kInactive) keyframes.push_back(k);
   }
   return keyframes;
 }
@@ -104,78 +104,80 @@ std::vector<std::size_t> MapFilter::awake() const {
 /// Drops the rows of P_ that belong to no keyframe any more, and sorts the others by keyframe.
 void MapFilter::select_rows() {
   std::vector<Eigen::Index> rows = {0, 1, 2, 3, 4, 5};
-  for (const std::size_t keyframe : awake()) {
+  for (const std::size_t keyframe : active()) {
     const Eigen::Index first = std::exchange(row_[keyframe], std::ssize(rows));
     for (Eigen::Index i = 0; i < 6; ++i) rows.push_back(first + i);
   }
   P_ = P_(rows, rows).eval();
 }
 
-void MapFilter::rest_beyond_limit() {
-  std::vector<std::size_t> keyframes = awake();
-  const std::ptrdiff_t many = std::ssize(keyframes) - config_.max_active;
+void MapFilter::deactivate_beyond_limit() {
+  std::vector<std::size_t> keyframes = active();
+  const std::ptrdiff_t many = std::ssize(keyframes) - max_active_;
   if (many <= 0) return;
-  std::ranges::stable_sort(keyframes, {}, [&](std::size_t k) { return woken_[k]; });
-  rest(std::span(keyframes).first(static_cast<std::size_t>(many)));
+  std::ranges::stable_sort(keyframes, {}, [&](std::size_t k) { return activated_[k]; });
+  deactivate(std::span(keyframes).first(static_cast<std::size_t>(many)));
 }
 
-/// One after the other, each tied to one that does not rest yet.
-void MapFilter::rest(std::span<const std::size_t> keyframes) {
+/// One after the other, each conditional on those that are active still.
+void MapFilter::deactivate(std::span<const std::size_t> keyframes) {
   for (const std::size_t keyframe : keyframes) {
-    const Eigen::Index row = std::exchange(row_[keyframe], kResting);
-    resting_.rest(tied(keyframe, row));
+    const Eigen::Index row = std::exchange(row_[keyframe], kInactive);
+    inactive_.add(conditional(keyframe, row));
   }
   select_rows();
 }
 
 /// Its error given those of few others: one after the other that which leaves it least uncertain. row: its own in P_.
-TiedPose MapFilter::tied(std::size_t keyframe, Eigen::Index row) const {
-  std::vector<std::uint32_t> to, others;
-  for (const std::size_t other : awake()) others.push_back(static_cast<std::uint32_t>(other));
+ConditionalPose MapFilter::conditional(std::size_t keyframe, Eigen::Index row) const {
+  std::vector<std::uint32_t> parents, others;
+  for (const std::size_t other : active()) others.push_back(static_cast<std::uint32_t>(other));
   const auto given = [&] {
-    std::vector<Eigen::Index> rows(6 * (to.size() + 1));
+    std::vector<Eigen::Index> rows(6 * (parents.size() + 1));
     std::iota(rows.begin(), rows.begin() + 6, row);
-    for (std::size_t i = 0; i < to.size(); ++i)
-      std::iota(rows.begin() + 6 * (i + 1), rows.begin() + 6 * (i + 2), row_[to[i]]);
-    return tied_pose(static_cast<std::uint32_t>(keyframe), to, P_(rows, rows));
+    for (std::size_t i = 0; i < parents.size(); ++i)
+      std::iota(rows.begin() + 6 * (i + 1), rows.begin() + 6 * (i + 2), row_[parents[i]]);
+    return conditional_pose(static_cast<std::uint32_t>(keyframe), parents, P_(rows, rows));
   };
-  while (!others.empty() && to.size() < kTies) {
+  while (!others.empty() && parents.size() < kParents) {
     std::vector<std::pair<double, std::uint32_t>> left;  // volume of its error
     for (const std::uint32_t other : others) {
-      to.push_back(other);
-      left.emplace_back(Matrix6d(given().covariance + TiedPose::kLeastVariance * Matrix6d::Identity()).determinant(),
-                        other);
-      to.pop_back();
+      parents.push_back(other);
+      left.emplace_back(
+          Matrix6d(given().covariance + ConditionalPose::kLeastVariance * Matrix6d::Identity()).determinant(), other);
+      parents.pop_back();
     }
     std::ranges::sort(left);
-    to.push_back(left.front().second);
+    parents.push_back(left.front().second);
     others.clear();
-    for (std::size_t i = 1; i < std::min(left.size(), kTieCandidates); ++i) others.push_back(left[i].second);
+    for (std::size_t i = 1; i < std::min(left.size(), kParentCandidates); ++i) others.push_back(left[i].second);
   }
   return given();
 }
 
-void MapFilter::wake(std::span<const std::uint32_t> keyframes) {
-  for (const std::uint32_t keyframe : keyframes) woken_[keyframe] = t_;
-  const std::vector<TiedPose> woken = resting_.wake(keyframes);
-  if (woken.empty()) return;
-  const Eigen::Index n = P_.rows(), m = 6 * std::ssize(woken);
+void MapFilter::activate(std::span<const std::uint32_t> keyframes) {
+  for (const std::uint32_t keyframe : keyframes) activated_[keyframe] = t_;
+  const std::vector<ConditionalPose> activated = inactive_.activate(keyframes);
+  if (activated.empty()) return;
+  const Eigen::Index n = P_.rows(), m = 6 * std::ssize(activated);
   P_.conservativeResize(n + m, n + m);
   P_.bottomRows(m).setZero();
   P_.rightCols(m).setZero();
-  for (const TiedPose& pose : woken) {
-    row_[pose.keyframe] = n + 6 * (&pose - woken.data());
+  for (const ConditionalPose& pose : activated) {
+    row_[pose.keyframe] = n + 6 * (&pose - activated.data());
     fill_rows(pose);
   }
   select_rows();
 }
 
-/// Its covariance with all others, which follows from that of its ties, and its own.
-void MapFilter::fill_rows(const TiedPose& pose) {
+/// Its covariance with all others, which follows from that of its parents, and its own.
+void MapFilter::fill_rows(const ConditionalPose& pose) {
   Eigen::Matrix<double, 6, Eigen::Dynamic> cross = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, P_.cols());
-  for (const TiedPose::Tie& tie : pose.ties) cross += tie.gain * P_.middleRows<6>(row_[tie.to]);
+  for (const ConditionalPose::Parent& parent : pose.parents)
+    cross += parent.gain * P_.middleRows<6>(row_[parent.keyframe]);
   Matrix6d own = pose.covariance;
-  for (const TiedPose::Tie& tie : pose.ties) own += cross.middleCols<6>(row_[tie.to]) * tie.gain.transpose();
+  for (const ConditionalPose::Parent& parent : pose.parents)
+    own += cross.middleCols<6>(row_[parent.keyframe]) * parent.gain.transpose();
   const Eigen::Index row = row_[pose.keyframe];
   P_.middleRows<6>(row) = cross;
   P_.middleCols<6>(row) = cross.transpose();
@@ -204,8 +206,8 @@ SE3 MapFilter::correct(const VectorXd& error) {
   T_M_B_ = T_M_O * T_O_B_;
   if (fixed_keyframes_) return T_M_O;
   std::vector<Vector6d> errors(T_M_K_.size());
-  for (const std::size_t k : awake()) errors[k] = error.segment<6>(row_[k]);
-  resting_.follow(errors);
+  for (const std::size_t k : active()) errors[k] = error.segment<6>(row_[k]);
+  inactive_.follow(errors);
   for (std::size_t k = 0; k < T_M_K_.size(); ++k) T_M_K_[k] = corrected(T_M_K_[k], errors[k]);
   return T_M_O;
 }

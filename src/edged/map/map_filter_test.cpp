@@ -79,13 +79,11 @@ struct Walk {
   double early_m = 0.0, late_m = 0.0, odometry_late_m = 0.0, nees = 0.0;
 };
 
-/// Keyframes in the first round, of 8 s; after that their points are observed again. At most so many do not rest.
+/// Keyframes in the first round, of 8 s; after that their points are observed again. At most so many are active.
 Walk walk(std::uint64_t seed, int max_active = 100) {
   constexpr double kMapped_s = 8.0, kEarly_s = 60.0, kLate_s = 180.0, kEnd_s = 240.0;
   World world(seed);
-  MapFilterConfig config = config_of_world();
-  config.max_active = max_active;
-  MapFilter filter(config);
+  MapFilter filter(config_of_world(), false, max_active);
   filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0);
   SE3 T_M_O;
   std::vector<SE3> keyframes;  // their true poses
@@ -102,7 +100,7 @@ Walk walk(std::uint64_t seed, int max_active = 100) {
       continue;
     }
     const std::vector<MapObservation> observations = world.observations(keyframes, nth / 4 % keyframes.size(), t);
-    filter.wake(std::array{observations.front().keyframe});
+    filter.activate(std::array{observations.front().keyframe});
     T_M_O = filter.update(observations, observations.size(), {world.T_B_C}).value_or(T_M_O);
     Eigen::Matrix<double, 6, 1> error;
     error << T_M_B.translation() - filter.T_M_B().translation(),
@@ -139,8 +137,8 @@ TEST(MapFilter, HoldsTheBodyWhereTheOdometryWalksAwayAndKnowsHowWell) {
   EXPECT_LT(mean.nees, 1.5);
 }
 
-/// Four of eight keyframes do not rest, and each comes back once a round, 29 times.
-TEST(MapFilter, IsAsGoodAndAsSureWhereMostKeyframesRest) {
+/// Four of eight keyframes are active, and each comes back once a round, 29 times.
+TEST(MapFilter, IsAsGoodAndAsSureWhereMostKeyframesAreInactive) {
   const Walk full = mean_of_walks(100), mean = mean_of_walks(4);
 
   EXPECT_LT(mean.late_m, 1.1 * full.late_m);
@@ -263,7 +261,7 @@ TEST(MapFilter, TakesEachObservationByTheCameraOfItsImage) {
   EXPECT_LT(error_with(true), 0.2 * error_with(false));
 }
 
-/// A street is walked along, then the first keyframe is observed from its end: of a chain, the ties lose nothing.
+/// A street is walked along, then the first keyframe is observed from its end: of a chain, nothing is lost.
 TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
   constexpr int kKeyframes = 12;
   std::vector<MapFilter> filters;
@@ -271,8 +269,7 @@ TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
     World world(5, 0.005, 0.001);
     MapFilterConfig config = config_of_world();
     config.drift_m = 0.005;
-    config.max_active = max_active;
-    MapFilter& filter = filters.emplace_back(config);
+    MapFilter& filter = filters.emplace_back(config, false, max_active);
     filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.1, 0.01);
     std::vector<SE3> keyframes;
     for (int k = 1; k <= kKeyframes; ++k) {
@@ -282,12 +279,12 @@ TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
       filter.add_keyframe(SE3(), T_O_B, t);
       keyframes.push_back(World::truth(kStep_s * k));
     }
-    EXPECT_EQ(filter.resting().size(), max_active == 3 ? kKeyframes - 4U : 0U);
+    EXPECT_EQ(filter.inactive().size(), max_active == 3 ? kKeyframes - 4U : 0U);
     SE3 T_M_O;
     for (const std::uint32_t keyframe : {2U, 0U}) {
       const std::vector<MapObservation> observations =
           world.observations(keyframes, keyframe, kStep_s * kKeyframes, 0.2);
-      filter.wake(std::array{keyframe});
+      filter.activate(std::array{keyframe});
       const auto corrected = filter.update(observations, observations.size(), {world.T_B_C});
       ASSERT_TRUE(corrected);
       T_M_O = *corrected;
@@ -299,14 +296,12 @@ TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
     EXPECT_LT((full.keyframes()[k].inverse() * few.keyframes()[k]).log().norm(), 1e-5) << k;
   std::vector<std::uint32_t> all(kKeyframes);
   std::iota(all.begin(), all.end(), 0U);
-  few.wake(all);
+  few.activate(all);
   EXPECT_LT((full.keyframe_covariance() - few.keyframe_covariance()).norm(), 1e-3 * full.keyframe_covariance().norm());
 }
 
-TEST(MapFilter, RemovesAKeyframeThatOthersAreTiedTo) {
-  MapFilterConfig config = config_of_world();
-  config.max_active = 3;
-  MapFilter filter(config), full(config_of_world());
+TEST(MapFilter, RemovesAKeyframeThatIsAParentOfOthers) {
+  MapFilter filter(config_of_world(), false, 3), full(config_of_world());
   for (MapFilter* each : {&filter, &full}) {
     World world(7);
     each->restart(SE3(), World::truth(0.0), Timestamp{}, 0.1, 0.01);
@@ -315,11 +310,11 @@ TEST(MapFilter, RemovesAKeyframeThatOthersAreTiedTo) {
       each->predict(SE3(), T_O_B, timestamp_from_seconds(kStep_s * k));
       each->add_keyframe(SE3(), T_O_B, timestamp_from_seconds(kStep_s * k));
     }
-    for (const std::size_t keyframe : {8U, 3U, 0U}) each->remove_keyframe(keyframe);  // awake, resting, resting
+    for (const std::size_t keyframe : {8U, 3U, 0U}) each->remove_keyframe(keyframe);  // active, inactive, inactive
   }
   ASSERT_EQ(filter.keyframes().size(), 7U);
-  filter.wake(std::array{0U, 1U, 2U, 3U, 4U, 5U, 6U});
-  EXPECT_TRUE(filter.resting().empty());
+  filter.activate(std::array{0U, 1U, 2U, 3U, 4U, 5U, 6U});
+  EXPECT_TRUE(filter.inactive().empty());
   EXPECT_LT((full.keyframe_covariance() - filter.keyframe_covariance()).norm(),
             1e-3 * full.keyframe_covariance().norm());
 }

@@ -79,27 +79,27 @@ class AddedPoses {
   AddedPoses(const SavedMap& other, const SE3& T_A_B, const std::vector<SE3>& T_A_K)
       : other_(other), T_A_B_(T_A_B), T_A_K_(T_A_K) {
     for (const SE3& T : T_A_K) centre_ += T.translation() / static_cast<double>(T_A_K.size());
-    std::vector<bool> rests(T_A_K.size(), false);
-    for (const TiedPose& pose : other.resting) rests[pose.keyframe] = true;
+    std::vector<bool> inactive(T_A_K.size(), false);
+    for (const ConditionalPose& pose : other.inactive) inactive[pose.keyframe] = true;
     for (std::uint32_t k = 0; k < T_A_K.size(); ++k) {
-      row_.push_back(6 * std::ssize(awake_));
-      if (!rests[k]) awake_.push_back(k);
+      row_.push_back(6 * std::ssize(active_));
+      if (!inactive[k]) active_.push_back(k);
     }
   }
 
-  Eigen::MatrixXd covariance() const { return in_A(awake_, other_.covariance); }
+  Eigen::MatrixXd covariance() const { return in_A(active_, other_.covariance); }
 
-  std::vector<TiedPose> resting() const {
-    RestingPoses poses;
-    for (const TiedPose& pose : other_.resting) poses.rest(pose);
-    std::vector<TiedPose> all;
-    for (const TiedPose& pose : other_.resting) {
+  std::vector<ConditionalPose> inactive() const {
+    InactiveKeyframes poses;
+    for (const ConditionalPose& pose : other_.inactive) poses.add(pose);
+    std::vector<ConditionalPose> all;
+    for (const ConditionalPose& pose : other_.inactive) {
       std::vector<std::uint32_t> keyframes = {pose.keyframe};
-      for (const TiedPose::Tie& tie : pose.ties) keyframes.push_back(tie.to);
+      for (const ConditionalPose::Parent& parent : pose.parents) keyframes.push_back(parent.keyframe);
       const Eigen::MatrixXd joint = poses.joint(keyframes, [&](std::uint32_t a, std::uint32_t b) -> Matrix6d {
         return other_.covariance.block<6, 6>(row_[a], row_[b]);
       });
-      all.push_back(tied_pose(pose.keyframe, std::span(keyframes).subspan(1), in_A(keyframes, joint)));
+      all.push_back(conditional_pose(pose.keyframe, std::span(keyframes).subspan(1), in_A(keyframes, joint)));
     }
     return all;
   }
@@ -122,8 +122,8 @@ class AddedPoses {
   SE3 T_A_B_;
   const std::vector<SE3>& T_A_K_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  std::vector<std::uint32_t> awake_;
-  std::vector<Eigen::Index> row_;  ///< in the covariance, of those that do not rest
+  std::vector<std::uint32_t> active_;
+  std::vector<Eigen::Index> row_;  ///< in the covariance, of the active ones
 };
 
 }  // namespace
@@ -165,12 +165,12 @@ SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {
   for (MapKeyframe& keyframe : both.keyframes) keyframe.t -= by, keyframe.found_at -= by;
 
   const AddedPoses added(other, T_A_B, both.T_M_K);
-  both.resting = added.resting();
+  both.inactive = added.inactive();
   const auto n = static_cast<std::uint32_t>(other.keyframes.size());
-  for (TiedPose pose : map.resting) {
+  for (ConditionalPose pose : map.inactive) {
     pose.keyframe += n;
-    for (TiedPose::Tie& tie : pose.ties) tie.to += n;
-    both.resting.push_back(std::move(pose));
+    for (ConditionalPose::Parent& parent : pose.parents) parent.keyframe += n;
+    both.inactive.push_back(std::move(pose));
   }
   const Eigen::Index rows = other.covariance.rows(), more = map.covariance.rows();
   both.covariance = Eigen::MatrixXd::Zero(rows + more, rows + more);

@@ -97,27 +97,25 @@ TEST(MapMerge, BothLieInOneFrame) {
   EXPECT_NO_THROW(saved_map_from_bytes(to_bytes(both)));  // in order of time, with valid values
 }
 
-/// Of the other map's first two keyframes, of which one rests: their uncertainty is that of keyframes that do not.
-TEST(MapMerge, KeepsTheUncertaintyOfKeyframesThatRest) {
+/// Of the other map's first two keyframes, of which one is inactive: their uncertainty is as if it were active.
+TEST(MapMerge, KeepsTheUncertaintyOfInactiveKeyframes) {
   const Wall wall(1);
   const SavedMap map = wall.map_from(places(-0.5, 5), SE3());
   SavedMap other = wall.map_from(places(-0.4, 4), kT_A_B);
   const Eigen::MatrixXd root = 0.01 * Eigen::MatrixXd::Random(24, 24);
   other.covariance = root * root.transpose();
-  const SavedMap none_rests = merged(map, other, kT_A_B);
-  MapFilterConfig config;
-  config.max_active = 3;
-  MapFilter filter(config);
+  const SavedMap all_active = merged(map, other, kT_A_B);
+  MapFilter filter(MapFilterConfig{}, false, 3);
   filter.load(other.T_M_K, other.covariance);
   filter.predict(SE3(), SE3(), Timestamp());
   other.covariance = filter.keyframe_covariance();
-  other.resting = filter.resting();
-  ASSERT_EQ(other.resting.size(), 1U);
-  const SavedMap rests = saved_map_from_bytes(to_bytes(merged(map, other, kT_A_B)));
-  ASSERT_EQ(rests.resting.size(), 1U);
-  filter.load(rests.T_M_K, rests.covariance, rests.resting);
-  filter.wake(std::array{0U});
-  EXPECT_LT((filter.keyframe_covariance() - none_rests.covariance).norm(), 1e-6 * none_rests.covariance.norm());
+  other.inactive = filter.inactive();
+  ASSERT_EQ(other.inactive.size(), 1U);
+  const SavedMap one_inactive = saved_map_from_bytes(to_bytes(merged(map, other, kT_A_B)));
+  ASSERT_EQ(one_inactive.inactive.size(), 1U);
+  filter.load(one_inactive.T_M_K, one_inactive.covariance, one_inactive.inactive);
+  filter.activate(std::array{0U});
+  EXPECT_LT((filter.keyframe_covariance() - all_active.covariance).norm(), 1e-6 * all_active.covariance.norm());
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ static_assert(std::endian::native == std::endian::little, "maps are written and 
 
 constexpr std::string_view kMagic = "edged map\n";
 constexpr std::uint32_t kVersion = 3;
-constexpr std::uint32_t kOneView = 1;      // the version whose keyframes have one view each
-constexpr std::uint32_t kNoneResting = 2;  // the last version whose covariance is of all keyframes
+constexpr std::uint32_t kOneView = 1;    // the version whose keyframes have one view each
+constexpr std::uint32_t kAllActive = 2;  // the last version whose covariance is of all keyframes
 constexpr std::size_t kMostCameras = 16, kMostKeyframes = 10'000, kMostPoints = 10'000, kLongestName = 200;
 constexpr double kSameFocal = 0.02;  // share: difference of two calibrations of one lens
 constexpr Duration kBefore = std::chrono::seconds(1), kOldest = std::chrono::hours(24 * 365 * 100);
@@ -138,12 +138,12 @@ void fields_of(auto& archive, MapKeyframe& keyframe) {
   for (MapView& view : keyframe.views) fields_of(archive, view);
 }
 
-void fields_of(auto& archive, TiedPose& pose) {
+void fields_of(auto& archive, ConditionalPose& pose) {
   archive(pose.keyframe);
-  archive.size(pose.ties, RestingPoses::kMostTies);
-  for (TiedPose::Tie& tie : pose.ties) {
-    archive(tie.to);
-    fields_of(archive, tie.gain);
+  archive.size(pose.parents, InactiveKeyframes::kMostParents);
+  for (ConditionalPose::Parent& parent : pose.parents) {
+    archive(parent.keyframe);
+    fields_of(archive, parent.gain);
   }
   fields_of(archive, pose.covariance);
 }
@@ -160,11 +160,11 @@ void fields_of(auto& archive, SavedMap& map) {
   for (MapKeyframe& keyframe : map.keyframes) fields_of(archive, keyframe);
   map.T_M_K.resize(map.keyframes.size());
   for (SE3& T : map.T_M_K) fields_of(archive, T);
-  if (archive.version > kNoneResting) {
-    archive.size(map.resting, map.keyframes.size());
-    for (TiedPose& pose : map.resting) fields_of(archive, pose);
+  if (archive.version > kAllActive) {
+    archive.size(map.inactive, map.keyframes.size());
+    for (ConditionalPose& pose : map.inactive) fields_of(archive, pose);
   }
-  const Eigen::Index n = 6 * (std::ssize(map.T_M_K) - std::ssize(map.resting));
+  const Eigen::Index n = 6 * (std::ssize(map.T_M_K) - std::ssize(map.inactive));
   archive.expect(static_cast<std::size_t>(n * (n + 1) / 2) * sizeof(double));
   map.covariance.conservativeResize(n, n);
   for (Eigen::Index column = 0; column < n; ++column) {
@@ -172,15 +172,18 @@ void fields_of(auto& archive, SavedMap& map) {
   }
 }
 
-/// Each rests once, and is tied to keyframes that do not rest or that do so later in the list.
-void check_resting(const SavedMap& map) {
+/// Each is in the list once, and its parents are active or later in the list.
+void check_inactive(const SavedMap& map) {
   std::vector<bool> usable(map.keyframes.size(), true);
-  for (const TiedPose& pose : map.resting) {
-    if (pose.keyframe >= usable.size() || !usable[pose.keyframe]) refuse("a pose in it rests twice or is missing");
+  for (const ConditionalPose& pose : map.inactive) {
+    if (pose.keyframe >= usable.size() || !usable[pose.keyframe])
+      refuse("an inactive pose in it is there twice or missing");
     usable[pose.keyframe] = false;
-    const auto known = [&](const TiedPose::Tie& tie) { return tie.to < usable.size() && usable[tie.to]; };
-    if (!std::ranges::all_of(pose.ties, known) || (pose.covariance.diagonal().array() < 0.0).any())
-      refuse("a pose in it is tied wrongly");
+    const auto known = [&](const ConditionalPose::Parent& parent) {
+      return parent.keyframe < usable.size() && usable[parent.keyframe];
+    };
+    if (!std::ranges::all_of(pose.parents, known) || (pose.covariance.diagonal().array() < 0.0).any())
+      refuse("a pose in it has wrong parents");
   }
 }
 
@@ -198,7 +201,7 @@ void check_values(const SavedMap& map) {
   }
   if (!std::ranges::all_of(map.T_M_K, unit) || (map.covariance.diagonal().array() < 0.0).any())
     refuse("a pose in it is invalid");
-  check_resting(map);
+  check_inactive(map);
   if (!std::ranges::is_sorted(map.keyframes, {}, &MapKeyframe::t)) refuse("its keyframes are not in order");
 }
 

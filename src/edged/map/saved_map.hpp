@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "edged/map/inactive_keyframes.hpp"
 #include "edged/map/keyframe_map.hpp"
-#include "edged/map/resting_poses.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"
 
@@ -25,8 +25,8 @@ struct SavedMap {
   std::vector<Camera> cameras;
   std::vector<MapKeyframe> keyframes;  ///< oldest first
   std::vector<SE3> T_M_K;              ///< of the body, one per keyframe
-  Eigen::MatrixXd covariance;          ///< of T_M_K but of those in `resting`, six rows each; errors as in MapFilter
-  std::vector<TiedPose> resting{};     ///< tied to keyframes that `covariance` has, and to later ones of this list
+  Eigen::MatrixXd covariance;          ///< of T_M_K but of those in `inactive`, six rows each; errors as in MapFilter
+  std::vector<ConditionalPose> inactive{};  ///< their parents: active, or later in this list
 };
 
 /// Throws InputError where the rig has none of its cameras, or one of them with another lens.

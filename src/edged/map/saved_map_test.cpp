@@ -65,7 +65,7 @@ void expect_equal(const MapView& a, const MapView& b) {
   }
 }
 
-/// As version 1 or 2 has it, without the number of resting keyframes; in version 1 keyframes have one view each and no
+/// As version 1 or 2 has it, without the number of inactive keyframes; in version 1 keyframes have one view each and no
 /// number of views. Of a map without cameras and with one keyframe.
 std::string as_version(char version, std::string bytes) {
   constexpr std::size_t kVersionAt = 10, kSumAt = 14, kBodyAt = 22, kCovariance = 21 * sizeof(double);
@@ -137,28 +137,28 @@ TEST(SavedMap, OfEarlierVersionsIsRead) {
   }
 }
 
-/// The first keyframe rests, tied to the last.
-SavedMap map_with_one_that_rests() {
+/// The first keyframe is inactive, its parent is the last.
+SavedMap map_with_one_inactive() {
   SavedMap map = some_map();
   map.covariance.conservativeResize(12, 12);
-  map.resting = {{0, {{2, 0.9 * Matrix6d::Identity()}}, 1e-6 * Matrix6d::Identity()}};
+  map.inactive = {{0, {{2, 0.9 * Matrix6d::Identity()}}, 1e-6 * Matrix6d::Identity()}};
   return map;
 }
 
 TEST(SavedMap, KeepsWhatRestsAndRefusesWrongTies) {
-  const SavedMap map = map_with_one_that_rests(), back = saved_map_from_bytes(to_bytes(map));
-  ASSERT_EQ(back.resting.size(), 1U);
-  EXPECT_EQ(back.resting[0].ties[0].to, 2U);
-  EXPECT_EQ(back.resting[0].ties[0].gain, map.resting[0].ties[0].gain);
+  const SavedMap map = map_with_one_inactive(), back = saved_map_from_bytes(to_bytes(map));
+  ASSERT_EQ(back.inactive.size(), 1U);
+  EXPECT_EQ(back.inactive[0].parents[0].keyframe, 2U);
+  EXPECT_EQ(back.inactive[0].parents[0].gain, map.inactive[0].parents[0].gain);
   EXPECT_EQ(back.covariance.rows(), 12);
   EXPECT_EQ(to_bytes(back), to_bytes(map));
   for (const std::uint32_t to : {0U, 3U}) {  // itself, none
     SavedMap wrong = map;
-    wrong.resting[0].ties[0].to = to;
+    wrong.inactive[0].parents[0].keyframe = to;
     EXPECT_NE(refusal(to_bytes(wrong)), "") << to;
   }
   SavedMap twice = map;
-  twice.resting.push_back(twice.resting[0]);
+  twice.inactive.push_back(twice.inactive[0]);
   twice.covariance.conservativeResize(6, 6);
   EXPECT_NE(refusal(to_bytes(twice)), "");
 }

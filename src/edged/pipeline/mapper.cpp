@@ -98,15 +98,15 @@ void Mapper::load(const SavedMap& map) {
     map_.add(std::move(keyframe));
   }
   record_.load(map.T_M_K, config_.localize_only);
-  filter_.load(map.T_M_K, map.covariance, map.resting);
-  if (config_.localize_only) fixed_ = SavedMap{{}, {}, {}, map.covariance, map.resting};
+  filter_.load(map.T_M_K, map.covariance, map.inactive);
+  if (config_.localize_only) fixed_ = SavedMap{{}, {}, {}, map.covariance, map.inactive};
   if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
   if (unlocated_before_ && !config_.localize_only) return std::nullopt;
-  SavedMap now{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance(), filter_.resting()};
-  if (fixed_) now.covariance = fixed_->covariance, now.resting = fixed_->resting;
+  SavedMap now{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance(), filter_.inactive()};
+  if (fixed_) now.covariance = fixed_->covariance, now.inactive = fixed_->inactive;
   return now;
 }
 
@@ -138,7 +138,7 @@ std::vector<Candidate> Mapper::search_in(const TrackedImage& image, MapFilter& f
   std::vector<std::uint32_t> in_view;
   in_view.reserve(candidates.size());
   for (const Candidate& candidate : candidates) in_view.push_back(candidate.observation.keyframe);
-  filter.wake(in_view);
+  filter.activate(in_view);
   for (Candidate& candidate : candidates) {
     MapObservation& observation = candidate.observation;
     observation.seen = camera.pixel_to_point(candidate.pixel);
