@@ -113,7 +113,7 @@ void KeyframeMap::note(const Candidate& candidate, Timestamp t) {
 std::vector<KeyframeMap::Asked> KeyframeMap::asked(const MapQuery& query) const {
   std::vector<Asked> views;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    if (!query.made.contains(keyframes_[k].t)) continue;
+    if (!query.made.contains(keyframes_[k].t) || (query.wanted && !query.wanted(k))) continue;
     const auto view = std::ranges::find(keyframes_[k].views, query.camera, &MapView::camera);
     if (view == keyframes_[k].views.end()) continue;
     views.push_back({k, static_cast<std::size_t>(view - keyframes_[k].views.begin())});
@@ -207,12 +207,14 @@ Recognition KeyframeMap::recognise(const MapQuery& query, std::span<const std::o
                                    double focal) const {
   const std::vector<Alike> alike = most_alike(query, descriptors);
   std::vector<PlaceMatch> matches;
+  std::vector<std::size_t> keyframes;
   for (std::size_t i = 0; i < alike.size(); ++i) {
     const auto& [bits, of, point] = alike[i];
     if (point == nullptr) continue;
     const SE3& T_B_C = keyframes_[of.keyframe].views[of.view].T_B_C;
     const Eigen::Vector3d p_K = T_B_C * (point->point.homogeneous() / point->inverse_depth);
     matches.push_back({points[i], query.T_M_K[of.keyframe] * p_K});
+    keyframes.push_back(of.keyframe);
   }
   Recognition found;
   found.similar = matches.size();
@@ -222,6 +224,10 @@ Recognition KeyframeMap::recognise(const MapQuery& query, std::span<const std::o
   if (found.agreeing >= Recognition::kFewest &&
       static_cast<double>(found.agreeing) >= Recognition::kLeastShare * static_cast<double>(found.similar))
     found.T_M_C = pose->T_M_C;
+  const SE3 T_C_M = pose->T_M_C.inverse();
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (agrees(matches[i], T_C_M, kAgreement_px / focal)) found.keyframes.insert(keyframes[i]);
+  }
   return found;
 }
 

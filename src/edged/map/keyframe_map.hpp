@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,6 +50,7 @@ struct MapKeyframe {
   std::vector<MapView> views;  ///< at most one per camera
   std::size_t number = 0;      ///< in TrajectorySmoother
   int times_found = 0;         ///< number of instants with matches of its points
+  double path_m = 0.0;         ///< length of the odometry's path at its creation; 0 in a loaded map
 };
 
 /// The view of the map for its users.
@@ -62,9 +64,10 @@ struct Period {
 
 /// A query of the map.
 struct MapQuery {
-  std::string_view camera;     ///< views of this camera only
-  Period made;                 ///< keyframes of this time only
-  std::span<const SE3> T_M_K;  ///< pose of the body at each keyframe of the map, in their order
+  std::string_view camera;                       ///< views of this camera only
+  Period made;                                   ///< keyframes of this time only
+  std::span<const SE3> T_M_K;                    ///< pose of the body at each keyframe of the map, in their order
+  std::function<bool(std::size_t)> wanted = {};  ///< these keyframes only, by index; empty: all
 };
 
 /// A point that should be in view, and its match if found.
@@ -84,6 +87,7 @@ struct Recognition {
   std::size_t similar = 0;                    ///< features with a similar map point
   std::size_t agreeing = 0;                   ///< of these, with one pose of the camera
   std::optional<SE3> T_M_C;                   ///< that pose; nothing where too few agree
+  std::set<std::size_t> keyframes;            ///< of the points that agree, by index
 };
 
 class KeyframeMap {

@@ -250,6 +250,27 @@ double MapFilter::misfit(std::span<const MapObservation> observations, std::span
   return std::sqrt(median(std::move(squared)) / kMedianOfSquares);
 }
 
+/// P' = P - P_t (H^-1 + P_tt)^-1 P_t^T, t the blocks touched; H has no inverse: (H^-1 + P_tt)^-1 = (I + H P_tt)^-1 H.
+MapFilter::Update MapFilter::solved(const Information& sum) const {
+  const Eigen::Index m = sum.H.rows();
+  MatrixXd P_t(P_.rows(), m), P_tt(m, m);
+  P_t.leftCols<6>() = P_.leftCols<6>();
+  for (const auto& [keyframe, at] : sum.place) P_t.middleCols<6>(at) = P_.middleCols<6>(row_[keyframe]);
+  P_tt.topRows<6>() = P_t.topRows<6>();
+  for (const auto& [keyframe, at] : sum.place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(row_[keyframe]);
+  const MatrixXd inverse = (MatrixXd::Identity(m, m) + sum.H * P_tt).partialPivLu().inverse();
+  // Keyframes without any correlation with these blocks do not change by a bit.
+  Update update;
+  for (Eigen::Index row = 0; row < P_t.rows(); ++row) {
+    if (!P_t.row(row).isZero(0.0)) update.moved.push_back(row);
+  }
+  update.P_m = P_t(update.moved, Eigen::all);
+  update.A = inverse * sum.H;
+  update.error = VectorXd::Zero(P_.rows());
+  update.error(update.moved) = -update.P_m * (inverse * sum.g);
+  return update;
+}
+
 std::optional<SE3> MapFilter::update(std::span<const MapObservation> observations, std::size_t expected,
                                      const std::vector<SE3>& T_B_C) {
   if (static_cast<int>(observations.size()) < config_.min_observations ||
@@ -261,34 +282,45 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
     if (!row) return std::nullopt;
     rows.push_back(*row);
   }
-  const auto [place, H, g] = gather(observations, rows);
-  // P' = P - P_t (H^-1 + P_tt)^-1 P_t^T, t the blocks touched; H has no inverse: (H^-1 + P_tt)^-1 = (I + H P_tt)^-1 H.
-  const Eigen::Index m = H.rows();
-  MatrixXd P_t(P_.rows(), m), P_tt(m, m);
-  P_t.leftCols<6>() = P_.leftCols<6>();
-  for (const auto& [keyframe, at] : place) P_t.middleCols<6>(at) = P_.middleCols<6>(row_[keyframe]);
-  P_tt.topRows<6>() = P_t.topRows<6>();
-  for (const auto& [keyframe, at] : place) P_tt.middleRows<6>(at) = P_t.middleRows<6>(row_[keyframe]);
-  const MatrixXd inverse = (MatrixXd::Identity(m, m) + H * P_tt).partialPivLu().inverse();
-  // Keyframes without any correlation with these blocks do not change by a bit.
-  std::vector<Eigen::Index> moved;
-  for (Eigen::Index row = 0; row < P_t.rows(); ++row) {
-    if (!P_t.row(row).isZero(0.0)) moved.push_back(row);
-  }
-  const MatrixXd P_m = P_t(moved, Eigen::all);
-  VectorXd error = VectorXd::Zero(P_.rows());
-  error(moved) = -P_m * (inverse * g);
-  if (!(misfit(observations, rows, error) < config_.max_misfit)) return std::nullopt;
-  shrink(moved, P_m, inverse * H);
-  return correct(error);
+  const Update update = solved(gather(observations, rows));
+  if (!(misfit(observations, rows, update.error) < config_.max_misfit)) return std::nullopt;
+  shrink(update);
+  return correct(update.error);
+}
+
+MapFilter::LinearizedPose MapFilter::linearise(std::size_t keyframe, const SE3& T_K_B) const {
+  const SE3& T_M_K = T_M_K_[keyframe];
+  const SE3 measured = T_M_K * T_K_B;
+  LinearizedPose pose;
+  pose.r << T_M_B_.translation() - measured.translation(),
+      so3::log(measured.rotation().conjugate() * T_M_B_.rotation());
+  pose.J << Matrix6d::Identity(), -transport(T_M_K, T_K_B);
+  return pose;
+}
+
+double MapFilter::squared_distance(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) const {
+  const LinearizedPose pose = linearise(keyframe, T_K_B);
+  const Eigen::Index k = row_[keyframe];
+  Eigen::Matrix<double, 12, 12> P;
+  P << P_.topLeftCorner<6, 6>(), P_.block<6, 6>(0, k), P_.block<6, 6>(k, 0), P_.block<6, 6>(k, k);
+  return pose.r.dot(Matrix6d(pose.J * P * pose.J.transpose() + covariance).ldlt().solve(pose.r));
+}
+
+SE3 MapFilter::close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) {
+  const LinearizedPose pose = linearise(keyframe, T_K_B);
+  const Eigen::Matrix<double, 12, 6> weighed = pose.J.transpose() * covariance.inverse();
+  const Update update = solved({{{keyframe, 6}}, weighed * pose.J, weighed * pose.r});
+  shrink(update);
+  return correct(update.error);
 }
 
 /// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that. Of fixed keyframes only their
 /// correlation with the body, which comes first.
-void MapFilter::shrink(std::span<const Eigen::Index> m, const MatrixXd& P_m, const MatrixXd& A) {
+void MapFilter::shrink(const Update& update) {
+  const std::span<const Eigen::Index> m = update.moved;
   const auto n = static_cast<Eigen::Index>(m.size());
   MatrixXd less(n, n);
-  less.triangularView<Eigen::Lower>() = (P_m * A).eval() * P_m.transpose();
+  less.triangularView<Eigen::Lower>() = (update.P_m * update.A).eval() * update.P_m.transpose();
   for (Eigen::Index j = 0; j < n && (!fixed_keyframes_ || m[j] < 6); ++j) {
     for (Eigen::Index i = j; i < n; ++i) P_(m[j], m[i]) = P_(m[i], m[j]) -= less(i, j);
   }

@@ -48,6 +48,12 @@ class MapFilter {
   std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected,
                             const std::vector<SE3>& T_B_C);
 
+  /// Squared Mahalanobis distance of the body's pose T_K_B relative to an active keyframe from the predicted one;
+  /// covariance: of the error of T_K_B, and of drift beyond that of the options.
+  double squared_distance(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) const;
+  /// Closes a loop: updates all poses with the body's pose relative to an active keyframe. Returns the corrected T_M_O.
+  SE3 close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance);
+
   const SE3& T_M_B() const { return T_M_B_; }
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
   /// Covariance of the body relative to the map's first keyframe.
@@ -68,6 +74,19 @@ class MapFilter {
     Eigen::VectorXd g;
   };
   Information gather(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows) const;
+  /// Of P_ and the errors by an information.
+  struct Update {
+    std::vector<Eigen::Index> moved;  ///< rows of P_ that change
+    Eigen::MatrixXd P_m, A;           ///< P -= P_m A P_m^T there
+    Eigen::VectorXd error;
+  };
+  Update solved(const Information& sum) const;
+  /// Residual of the body's pose relative to a keyframe, and its Jacobian by the errors of body and keyframe.
+  struct LinearizedPose {
+    Vector6d r;
+    Eigen::Matrix<double, 6, 12> J;
+  };
+  LinearizedPose linearise(std::size_t keyframe, const SE3& T_K_B) const;
   double misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
                 const Eigen::VectorXd& error) const;
   SE3 correct(const Eigen::VectorXd& error);
@@ -77,7 +96,7 @@ class MapFilter {
   ConditionalPose conditional(std::size_t keyframe, Eigen::Index row) const;
   void fill_rows(const ConditionalPose& pose);
   void select_rows();
-  void shrink(std::span<const Eigen::Index> m, const Eigen::MatrixXd& P_m, const Eigen::MatrixXd& A);
+  void shrink(const Update& update);
 
   MapFilterConfig config_;
   bool fixed_keyframes_;

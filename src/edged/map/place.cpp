@@ -52,11 +52,6 @@ std::vector<SE3> poses_of(const PlaceMatch& a, const PlaceMatch& b, const Eigen:
   return poses;
 }
 
-bool agrees(const PlaceMatch& match, const SE3& T_C_M, double max_error) {
-  const Eigen::Vector3d p_C = T_C_M * match.p_M;
-  return p_C.z() > 0.0 && (p_C.hnormalized() - match.point).norm() < max_error;
-}
-
 std::size_t count_agreeing(std::span<const PlaceMatch> matches, const SE3& T_M_C, double max_error) {
   const SE3 T_C_M = T_M_C.inverse();
   return static_cast<std::size_t>(
@@ -84,6 +79,11 @@ SE3 refined(std::span<const PlaceMatch> matches, const SE3& T_M_C, double max_er
 }
 
 }  // namespace
+
+bool agrees(const PlaceMatch& match, const SE3& T_C_M, double max_error) {
+  const Eigen::Vector3d p_C = T_C_M * match.p_M;
+  return p_C.z() > 0.0 && (p_C.hnormalized() - match.point).norm() < max_error;
+}
 
 /// Without an instruction that counts bits, which not every x86-64 has: counts in fields of 2, 4 and 8 bits side by
 /// side.

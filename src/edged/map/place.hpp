@@ -38,6 +38,9 @@ struct PlacePose {
   std::size_t agreeing;  ///< of the matches
 };
 
+/// Whether a camera there sees the point within max_error on the unit plane.
+bool agrees(const PlaceMatch& match, const SE3& T_C_M, double max_error);
+
 /// The pose with most inliers, within max_error on the unit plane, refined by these. R_O_C: of the camera in any frame
 /// whose z points up; the pose has the same tilt. Deterministic. Nothing with fewer than two matches.
 std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, const Eigen::Quaterniond& R_O_C,

@@ -35,9 +35,11 @@ class TrajectorySmoother::Fit {
  public:
   /// One matched image of so many. together: their solution for the keyframes is then fixed, which leaves a chain with
   /// linear time and memory.
-  Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, std::size_t of, const Fit* together = nullptr)
+  Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, const std::optional<Closed>& closed,
+      std::size_t of, const Fit* together = nullptr)
       : config_(record.config_),
         odom_to_map_(odom_to_map),
+        closed_(closed),
         of_(of),
         together_(together),
         loaded_fixed_(record.loaded_fixed_),
@@ -68,8 +70,24 @@ class TrajectorySmoother::Fit {
     if (k > 0) graph_.add_step(k - 1, k, T_M_K[k - 1].inverse() * T_M_K[k], kRigid * kRigid * Matrix6d::Identity());
   }
 
+  /// T_M_O by the keyframes until a loop was closed last; nothing without any.
+  Trajectory initial(const Session& session) const {
+    Trajectory T_M_O;
+    if (!closed_) return T_M_O;
+    for (std::size_t k = 0; k < session.keyframes.size(); ++k) {
+      const auto placed = closed_->keyframes.find(session.first_keyframe + k);
+      if (placed != closed_->keyframes.end() && session.keyframes[k].t <= closed_->last)
+        T_M_O.push_back({session.keyframes[k].t, placed->second * session.keyframes[k].T.inverse()});
+    }
+    return T_M_O;
+  }
+
   void add_session(const Session& session) {
     Nodes nodes;
+    const Trajectory T_M_O = initial(session);
+    const auto guess = [&](Timestamp t) {
+      return T_M_O.empty() || t > closed_->last ? odom_to_map_.T_M_O(nodes_.size(), t) : between(T_M_O, t);
+    };
     for (const StampedPose* causal : instants(session))
       nodes[causal->t].T_O_B = between(session.refined, causal->t) * causal->T;
     for (std::size_t k = 0; k < session.keyframes.size(); ++k) {
@@ -79,7 +97,7 @@ class TrajectorySmoother::Fit {
     }
     for (auto node = nodes.begin(); node != nodes.end(); ++node) {
       const auto& [t, at] = *node;
-      const SE3 T_M_B = at.known ? *at.known : odom_to_map_.T_M_O(nodes_.size(), t) * at.T_O_B;
+      const SE3 T_M_B = at.known ? *at.known : guess(t) * at.T_O_B;
       const std::size_t number = node->second.number = at.known ? graph_.add_known_pose(T_M_B) : graph_.add_pose(T_M_B);
       if (node != nodes.begin()) {
         const auto& [t_before, before] = *std::prev(node);
@@ -116,6 +134,7 @@ class TrajectorySmoother::Fit {
 
   MapFilterConfig config_;
   const OdomToMap& odom_to_map_;
+  const std::optional<Closed>& closed_;
   std::size_t of_;
   const Fit* together_;
   bool loaded_fixed_;
@@ -171,13 +190,14 @@ void TrajectorySmoother::add_observations(const StampedPose& T_O_B, std::vector<
   sessions_.back().views.push_back(std::move(view));
 }
 
-TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map) const {
+TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map,
+                                                  const std::optional<Closed>& closed) const {
   std::size_t views = 0;
   for (const Session& session : sessions_) views += session.views.size();
   const std::size_t of = views / kMostTogether + 1;
-  const Fit together(*this, odom_to_map, of);
+  const Fit together(*this, odom_to_map, closed, of);
   const std::optional<Fit> chain =
-      of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, 1, &together) : std::nullopt;
+      of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, closed, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
   const bool as_given = !relocalized();
   Path path;

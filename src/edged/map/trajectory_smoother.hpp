@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,8 +44,13 @@ class TrajectorySmoother {
     Trajectory poses;            ///< T_M_B of all that were added
     std::vector<SE3> keyframes;  ///< T_M_K by number
   };
+  /// Initial values where loops have been closed: the causal ones are before the correction.
+  struct Closed {
+    Timestamp last;                        ///< the last time: later causal poses are consistent
+    std::map<std::size_t, SE3> keyframes;  ///< T_M_K by number
+  };
   /// Without any map match all poses are bit-identical to the causal ones.
-  Path path(const OdomToMap& odom_to_map) const;
+  Path path(const OdomToMap& odom_to_map, const std::optional<Closed>& closed = std::nullopt) const;
 
  private:
   struct View {

@@ -14,8 +14,7 @@ namespace {
 constexpr double kSearchSigmas = 3.0;
 constexpr double kSearchInterval_s = 0.09;  // between images, until relocalization after a loss
 constexpr double kLeastSearch_px = 2.0;
-constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
-constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // bound on the error of dead reckoning
+constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;  // bound on the error of dead reckoning
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;     // of an odometry that has just started, whose scale is still inaccurate
@@ -35,16 +34,6 @@ void place_points(MapView& view, const KeyframeView& estimated) {
     point.sigma = placed.sigma;
   }
   view.points = std::move(points);
-}
-
-/// One per track.
-std::vector<std::optional<Descriptor>> descriptors_of(const TrackedImage& image, const SE3& T_O_C) {
-  std::vector<Eigen::Vector2d> pixels, points;
-  for (const Track& track : image.tracks) {
-    pixels.push_back(track.pixel);
-    points.push_back(image.model.pixel_to_point(track.pixel));
-  }
-  return describe(image.image, pixels, points, T_O_C.R().transpose() * Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace
@@ -77,6 +66,8 @@ void Mapper::begin_start(const OdomState& now) {
   dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
   recognised_.clear();
+  loop_.clear();
+  p_O_B_ = now.T_O_B.translation();
   in_window_.clear();
   found_.clear();
 }
@@ -115,6 +106,8 @@ void Mapper::predict(const OdomState& now, bool at_rest) {
   filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
   predicted_ = now.t;
   if (at_rest) matched_ = now.t;
+  if (!at_rest) path_m_ += (now.T_O_B.translation() - p_O_B_).norm();
+  p_O_B_ = now.T_O_B.translation();
   if (!config_.localize_only || unlocated_before_ || unmatched_s() <= kForgetAfter_s) return;
   unlocated_before_ = Timestamp();
   doubt(now);
@@ -210,7 +203,14 @@ bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
     return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < started_;
   });
   const bool agreed = update(filter_, T_M_O, here, t, images);
-  if (!searching_ && !unlocated_before_) return false;
+  if (!searching_ && !unlocated_before_) {
+    if (agreed && holds(here, t)) {
+      loop_.clear();
+    } else if (close_loop(t, images)) {
+      update(filter_, odom_to_map_.T_M_O(), search(filter_, odom_to_map_.T_M_O(), images, old_enough), t, images);
+    }
+    return false;
+  }
   const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
   const bool found_by_appearance = (unlocated_before_ || !found_by_guess) && recognise(t, images);
   if (found_by_appearance) unlocated_before_.reset();
@@ -226,15 +226,29 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
          so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * dead_reckoning_s_;
 }
 
+Mapper::Features Mapper::features_of(const PosedImage& posed) {
+  const auto& [image, T_O_C] = posed;
+  Features features;
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Track& track : image.tracks) {
+    pixels.push_back(track.pixel);
+    features.points.push_back(image.model.pixel_to_point(track.pixel));
+  }
+  features.descriptors =
+      describe(image.image, pixels, features.points, T_O_C.R().transpose() * Eigen::Vector3d::UnitZ());
+  return features;
+}
+
+Recognition Mapper::recognise_features(const Features& features, const PosedImage& posed, const MapQuery& query) const {
+  return map_.recognise(query, features.descriptors, features.points, posed.T_O_C.rotation(),
+                        posed.image.model.mean_focal());
+}
+
 /// T_M_O by place recognition, from keyframes of that time.
 std::optional<SE3> Mapper::recognised(const PosedImage& posed, Period made) const {
-  const auto& [image, T_O_C] = posed;
-  std::vector<Eigen::Vector2d> points;
-  for (const Track& track : image.tracks) points.push_back(image.model.pixel_to_point(track.pixel));
+  const SE3& T_O_C = posed.T_O_C;
   const std::optional<SE3> T_M_C =
-      map_.recognise({image.camera, made, filter_.keyframes()}, descriptors_of(image, T_O_C), points, T_O_C.rotation(),
-                     image.model.mean_focal())
-          .T_M_C;
+      recognise_features(features_of(posed), posed, {posed.image.camera, made, filter_.keyframes()}).T_M_C;
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
@@ -294,9 +308,11 @@ void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   if (config_.localize_only || to_seconds(t - started_) < config_.keyframes.min_known_s) return;
   if (!map_.wants(covered_share(images))) return;
   MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, {}});
-  for (const auto& [image, T_O_C] : images) {
+  keyframe.path_m = path_m_;
+  for (const PosedImage& posed : images) {
+    const TrackedImage& image = posed.image;
     MapView& view = keyframe.views.emplace_back(MapView{image.camera, SE3(), {}});
-    const std::vector<std::optional<Descriptor>> descriptors = descriptors_of(image, T_O_C);
+    const std::vector<std::optional<Descriptor>> descriptors = features_of(posed).descriptors;
     for (std::size_t i = 0; i < image.tracks.size(); ++i) {
       const Track& track = image.tracks[i];
       if (const auto patch = cut_patch(image.image, {track.pixel}))
@@ -326,7 +342,7 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
 }
 
 FinalTrajectory Mapper::final_trajectory() const {
-  TrajectorySmoother::Path path = record_.path(odom_to_map_);
+  TrajectorySmoother::Path path = record_.path(odom_to_map_, closed());
   FinalTrajectory known{std::move(path.poses), {}};
   for (const MapKeyframe& keyframe : map_.keyframes()) {
     known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));

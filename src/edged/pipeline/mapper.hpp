@@ -83,12 +83,36 @@ class Mapper {
                                    Period made);
   bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
               std::span<const PosedImage> images);
+  /// One of each per track; points: on the unit plane.
+  struct Features {
+    std::vector<std::optional<Descriptor>> descriptors;
+    std::vector<Eigen::Vector2d> points;
+  };
+  static Features features_of(const PosedImage& posed);
+  Recognition recognise_features(const Features& features, const PosedImage& posed, const MapQuery& query) const;
   std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
   bool recognise(Timestamp t, std::span<const PosedImage> images);
   bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
+  /// An image that shows an old place by its appearance.
+  struct LoopView {
+    SE3 T_O_B, T_M_O;      ///< M by the old keyframes
+    std::size_t keyframe;  ///< with the most matches, by index
+    SE3 T_K_B;             ///< relative to that
+    double drift_m;        ///< bound since then
+  };
+  double drift_since(const MapKeyframe& keyframe) const;
+  bool may_be_in_view(std::size_t keyframe, Timestamp t, const PosedImage& posed) const;
+  bool holds(const Search& search, Timestamp made_before) const;
+  bool close_loop(Timestamp t, std::span<const PosedImage> images);
+  std::optional<LoopView> loop_view(Timestamp t, std::size_t image, std::span<const PosedImage> images);
+  std::optional<Recognition> old_place(Timestamp t, const PosedImage& posed) const;
+  std::optional<LoopView> projected(LoopView view, Timestamp t, std::span<const PosedImage> images);
+  std::optional<TrajectorySmoother::Closed> closed() const;
   double covered_share(std::span<const PosedImage> images) const;
   void remove_keyframe(std::size_t keyframe);
+
+  static constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  ///< of two that are recognised
 
   MapConfig config_;
   double lost_after_s_;
@@ -108,6 +132,10 @@ class Mapper {
   bool searching_ = false;         ///< since then nothing older has been matched
   /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
   std::optional<Timestamp> unlocated_before_;
+  double path_m_ = 0.0;  ///< length of the odometry's path in motion
+  Eigen::Vector3d p_O_B_ = Eigen::Vector3d::Zero();
+  std::optional<Timestamp> loop_searched_, loop_closed_;
+  std::vector<LoopView> loop_;   ///< images that agree on a loop, which is not closed yet
   std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
 };
 

@@ -50,7 +50,9 @@ class MapperBeforeAWall : public testing::Test {
 
   /// A keyframe at the origin of M, that has left the window.
   void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B) const {
-    const TrackedImage seen = image(SE3());
+    add_keyframe(mapper, t_s, T_O_B, image(SE3()));
+  }
+  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B, const TrackedImage& seen) const {
     mapper.predict(now(t_s, T_O_B));
     mapper.keyframe(second(t_s), std::vector{PosedImage{seen, T_O_B * T_B_C_}});
     KeyframeRecord record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
@@ -127,6 +129,56 @@ TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
   EXPECT_LT(T_M_B.translation().norm(), 0.02);
   EXPECT_LT(so3::log(T_M_B.rotation()).norm(), 0.01);
   EXPECT_TRUE(mapper.save());
+}
+
+/// The odometry goes around a loop of 40 m, and is back where the keyframe is with this error.
+class MapperAfterALoop : public MapperBeforeAWall {
+ protected:
+  Mapper mapper_{MapConfig{}, kLostAfter_s};
+
+  void go_around() {
+    mapper_.restart(SE3(), now(0.0, SE3()));
+    add_keyframe(mapper_, 5.0, SE3());
+  }
+  /// Images along the wall, the first at t_s.
+  void return_to_the_wall(double t_s, const SE3& error, int images) {
+    for (int i = 1; i <= 40; ++i) {
+      const double a = 2.0 * M_PI * i / 40.0;
+      mapper_.predict(now(6.0 + i, error * shift(-6.4 * std::sin(a), 6.4 * (std::cos(a) - 1.0), 0.0)));
+    }
+    for (int i = 0; i < images; ++i) {
+      const SE3 T_M_B = shift(0.0, 0.32 * i - 0.32, 0.0);  // features of the grid fall on one another
+      localize(mapper_, t_s + 0.6 * i, error * T_M_B, T_M_B);
+    }
+  }
+  /// On the wall: in front of it translation and rotation are hard to separate.
+  double error_m(const SE3& error) const {
+    const Eigen::Vector3d wall(2.0, 0.0, 0.0);
+    return (mapper_.odom_to_map().T_M_O() * error * wall - wall).norm();
+  }
+};
+
+TEST_F(MapperAfterALoop, ClosesItByImagesOfSeveralPlacesThatAgree) {
+  const SE3 error = SE3(so3::exp({0, 0, 0.02}), {0.3, -0.4, 0.1});
+  go_around();
+  return_to_the_wall(60.0, error, 2);
+  EXPECT_EQ(mapper_.odom_to_map().T_M_O().translation().norm(), 0.0) << "two are not enough";
+  localize(mapper_, 61.2, error * shift(0.0, 0.32, 0.0), shift(0.0, 0.32, 0.0));
+  EXPECT_LT(error_m(error), 0.03) << "it was off by 0.5";
+  EXPECT_GT(mapper_.map_matches(second(61.2)).size(), 20U);
+}
+
+TEST_F(MapperAfterALoop, RefusesALoopThatDriftDoesNotExplain) {
+  go_around();
+  return_to_the_wall(60.0, shift(0.0, 2.5, 0.0), 5);
+  EXPECT_EQ(mapper_.odom_to_map().T_M_O().translation().norm(), 0.0);
+}
+
+TEST_F(MapperAfterALoop, RefusesOneOfTwoPlacesThatLookTheSame) {
+  go_around();
+  add_keyframe(mapper_, 6.0, shift(0.0, 0.8, 0.0), image(SE3()));
+  return_to_the_wall(60.0, shift(0.0, 0.4, 0.0), 5);
+  EXPECT_EQ(mapper_.odom_to_map().T_M_O().translation().norm(), 0.0);
 }
 
 class MapperThatOnlyLocalizes : public MapperBeforeAWall {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "edged/sim/corridor_scene.hpp"
 #include "edged/sim/target_scene.hpp"
 
 namespace edged {
@@ -327,9 +328,10 @@ void SceneConfig::visit(ConfigFields& fields) {
        {"poster", SceneKind::Poster},
        {"shapes", SceneKind::Shapes},
        {"hall", SceneKind::Hall},
+       {"corridors", SceneKind::Corridors},
        {"target", SceneKind::Target}},
-      {.effect = "a room with boxes, one rich wall, a white wall with dark shapes, a furnished hall of 6 x 6 x 3 m, or "
-                 "a calibration target before a wall"});
+      {.effect = "a room with boxes, one rich wall, a white wall with dark shapes, a furnished hall of 6 x 6 x 3 m, "
+                 "corridors along the path, or a calibration target before a wall"});
   fields.add("objects", objects, {"", 0, 200, "boxes in the room"});
   fields.add("twin_m", twin_m,
              {"m", 0, 100, "boxes once more this far along x; 4, as the walls repeat: two equal rooms; 0: none"});
@@ -364,6 +366,10 @@ Scene make_scene(const SceneConfig& config, std::span<const SE3> path_W_C, std::
     case SceneKind::Hall:
       for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_plain_texture(kTextureSize, random));
       add_hall(scene, config, path_W_C, random);
+      break;
+    case SceneKind::Corridors:
+      for (int i = 0; i < kTextures; ++i) scene.textures.push_back(make_rich_texture(kTextureSize, random));
+      add_corridors(scene, config, path_W_C, random);
       break;
     case SceneKind::Poster:
       scene.textures.push_back(make_rich_texture(2 * kTextureSize, random));

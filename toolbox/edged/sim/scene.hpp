@@ -15,7 +15,8 @@
 namespace edged {
 
 /// The scene around a camera path: a closed room around it, with objects that keep their distance from it; a wall in
-/// front of it, perpendicular to the mean optical axis; or a hall, in which only the furniture depends on the path.
+/// front of it, perpendicular to the mean optical axis; a hall, in which only the furniture depends on the path; or
+/// corridors along it.
 /// disturbance (with its defaults set): adds a blank wall (in a room only, the half at -x), a person who passes in
 /// front of the camera at T_W_C_meeting, walkers in front of the mean camera position, a lamp with a moving spot, or
 /// flicker of the lamps.

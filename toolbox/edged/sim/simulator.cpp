@@ -326,6 +326,7 @@ double Simulator::Impl::image_speed(Timestamp t) const {
 }
 
 Timestamp Simulator::Impl::next_render_time() const {
+  if (!wants_events_ && *t_ < exposure_begin()) return std::min(exposure_begin(), end_);
   // A margin of a tenth for the motion between the evaluated pixels.
   const double reach = 0.9 * config_.max_motion_px;
   const double speed = std::max(image_speed(*t_), 1e-3);

@@ -44,7 +44,7 @@ struct MotionConfig {
 
 enum class LightingKind { Even, Lamps, Switched, Sun };
 
-enum class SceneKind { Boxes, Poster, Shapes, Hall, Target };
+enum class SceneKind { Boxes, Poster, Shapes, Hall, Corridors, Target };
 
 struct SceneConfig {
   SceneKind kind = SceneKind::Boxes;
