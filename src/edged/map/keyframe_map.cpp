@@ -29,15 +29,18 @@ constexpr double kWidest_deg = 60.0;   // between the optical axes
 double reliability(const MapPoint& point) { return (1.0 + point.found) / (2.0 + point.tried); }
 
 /// Pixels of the image by pixels of the patch, for a plane through the point, parallel to the image plane of its
-/// keyframe.
-std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_now_then, const CameraModel& camera,
-                                          const Eigen::Vector2d& pixel) {
+/// keyframe. The calibration may have changed since then: only differences of its rays count.
+std::optional<Eigen::Matrix2d> patch_warp(const MapPoint& point, const SE3& T_now_then, const CameraModel& camera) {
+  const auto seen = [&](const Eigen::Vector2d& pixel) {
+    return camera.project(T_now_then * (camera.pixel_to_point(pixel).homogeneous() / point.inverse_depth));
+  };
+  const auto centre = seen(point.pixel);
+  if (!centre) return std::nullopt;
   Eigen::Matrix2d A;
   for (int axis = 0; axis < 2; ++axis) {
-    const Eigen::Vector2d beside = camera.pixel_to_point(point.pixel + Eigen::Vector2d::Unit(axis));
-    const auto seen = camera.project(T_now_then * (beside.homogeneous() / point.inverse_depth));
-    if (!seen) return std::nullopt;
-    A.col(axis) = *seen - pixel;
+    const auto beside = seen(point.pixel + Eigen::Vector2d::Unit(axis));
+    if (!beside) return std::nullopt;
+    A.col(axis) = *beside - *centre;
   }
   return A;
 }
@@ -154,7 +157,7 @@ std::vector<Candidate> KeyframeMap::visible(const MapQuery& query, const SE3& T_
       const double scale = p_C.norm() / p_K.norm();
       const double cosine = (T_C_K.R() * p_K).dot(p_C) / (p_K.norm() * p_C.norm());
       if (scale > config_.max_scale || scale < 1.0 / config_.max_scale || cosine < widest) continue;
-      const auto A = patch_warp(point, T_C_K, camera, *pixel);
+      const auto A = patch_warp(point, T_C_K, camera);
       if (!A) continue;
       const Eigen::Vector3d depth_sigma_K = view.T_B_C.R() * p_K * (point.sigma / point.inverse_depth);
       found.push_back({.observation = {static_cast<std::uint32_t>(each.keyframe), view.T_B_C * p_K, depth_sigma_K},
