@@ -63,7 +63,7 @@ bool Mapper::may_be_in_view(std::size_t keyframe, Timestamp t, const PosedImage&
          T_M_then.R().col(2).dot(T_M_C.R().col(2)) > std::cos(kLoopWidest_deg * std::numbers::pi / 180.0);
 }
 
-/// The old place that the image shows, if there is no other that looks the same.
+/// The old place that the image shows, if no other resembles it.
 std::optional<Recognition> Mapper::old_place(Timestamp t, const PosedImage& posed) const {
   std::vector<bool> wanted;
   for (std::size_t k = 0; k < map_.keyframes().size() && map_.keyframes()[k].t < loop_age(t); ++k)

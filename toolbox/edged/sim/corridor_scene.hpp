@@ -13,7 +13,7 @@
 namespace edged {
 
 /// Corridors of twice config.wall_m, where the path leads: the plan consists of square cells, one with its centre at
-/// the first pose. Each panel of a wall, floor or ceiling has its own part of a texture, so that no place looks like
+/// the first pose. Each panel of a wall, floor or ceiling has its own part of a texture, so that no place resembles
 /// another. Boxes stand along the walls.
 void add_corridors(Scene& scene, const SceneConfig& config, std::span<const SE3> path_W_C, Random& random);
 

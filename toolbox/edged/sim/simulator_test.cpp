@@ -35,6 +35,27 @@ TEST(Simulator, GivesTheSameBitsForTheSameSeedOnly) {
   EXPECT_FALSE(same(first, other));
 }
 
+TEST(Simulator, GivesTheSameFramesWhereEventsAreLeftOut) {
+  Simulator with(small("room", 0.8)), without(small("room", 0.8));
+  without.leave_out(Modality::Events);
+  std::vector<Frame> frames;
+  while (const auto measurement = with.next()) {
+    if (const auto* frame = std::get_if<Frame>(&*measurement)) frames.push_back(*frame);
+  }
+  std::size_t same = 0;
+  while (const auto measurement = without.next()) {
+    EXPECT_FALSE(std::holds_alternative<EventBatch>(*measurement));
+    const auto* frame = std::get_if<Frame>(&*measurement);
+    if (frame == nullptr) continue;
+    ASSERT_LT(same, frames.size());
+    EXPECT_EQ(frame->t, frames[same].t);
+    EXPECT_EQ(cv::norm(frame->image, frames[same].image, cv::NORM_INF), 0.0);
+    ++same;
+  }
+  EXPECT_EQ(same, frames.size());
+  EXPECT_LT(without.renderings(), with.renderings());
+}
+
 TEST(Simulator, HandsOutEverySensorInOneOrderOfTime) {
   for (const double offset_ms : {2.4, -7.3}) {
     SimulatorConfig config = small("room", 1.0);
