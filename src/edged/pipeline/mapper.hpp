@@ -103,7 +103,7 @@ class Mapper {
   };
   double drift_since(const MapKeyframe& keyframe) const;
   bool may_be_in_view(std::size_t keyframe, Timestamp t, const PosedImage& posed) const;
-  bool holds(const Search& search, Timestamp made_before) const;
+  bool holds(const Search& search, Timestamp t) const;
   bool close_loop(Timestamp t, std::span<const PosedImage> images);
   std::optional<LoopView> loop_view(Timestamp t, std::size_t image, std::span<const PosedImage> images);
   std::optional<Recognition> old_place(Timestamp t, const PosedImage& posed) const;
