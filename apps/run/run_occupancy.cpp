@@ -44,7 +44,6 @@ class RunOccupancy : public RunObserver {
   }
 
   void on_end(const RunEnd& end) override {
-    so_far_.reset();  // what it has not mapped yet is in the final map
     place(model_, end.known.poses, run_.odometry.rig());
     triangulate(model_);
     const octomap::OcTree tree = occupancy_of(model_, options_.voxel_m, run_.dense);
@@ -52,7 +51,10 @@ class RunOccupancy : public RunObserver {
       throw InputError::format(
           "--occupancy {}: the depth of no feature is known; record for longer, and move sideways to the scene",
           options_.folder.string());
-    run_.live_points.set_voxels(occupied_voxels(tree), tree.getResolution());
+    if (so_far_) {
+      so_far_.reset();  // what it has not mapped yet is in the final map
+      run_.live_points.set_voxels(occupied_voxels(tree), tree.getResolution());
+    }
     write_file(run_.folder / "voxels.ply", voxels_ply(tree));  // for the report
     write_occupancy(options_.folder, tree, heights(end.known.poses));
   }

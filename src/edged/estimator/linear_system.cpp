@@ -22,9 +22,9 @@ Layout::Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& going
 
 void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& term_H,
                           const Eigen::Ref<const Eigen::VectorXd>& term_g, std::span<const Placed> blocks) {
+  add_gradient(term_g, blocks);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Placed& row = blocks[i];
-    g.segment(row.global, row.size) += term_g.segment(row.local, row.size);
     for (std::size_t j = 0; j <= i; ++j) {
       const Placed& column = blocks[j];
       const auto part = term_H.block(row.local, column.local, row.size, column.size);
@@ -35,6 +35,10 @@ void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& term_H,
       }
     }
   }
+}
+
+void NormalEquations::add_gradient(const Eigen::Ref<const Eigen::VectorXd>& term_g, std::span<const Placed> blocks) {
+  for (const Placed& block : blocks) g.segment(block.global, block.size) += term_g.segment(block.local, block.size);
 }
 
 Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H) {

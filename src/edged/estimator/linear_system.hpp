@@ -36,6 +36,7 @@ struct NormalEquations {
   /// The equations of one term; `blocks` in the order of their local columns.
   void add(const Eigen::Ref<const Eigen::MatrixXd>& term_H, const Eigen::Ref<const Eigen::VectorXd>& term_g,
            std::span<const Placed> blocks);
+  void add_gradient(const Eigen::Ref<const Eigen::VectorXd>& term_g, std::span<const Placed> blocks);
   /// The coupling of the block at `row` to that at `column`.
   template <int Rows, int Columns>
   void add(Eigen::Index row, Eigen::Index column, const Eigen::Matrix<double, Rows, Columns>& part) {

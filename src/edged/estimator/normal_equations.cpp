@@ -101,11 +101,6 @@ void add_prior(const Window& window, const LinearPrior& prior, const Layout& lay
   equations.add(H, gradient.g, gradient.blocks);
 }
 
-/// Adds the parts of a term to the gradient of all.
-void add_gradient(const VectorXd& term, std::span<const Placed> blocks, VectorXd& g) {
-  for (const Placed& block : blocks) g.segment(block.global, block.size) += term.segment(block.local, block.size);
-}
-
 double value_of(const Window& window, const Factor& factor) {
   std::vector<const double*> now;
   for (const BlockKey& key : factor.blocks()) now.push_back(window.block(key));
@@ -142,11 +137,11 @@ Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& l
   LinearFactor linear;
   if (cost.prior) {
     const PriorGradient prior = gradient_of(window, cost.prior->prior(), layout, Linearisation::Present);
-    add_gradient(prior.g, prior.blocks, equations.g);
+    equations.add_gradient(prior.g, prior.blocks);
   }
   for (const auto& factor : cost.factors) {
     if (!linearise(window, *factor, layout, Linearisation::Present, linear)) continue;
-    add_gradient(linear.J.transpose() * linear.r, linear.blocks, equations.g);
+    equations.add_gradient(linear.J.transpose() * linear.r, linear.blocks);
   }
   LandmarkEquations landmarks(window, layout, Linearisation::Present, equations);
   auto depth = eliminated.begin();

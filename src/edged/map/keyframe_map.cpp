@@ -227,6 +227,7 @@ Recognition KeyframeMap::recognise(const MapQuery& query, std::span<const std::o
   if (found.agreeing >= Recognition::kFewest &&
       static_cast<double>(found.agreeing) >= Recognition::kLeastShare * static_cast<double>(found.similar))
     found.T_M_C = pose->T_M_C;
+  if (!found.T_M_C) return found;
   const SE3 T_C_M = pose->T_M_C.inverse();
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (agrees(matches[i], T_C_M, kAgreement_px / focal)) found.keyframes.insert(keyframes[i]);

@@ -87,7 +87,7 @@ struct Recognition {
   std::size_t similar = 0;                    ///< features with a similar map point
   std::size_t agreeing = 0;                   ///< of these, with one pose of the camera
   std::optional<SE3> T_M_C;                   ///< that pose; nothing where too few agree
-  std::set<std::size_t> keyframes;            ///< of the points that agree, by index
+  std::set<std::size_t> keyframes;            ///< of the points that agree with T_M_C, by index
 };
 
 class KeyframeMap {

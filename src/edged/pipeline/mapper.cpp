@@ -14,7 +14,8 @@ namespace {
 constexpr double kSearchSigmas = 3.0;
 constexpr double kSearchInterval_s = 0.09;  // between images, until relocalization after a loss
 constexpr double kLeastSearch_px = 2.0;
-constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;  // bound on the error of dead reckoning
+constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
+constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // bound on the error of dead reckoning
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;     // of an odometry that has just started, whose scale is still inaccurate
@@ -190,6 +191,20 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
   return true;
 }
 
+/// How many points of keyframes before t were matched.
+std::ptrdiff_t Mapper::found_before(const Search& search, Timestamp t) const {
+  return std::ranges::count_if(search.candidates, [&](const Candidate& candidate) {
+    return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < t;
+  });
+}
+
+/// The filter with the body at a recognized place, to be confirmed.
+MapFilter Mapper::filter_at(const SE3& T_M_O, const SE3& T_O_B, Timestamp t) const {
+  MapFilter there = filter_;
+  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  return there;
+}
+
 bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
   const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
@@ -199,9 +214,7 @@ bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const SE3 T_M_O = odom_to_map_.T_M_O();
   const Search here = search(filter_, T_M_O, images, old_enough);
-  const auto older = std::ranges::count_if(here.candidates, [&](const Candidate& candidate) {
-    return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < started_;
-  });
+  const std::ptrdiff_t older = found_before(here, started_);
   const bool agreed = update(filter_, T_M_O, here, t, images);
   if (!searching_ && !unlocated_before_) {
     if (agreed && holds(here, t)) {
@@ -275,8 +288,7 @@ bool Mapper::recognise(Timestamp t, std::span<const PosedImage> images) {
 /// Whether the points that should then be in view match. Keyframes mapped since, at uncertain poses, are removed.
 bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made) {
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
-  MapFilter there = filter_;
-  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  MapFilter there = filter_at(T_M_O, T_O_B, t);
   if (!update(there, T_M_O, search(there, T_M_O, images, made), t, images)) return false;
   odom_to_map_.forget_guess();
   // Where the map never changes, all poses so far were published in its frame.

@@ -103,6 +103,8 @@ class Mapper {
   };
   double drift_since(const MapKeyframe& keyframe) const;
   bool may_be_in_view(std::size_t keyframe, Timestamp t, const PosedImage& posed) const;
+  std::ptrdiff_t found_before(const Search& search, Timestamp t) const;
+  MapFilter filter_at(const SE3& T_M_O, const SE3& T_O_B, Timestamp t) const;
   bool holds(const Search& search, Timestamp t) const;
   bool close_loop(Timestamp t, std::span<const PosedImage> images);
   std::optional<LoopView> loop_view(Timestamp t, std::size_t image, std::span<const PosedImage> images);
@@ -111,8 +113,6 @@ class Mapper {
   std::optional<TrajectorySmoother::Closed> closed() const;
   double covered_share(std::span<const PosedImage> images) const;
   void remove_keyframe(std::size_t keyframe);
-
-  static constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  ///< of two that are recognised
 
   MapConfig config_;
   double lost_after_s_;

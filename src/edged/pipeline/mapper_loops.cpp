@@ -46,9 +46,7 @@ double Mapper::drift_since(const MapKeyframe& keyframe) const {
 
 /// Whether enough old points are matched by position, so that there is no loop to close.
 bool Mapper::holds(const Search& search, Timestamp t) const {
-  return std::ranges::count_if(search.candidates, [&](const Candidate& candidate) {
-           return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < loop_age(t);
-         }) >= config_.filter.min_observations;
+  return found_before(search, loop_age(t)) >= config_.filter.min_observations;
 }
 
 /// Whether an image may show what the keyframe does, with the odometry's drift since, and nothing of it was matched.
@@ -108,8 +106,7 @@ std::optional<Mapper::LoopView> Mapper::loop_view(Timestamp t, std::size_t image
 
 /// The view if the points that should then be in the images match, with the pose that they give.
 std::optional<Mapper::LoopView> Mapper::projected(LoopView view, Timestamp t, std::span<const PosedImage> images) {
-  MapFilter there = filter_;
-  there.restart(view.T_M_O, view.T_O_B, t, kSamePlace_m, kSamePlace_rad);
+  MapFilter there = filter_at(view.T_M_O, view.T_O_B, t);
   const Search found = search(there, view.T_M_O, images, {known().since, loop_age(t)});
   const std::vector<MapObservation> observations = found.observations();
   if (observations.size() < kLoopInliers) return std::nullopt;
