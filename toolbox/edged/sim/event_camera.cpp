@@ -3,24 +3,12 @@
 #include "edged/sim/event_camera.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "edged/core/check.hpp"
 
 namespace edged {
-
-float log_brightness(float x) {
-  // x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 atanh((m - 1) / (m + 1)) as a series.
-  constexpr std::uint32_t kSqrtHalf = 0x3F3504F3U;
-  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - kSqrtHalf;
-  const float exponent = static_cast<float>(static_cast<std::int32_t>(bits) >> 23);
-  const float m = std::bit_cast<float>((bits & 0x007FFFFFU) + kSqrtHalf);
-  const float s = (m - 1.0F) / (m + 1.0F), s2 = s * s;
-  const float series = 2.0F + s2 * (2.0F / 3.0F + s2 * (2.0F / 5.0F + s2 * (2.0F / 7.0F)));
-  return exponent * std::numbers::ln2_v<float> + s * series;
-}
 
 void EventCameraConfig::visit(ConfigFields& fields) {
   fields.add("threshold_on", threshold_on, {"ln", 0.01, 10, "rise of the log brightness that makes a positive event"});

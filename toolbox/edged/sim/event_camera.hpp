@@ -3,7 +3,9 @@
 // An event camera: a pixel fires when the logarithm of its brightness has changed by its threshold.
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,18 @@
 #include "edged/sim/simulator_config.hpp"
 
 namespace edged {
+
+/// Natural logarithm of x > 0, accurate to 1e-6, with the same bits on every machine.
+inline float log_brightness(float x) {
+  // x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 atanh((m - 1) / (m + 1)) as a series.
+  constexpr std::uint32_t kSqrtHalf = 0x3F3504F3U;
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - kSqrtHalf;
+  const float exponent = static_cast<float>(static_cast<std::int32_t>(bits) >> 23);
+  const float m = std::bit_cast<float>((bits & 0x007FFFFFU) + kSqrtHalf);
+  const float s = (m - 1.0F) / (m + 1.0F), s2 = s * s;
+  const float series = 2.0F + s2 * (2.0F / 3.0F + s2 * (2.0F / 5.0F + s2 * (2.0F / 7.0F)));
+  return exponent * std::numbers::ln2_v<float> + s * series;
+}
 
 class EventCamera {
  public:
@@ -52,8 +66,5 @@ class EventCamera {
   Timestamp t_;
   bool started_ = false;
 };
-
-/// Natural logarithm of x > 0, accurate to 1e-6, with the same bits on every machine.
-float log_brightness(float x);
 
 }  // namespace edged

@@ -72,6 +72,24 @@ void LightField::update(double t_s) {
   for (Map& map : maps_) add_up(map);
 }
 
+PixelValues LightField::at(std::size_t face, const PixelValues& u, const PixelValues& v) const {
+  if (maps_.empty()) return PixelValues::Ones(u.size());
+  const Map& map = maps_[face];
+  if (map.columns == 0) return PixelValues::Constant(u.size(), map.constant);
+  const PixelValues x = (u * map.per_m_u + map.middle_u).max(0.0F).min(map.last_u);
+  const PixelValues y = (v * map.per_m_v + map.middle_v).max(0.0F).min(map.last_v);
+  PixelValues light(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    const int ix = static_cast<int>(x[i]), iy = static_cast<int>(y[i]);
+    const float fx = x[i] - static_cast<float>(ix), fy = y[i] - static_cast<float>(iy);
+    const float* node = map.sum.data() + iy * map.columns + ix;
+    const float top = node[0] + fx * (node[1] - node[0]);
+    const float bottom = node[map.columns] + fx * (node[map.columns + 1] - node[map.columns]);
+    light[i] = top + fy * (bottom - top);
+  }
+  return light;
+}
+
 void LightField::add_up(Map& map) const {
   if (map.columns == 0) {
     map.constant = map.lamp < 0 ? 1.0F : levels_[static_cast<std::size_t>(map.lamp)];

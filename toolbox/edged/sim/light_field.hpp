@@ -3,9 +3,10 @@
 // The light on each face of a scene, in maps that are recomputed when a lamp changes.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
+#include "edged/sim/pixel_values.hpp"
 #include "edged/sim/scene.hpp"
 
 namespace edged {
@@ -18,21 +19,9 @@ class LightField {
   /// Sets the lamps to their state at t_s seconds.
   void update(double t_s);
 
-  /// Radiance of a white spot of brightness 1 at (u, v) [m] from the centre of the face, bilinear between nodes 2.5 cm
-  /// apart.
-  float at(std::size_t face, float u, float v) const {
-    if (maps_.empty()) return 1.0F;
-    const Map& map = maps_[face];
-    if (map.columns == 0) return map.constant;
-    const float x = std::min(std::max(0.0F, u * map.per_m_u + map.middle_u), map.last_u);
-    const float y = std::min(std::max(0.0F, v * map.per_m_v + map.middle_v), map.last_v);
-    const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-    const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
-    const float* node = map.sum.data() + iy * map.columns + ix;
-    const float top = node[0] + fx * (node[1] - node[0]);
-    const float bottom = node[map.columns] + fx * (node[map.columns + 1] - node[map.columns]);
-    return top + fy * (bottom - top);
-  }
+  /// Radiance of a white spot of brightness 1 at each (u, v) [m] from the centre of the face, bilinear between nodes
+  /// 2.5 cm apart.
+  PixelValues at(std::size_t face, const PixelValues& u, const PixelValues& v) const;
 
  private:
   struct Map {

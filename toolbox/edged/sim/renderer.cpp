@@ -11,6 +11,7 @@ namespace edged {
 namespace {
 
 constexpr int kMotionStride = 4;
+constexpr int kBlock = 16;  // [px] side
 constexpr float kBackground = 0.5F;
 constexpr double kNear = 0.02;  // [m]
 
@@ -83,6 +84,7 @@ Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& r
       const Eigen::Vector2d point = ray.head<2>();
       const float bx = static_cast<float>(point.x()), by = static_cast<float>(point.y());
       bearing_x_.push_back(bx), bearing_y_.push_back(by), bearing_z_.push_back(static_cast<float>(ray.z()));
+      bearing_norm_.push_back(ray.cast<float>().norm());
       const std::size_t row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
       row_min_y_[row] = std::min(row_min_y_[row], by), row_max_y_[row] = std::max(row_max_y_[row], by);
       column_min_x_[column] = std::min(column_min_x_[column], bx),
@@ -95,8 +97,39 @@ Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& r
       pixel_per_point_.push_back(slope.cast<float>());
     }
   }
+  if (wide_) make_blocks();
   views_.resize(scene_.faces.size());
   seen_.resize(n), scratch_.resize(n), out_.radiance.resize(n), out_.inverse_depth.resize(n);
+}
+
+void Renderer::make_blocks() {
+  for (int y = 0; y < height_; y += kBlock) {
+    for (int x = 0; x < width_; x += kBlock) {
+      Block block{{x, std::min(x + kBlock, width_) - 1, y, std::min(y + kBlock, height_) - 1}, {}};
+      for (int row = y; row <= block.pixels.y_1; ++row) {
+        for (int column = x; column <= block.pixels.x_1; ++column) {
+          const std::size_t i = static_cast<std::size_t>(row * width_ + column);
+          block.bearings.extend(Eigen::Vector3f(bearing_x_[i], bearing_y_[i], bearing_z_[i]));
+        }
+      }
+      blocks_.push_back(block);
+    }
+  }
+}
+
+bool Renderer::may_see(const Block& block, const View& view) const {
+  const Eigen::Array3f low = block.bearings.min(), high = block.bearings.max();
+  // Bearings are unit vectors, so that rounding errors of the forms are far below the margin.
+  const auto positive_somewhere = [&](const Eigen::Vector3f& form, float length) {
+    return (form.array() * low).max(form.array() * high).sum() > -1e-5F * length;
+  };
+  const auto between = [&](const Eigen::Vector3f& side, float half) {
+    const Eigen::Vector3f edge = half * view.inverse_depth;
+    const float length = edge.norm() + side.norm();
+    return positive_somewhere(edge - side, length) && positive_somewhere(edge + side, length);
+  };
+  return positive_somewhere(view.inverse_depth, view.inverse_depth.norm()) && between(view.u, view.half_u) &&
+         between(view.v, view.half_v);
 }
 
 Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
@@ -143,7 +176,9 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
                  static_cast<float>(face.half_u),
                  static_cast<float>(face.half_v),
                  static_cast<float>(distance)};
-    cast(views_[i], box, static_cast<int>(i));
+    if (!wide_) cast(views_[i], box, static_cast<int>(i));
+    for (const Block& block : blocks_)
+      if (may_see(block, views_[i])) cast(views_[i], block.pixels, static_cast<int>(i));
   }
   shade();
   if (flare_ > 0.0F) flare();
@@ -171,31 +206,46 @@ void Renderer::cast(const View& view, const PixelBox& box, int index) {
 }
 
 void Renderer::shade() {
-  const std::size_t n = seen_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (seen_[i] < 0) {
-      scratch_[i] = kBackground;
-      continue;
+  // By runs of pixels of one face within a row, as their arithmetic is then the same.
+  for (int y = 0; y < height_; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    const std::size_t end = row + static_cast<std::size_t>(width_);
+    for (std::size_t first = row, next = first; first < end; first = next) {
+      while (next < end && next - first < kMostPixels && seen_[next] == seen_[first]) ++next;
+      if (seen_[first] < 0) {
+        std::fill(scratch_.begin() + first, scratch_.begin() + next, kBackground);
+      } else {
+        shade_run(static_cast<std::size_t>(seen_[first]), first, next - first);
+      }
     }
-    const std::size_t index = static_cast<std::size_t>(seen_[i]);
-    const Face& face = scene_.faces[index];
-    const View& view = views_[index];
-    const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], bearing_z_[i]);
-    const float w = out_.inverse_depth[i], z = 1.0F / w;
-    const float texels = face.texels_per_m;
-    // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|); z is the
-    // distance where b is a unit vector.
-    const float pitch = texels * z / focal_;
-    const float area = pitch * pitch * std::sqrt(b.squaredNorm()) * z / view.distance;
-    const Texture& texture = scene_.textures[face.texture];
-    const float u = view.u.dot(b) * z, v = view.v.dot(b) * z;
-    float light = light_.at(index, u, v);
-    if (beam_.power > 0.0 && !face.glows) light += beam_light(beam_, z * b, view.normal);
-    if (flicker_.deviation != 0.0F) light *= flicker_.factor(z * b);
-    scratch_[i] = face.brightness * light *
-                  texture.sample(u * texels + face.offset_u, v * texels + face.offset_v, rough_log2(area));
-    if (!highlights_.empty() && !face.glows) scratch_[i] += highlight(z * b, view.normal);
   }
+}
+
+void Renderer::shade_run(std::size_t index, std::size_t first, std::size_t n) {
+  const Face& face = scene_.faces[index];
+  const View& view = views_[index];
+  const auto pixels = [&](const std::vector<float>& image) {
+    return Eigen::Map<const Eigen::ArrayXf>(image.data() + first, static_cast<Eigen::Index>(n));
+  };
+  const auto bx = pixels(bearing_x_), by = pixels(bearing_y_), bz = pixels(bearing_z_);
+  const PixelValues z = 1.0F / pixels(out_.inverse_depth);
+  // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|); z is the
+  // distance where b is a unit vector.
+  const PixelValues pitch = face.texels_per_m * z / focal_;
+  const PixelValues area = pitch * pitch * pixels(bearing_norm_) * z / view.distance;
+  const PixelValues u = (view.u.x() * bx + (view.u.y() * by + view.u.z() * bz)) * z;
+  const PixelValues v = (view.v.x() * bx + (view.v.y() * by + view.v.z() * bz)) * z;
+  PixelValues light = light_.at(index, u, v);
+  const auto point = [&](Eigen::Index i) { return Eigen::Vector3f(z[i] * bx[i], z[i] * by[i], z[i] * bz[i]); };
+  if (beam_.power > 0.0 && !face.glows)
+    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] += beam_light(beam_, point(i), view.normal);
+  if (flicker_.deviation != 0.0F)
+    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] *= flicker_.factor(point(i));
+  const PixelValues texel_u = u * face.texels_per_m + face.offset_u, texel_v = v * face.texels_per_m + face.offset_v;
+  Eigen::Map<Eigen::ArrayXf> radiance(scratch_.data() + first, light.size());
+  radiance = face.brightness * light * scene_.textures[face.texture].sample(texel_u, texel_v, area);
+  if (!highlights_.empty() && !face.glows)
+    for (Eigen::Index i = 0; i < light.size(); ++i) radiance[i] += highlight(point(i), view.normal);
 }
 
 float Renderer::highlight(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "edged/rig.hpp"
@@ -54,9 +55,20 @@ class Renderer {
     int x_0, x_1, y_0, y_1;  // inclusive; empty when x_1 < x_0
   };
 
+  /// A part of the picture of a wide lens.
+  struct Block {
+    PixelBox pixels;
+    Eigen::AlignedBox3f bearings;  // extent of theirs
+  };
+
+  void make_blocks();
+  /// Whether any pixel of the block may see the face.
+  bool may_see(const Block& block, const View& view) const;
   PixelBox bounds(const Face& face, const SE3& T_C_W) const;
   void cast(const View& view, const PixelBox& box, int index);
   void shade();
+  /// n pixels from `first` on, all of which see the face `index`.
+  void shade_run(std::size_t index, std::size_t first, std::size_t n);
   /// Of the lamps on a surface, in the camera frame.
   float highlight(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const;
   void flare();
@@ -70,8 +82,9 @@ class Renderer {
   Scene scene_;
   float flare_;
   LightField light_;
-  std::vector<float> bearing_x_, bearing_y_, bearing_z_;
+  std::vector<float> bearing_x_, bearing_y_, bearing_z_, bearing_norm_;
   std::vector<float> row_min_y_, row_max_y_, column_min_x_, column_max_x_;
+  std::vector<Block> blocks_;                     // of a wide lens, else none
   std::vector<Eigen::Matrix2f> pixel_per_point_;  // every fourth pixel of every fourth row, unless wide_
   std::vector<View> views_;
   Beam beam_;                     // of the spotlight in the camera frame; dark without one

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/sim/texture.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -12,24 +15,32 @@
 namespace edged {
 namespace {
 
+/// Approximate log2 of x > 0: linear between powers of two and continuous, with an error of at most 0.09.
+float rough_log2(float x) { return static_cast<float>(std::bit_cast<std::uint32_t>(x)) * 0x1.0p-23F - 127.0F; }
+
 /// Adds value noise of one scale: random values on a grid of `cell` texels, smoothly joined; repeats at the borders.
 void add_octave(cv::Mat_<float>& image, int cell, float amplitude, Random& random) {
-  const int size = image.rows, n = size / cell;
+  const int n = image.rows / cell;
   std::vector<float> grid(static_cast<std::size_t>(n * n));
   for (float& g : grid) g = amplitude * static_cast<float>(random.uniform(-1.0, 1.0));
   const auto at = [&](int x, int y) { return grid[static_cast<std::size_t>((y % n) * n + x % n)]; };
-  const auto smooth = [cell](int texel) {
-    const float a = static_cast<float>(texel % cell) / static_cast<float>(cell);
-    return a * a * (3.0F - 2.0F * a);
-  };
-  for (int y = 0; y < size; ++y) {
-    const float b = smooth(y);
-    for (int x = 0; x < size; ++x) {
-      const int gx = x / cell, gy = y / cell;
-      const float a = smooth(x);
-      const float top = at(gx, gy) + a * (at(gx + 1, gy) - at(gx, gy));
-      const float bottom = at(gx, gy + 1) + a * (at(gx + 1, gy + 1) - at(gx, gy + 1));
-      image(y, x) += top + b * (bottom - top);
+  std::vector<float> smooth;
+  for (int texel = 0; texel < cell; ++texel) {
+    const float a = static_cast<float>(texel) / static_cast<float>(cell);
+    smooth.push_back(a * a * (3.0F - 2.0F * a));
+  }
+  for (int gy = 0; gy < n; ++gy) {
+    for (int gx = 0; gx < n; ++gx) {
+      const float top_0 = at(gx, gy), top_1 = at(gx + 1, gy), bottom_0 = at(gx, gy + 1), bottom_1 = at(gx + 1, gy + 1);
+      for (int y = 0; y < cell; ++y) {
+        float* row = image[gy * cell + y] + gx * cell;
+        const float b = smooth[static_cast<std::size_t>(y)];
+        for (int x = 0; x < cell; ++x) {
+          const float a = smooth[static_cast<std::size_t>(x)];
+          const float top = top_0 + a * (top_1 - top_0), bottom = bottom_0 + a * (bottom_1 - bottom_0);
+          row[x] += top + b * (bottom - top);
+        }
+      }
     }
   }
 }
@@ -126,6 +137,47 @@ Texture::Texture(const cv::Mat& image) {
       }
     }
     levels_.push_back(std::move(coarse));
+  }
+}
+
+PixelValues Texture::sample(const PixelValues& u, const PixelValues& v, const PixelValues& area) const {
+  const float last = static_cast<float>(levels_.size() - 1);
+  const PixelValues lod = (0.5F * area.unaryExpr(&rough_log2)).max(0.0F).min(last);
+  PixelValues albedo(u.size()), coarse(u.size());
+  for (Eigen::Index first = 0, next = 0; first < u.size(); first = next) {
+    const int level = static_cast<int>(lod[first]);
+    while (next < u.size() && static_cast<int>(lod[next]) == level) ++next;
+    const std::size_t n = static_cast<std::size_t>(next - first), fine = static_cast<std::size_t>(level);
+    bilinear(fine, &u[first], &v[first], n, &albedo[first]);
+    bilinear(std::min(fine + 1, levels_.size() - 1), &u[first], &v[first], n, &coarse[first]);
+  }
+  const PixelValues share = lod - lod.cast<int>().cast<float>();
+  return albedo + share * (coarse - albedo);
+}
+
+void Texture::bilinear(std::size_t level, const float* u, const float* v, std::size_t n, float* albedo) const {
+  const float scale = std::bit_cast<float>((127U - static_cast<std::uint32_t>(level)) << 23);  // 2^-level
+  const int bits = levels_[level].bits;
+  const std::uint8_t* texels = levels_[level].texels.data();
+  const std::int32_t mask = (std::int32_t{1} << bits) - 1;
+  // The offset keeps the sum positive, where truncation is floor; it is a multiple of every side.
+  constexpr float kOffset = 32768.0F;
+  std::array<std::int32_t, kMostPixels> left, right, upper, lower;
+  std::array<float, kMostPixels> fx, fy, a, b, c, d;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float x = u[i] * scale - 0.5F + kOffset, y = v[i] * scale - 0.5F + kOffset;
+    const auto xi = static_cast<std::int32_t>(x), yi = static_cast<std::int32_t>(y);
+    fx[i] = x - static_cast<float>(xi), fy[i] = y - static_cast<float>(yi);
+    left[i] = xi & mask, right[i] = (xi + 1) & mask;
+    upper[i] = (yi & mask) << bits, lower[i] = ((yi + 1) & mask) << bits;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i] = texels[upper[i] + left[i]], b[i] = texels[upper[i] + right[i]];
+    c[i] = texels[lower[i] + left[i]], d[i] = texels[lower[i] + right[i]];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const float top = a[i] + fx[i] * (b[i] - a[i]), bottom = c[i] + fx[i] * (d[i] - c[i]);
+    albedo[i] = (top + fy[i] * (bottom - top)) * (1.0F / 255.0F);
   }
 }
 
