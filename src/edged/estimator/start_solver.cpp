@@ -182,7 +182,7 @@ void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equatio
     pi *= T_B_C.R().transpose() * m.R.transpose();
     Eigen::Matrix<double, 2, 12> A;
     A << pi, -pi * m.d_position();
-    N += A.transpose() * A;
+    N += A.transpose().lazyProduct(A);  // the general product costs many times as much at this size
     c += A.transpose() * (pi * (m.alpha + m.R * T_B_C.translation()));
   }
   equations.add(N, c);
@@ -212,7 +212,7 @@ void StartSolver::add_reprojection(const StartTrack& track, const Start& x, Star
     Eigen::Matrix<double, 2, 12> J;
     J << d_r_d_P, -d_r_d_P * motion_[track.observations[k].frame].d_position();
     const double weight = r.norm() < kHuber ? 1.0 : kHuber / r.norm();
-    N += weight * J.transpose() * J;
+    N += weight * J.transpose().lazyProduct(J);
     c -= weight * J.transpose() * r;
   }
   equations.add(N, c);
