@@ -11,11 +11,8 @@
 namespace edged {
 namespace {
 
-constexpr double kSearchSigmas = 3.0;
-constexpr double kSearchInterval_s = 0.09;  // between images, until relocalization after a loss
-constexpr double kLeastSearch_px = 2.0;
-constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  // of two that are recognised
-constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;     // bound on the error of dead reckoning
+constexpr double kSearchInterval_s = 0.09;                // between images, until relocalization after a loss
+constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;  // bound on the error of dead reckoning
 constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
 constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
 constexpr double kYoungDrift = 5.0;     // of an odometry that has just started, whose scale is still inaccurate
@@ -44,7 +41,8 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       lost_after_s_(lost_after_s),
       map_(config.keyframes),
       filter_(config.filter, config.localize_only),
-      record_(config.filter) {}
+      record_(config.filter),
+      loops_(config) {}
 
 void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
   odom_to_map_.restart(T_new_old, now);
@@ -67,7 +65,7 @@ void Mapper::begin_start(const OdomState& now) {
   dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
   searching_ = !first;
   recognised_.clear();
-  loop_.clear();
+  loops_.forget();
   p_O_B_ = now.T_O_B.translation();
   in_window_.clear();
   found_.clear();
@@ -114,61 +112,8 @@ void Mapper::predict(const OdomState& now, bool at_rest) {
   doubt(now);
 }
 
-std::vector<MapObservation> Mapper::Search::observations() const {
-  std::vector<MapObservation> observations;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.found) observations.push_back(candidate.observation);
-  }
-  return observations;
-}
-
-/// The points that should be in view of that image, and their matches; nothing if too few of them match, as when the
-/// lens is covered.
-std::vector<Candidate> Mapper::search_in(const TrackedImage& image, MapFilter& filter, const SE3& T_M_C,
-                                         const SE3& T_B_C, Period made) {
-  const CameraModel& camera = image.model;
-  std::vector<Candidate> candidates =
-      map_.visible({image.camera, made, filter.keyframes()}, T_M_C, camera, config_.max_observations);
-  std::vector<std::uint32_t> in_view;
-  in_view.reserve(candidates.size());
-  for (const Candidate& candidate : candidates) in_view.push_back(candidate.observation.keyframe);
-  filter.activate(in_view);
-  for (Candidate& candidate : candidates) {
-    MapObservation& observation = candidate.observation;
-    observation.seen = camera.pixel_to_point(candidate.pixel);
-    const double stretch = camera.stretch(observation.seen);
-    observation.sigma = config_.filter.pixel_sigma / camera.mean_focal() * stretch;
-    const double expected_px =
-        kSearchSigmas * camera.mean_focal() / stretch * filter.expected_error(observation, T_B_C);
-    const double radius = std::clamp(expected_px, kLeastSearch_px, config_.search_px);
-    const auto match =
-        match_patch(candidate.point->patch, image.image, candidate.pixel, candidate.A, radius, config_.patch);
-    candidate.found = match.has_value();
-    if (!match) continue;
-    candidate.pixel = match->pixel;
-    observation.seen = camera.pixel_to_point(match->pixel);
-  }
-  if (static_cast<double>(std::ranges::count_if(candidates, &Candidate::found)) <
-      config_.filter.min_found_share * static_cast<double>(candidates.size()))
-    candidates.clear();
-  return candidates;
-}
-
-Mapper::Search Mapper::search(MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made) {
-  Search search;
-  for (const auto& [image, T_O_C] : images) {
-    const auto camera = static_cast<std::uint32_t>(search.T_B_C.size());
-    search.T_B_C.push_back(filter.T_M_B().inverse() * T_M_O * T_O_C);
-    for (Candidate& candidate : search_in(image, filter, T_M_O * T_O_C, search.T_B_C.back(), made)) {
-      candidate.observation.camera = camera;
-      search.candidates.push_back(candidate);
-    }
-  }
-  return search;
-}
-
 /// The filter takes the matches if they agree, and corrects T_M_O.
-bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
+bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
                     std::span<const PosedImage> images) {
   const SE3 T_O_B = T_M_O.inverse() * filter.T_M_B();
   std::vector<MapObservation> observations = search.observations();
@@ -191,20 +136,6 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const Search& search, T
   return true;
 }
 
-/// How many points of keyframes before t were matched.
-std::ptrdiff_t Mapper::found_before(const Search& search, Timestamp t) const {
-  return std::ranges::count_if(search.candidates, [&](const Candidate& candidate) {
-    return candidate.found && map_.keyframes()[candidate.observation.keyframe].t < t;
-  });
-}
-
-/// The filter with the body at a recognized place, to be confirmed.
-MapFilter Mapper::filter_at(const SE3& T_M_O, const SE3& T_O_B, Timestamp t) const {
-  MapFilter there = filter_;
-  there.restart(T_M_O, T_O_B, t, kSamePlace_m, kSamePlace_rad);
-  return there;
-}
-
 bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
   const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
@@ -213,14 +144,15 @@ bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   found_.clear();
   const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const SE3 T_M_O = odom_to_map_.T_M_O();
-  const Search here = search(filter_, T_M_O, images, old_enough);
-  const std::ptrdiff_t older = found_before(here, started_);
+  const MapSearch here = search_map(map_, filter_, config_, T_M_O, images, old_enough);
+  const std::ptrdiff_t older = here.found_before(map_, started_);
   const bool agreed = update(filter_, T_M_O, here, t, images);
   if (!searching_ && !unlocated_before_) {
-    if (agreed && holds(here, t)) {
-      loop_.clear();
+    if (agreed && loops_.needless(here, map_, t)) {
+      loops_.forget();
     } else if (close_loop(t, images)) {
-      update(filter_, odom_to_map_.T_M_O(), search(filter_, odom_to_map_.T_M_O(), images, old_enough), t, images);
+      const SE3& closed = odom_to_map_.T_M_O();
+      update(filter_, closed, search_map(map_, filter_, config_, closed, images, old_enough), t, images);
     }
     return false;
   }
@@ -239,29 +171,11 @@ bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
          so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * dead_reckoning_s_;
 }
 
-Mapper::Features Mapper::features_of(const PosedImage& posed) {
-  const auto& [image, T_O_C] = posed;
-  Features features;
-  std::vector<Eigen::Vector2d> pixels;
-  for (const Track& track : image.tracks) {
-    pixels.push_back(track.pixel);
-    features.points.push_back(image.model.pixel_to_point(track.pixel));
-  }
-  features.descriptors =
-      describe(image.image, pixels, features.points, T_O_C.R().transpose() * Eigen::Vector3d::UnitZ());
-  return features;
-}
-
-Recognition Mapper::recognise_features(const Features& features, const PosedImage& posed, const MapQuery& query) const {
-  return map_.recognise(query, features.descriptors, features.points, posed.T_O_C.rotation(),
-                        posed.image.model.mean_focal());
-}
-
 /// T_M_O by place recognition, from keyframes of that time.
 std::optional<SE3> Mapper::recognised(const PosedImage& posed, Period made) const {
   const SE3& T_O_C = posed.T_O_C;
   const std::optional<SE3> T_M_C =
-      recognise_features(features_of(posed), posed, {posed.image.camera, made, filter_.keyframes()}).T_M_C;
+      recognise_place(map_, {posed.image.camera, made, filter_.keyframes()}, features_of(posed), posed).T_M_C;
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
@@ -288,14 +202,36 @@ bool Mapper::recognise(Timestamp t, std::span<const PosedImage> images) {
 /// Whether the points that should then be in view match. Keyframes mapped since, at uncertain poses, are removed.
 bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made) {
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
-  MapFilter there = filter_at(T_M_O, T_O_B, t);
-  if (!update(there, T_M_O, search(there, T_M_O, images, made), t, images)) return false;
+  MapFilter there = filter_at(filter_, T_M_O, T_O_B, t);
+  if (!update(there, T_M_O, search_map(map_, there, config_, T_M_O, images, made), t, images)) return false;
   odom_to_map_.forget_guess();
   // Where the map never changes, all poses so far were published in its frame.
   if (unlocated_before_ && !config_.localize_only) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
   while (map_.keyframes().back().t >= made.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
+}
+
+/// True if T_M_O has been corrected.
+bool Mapper::close_loop(Timestamp t, std::span<const PosedImage> images) {
+  if (config_.localize_only) return false;
+  const std::optional<Loop> loop =
+      loops_.find({t, map_, filter_, odom_to_map_.T_M_O(), path_m_, known().since}, images);
+  if (!loop) return false;
+  const std::optional<SE3> T_M_O = LoopCloser::close(filter_, *loop);
+  if (!T_M_O) return false;
+  odom_to_map_.correct(t, *T_M_O);
+  loop_closed_ = t;
+  return true;
+}
+
+/// Initial values of the final trajectory.
+std::optional<TrajectorySmoother::Closed> Mapper::closed() const {
+  if (!loop_closed_) return std::nullopt;
+  TrajectorySmoother::Closed closed{*loop_closed_, {}};
+  for (std::size_t k = 0; k < map_.keyframes().size(); ++k)
+    closed.keyframes.emplace(map_.keyframes()[k].number, filter_.keyframes()[k]);
+  return closed;
 }
 
 /// Of all cells with features, in any of the images.

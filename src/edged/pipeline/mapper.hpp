@@ -18,6 +18,8 @@
 #include "edged/map/odom_to_map.hpp"
 #include "edged/map/saved_map.hpp"
 #include "edged/map/trajectory_smoother.hpp"
+#include "edged/pipeline/loop_closer.hpp"
+#include "edged/pipeline/map_search.hpp"
 #include "edged/pipeline/tracked_image.hpp"
 
 namespace edged {
@@ -68,48 +70,17 @@ class Mapper {
   double unmatched_s() const { return to_seconds(predicted_ - matched_); }
 
  private:
-  /// Points that should be in view, and their matches, in the images where enough of them match.
-  struct Search {
-    std::vector<Candidate> candidates;
-    std::vector<SE3> T_B_C;  ///< of all images
-    std::vector<MapObservation> observations() const;
-  };
   /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
   /// it.
   Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
   void begin_start(const OdomState& now);
-  Search search(MapFilter& filter, const SE3& T_M_O, std::span<const PosedImage> images, Period made);
-  std::vector<Candidate> search_in(const TrackedImage& image, MapFilter& filter, const SE3& T_M_C, const SE3& T_B_C,
-                                   Period made);
-  bool update(MapFilter& filter, const SE3& T_M_O, const Search& search, Timestamp t,
+  bool update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
               std::span<const PosedImage> images);
-  /// One of each per track; points: on the unit plane.
-  struct Features {
-    std::vector<std::optional<Descriptor>> descriptors;
-    std::vector<Eigen::Vector2d> points;
-  };
-  static Features features_of(const PosedImage& posed);
-  Recognition recognise_features(const Features& features, const PosedImage& posed, const MapQuery& query) const;
   std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
   bool recognise(Timestamp t, std::span<const PosedImage> images);
   bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
-  /// An image that shows an old place by its appearance.
-  struct LoopView {
-    SE3 T_O_B, T_M_O;      ///< M by the old keyframes
-    std::size_t keyframe;  ///< with the most matches, by index
-    SE3 T_K_B;             ///< relative to that
-    double drift_m;        ///< bound since then
-  };
-  double drift_since(const MapKeyframe& keyframe) const;
-  bool may_be_in_view(std::size_t keyframe, Timestamp t, const PosedImage& posed) const;
-  std::ptrdiff_t found_before(const Search& search, Timestamp t) const;
-  MapFilter filter_at(const SE3& T_M_O, const SE3& T_O_B, Timestamp t) const;
-  bool holds(const Search& search, Timestamp t) const;
   bool close_loop(Timestamp t, std::span<const PosedImage> images);
-  std::optional<LoopView> loop_view(Timestamp t, std::size_t image, std::span<const PosedImage> images);
-  std::optional<Recognition> old_place(Timestamp t, const PosedImage& posed) const;
-  std::optional<LoopView> projected(LoopView view, Timestamp t, std::span<const PosedImage> images);
   std::optional<TrajectorySmoother::Closed> closed() const;
   double covered_share(std::span<const PosedImage> images) const;
   void remove_keyframe(std::size_t keyframe);
@@ -134,8 +105,8 @@ class Mapper {
   std::optional<Timestamp> unlocated_before_;
   double path_m_ = 0.0;  ///< length of the odometry's path in motion
   Eigen::Vector3d p_O_B_ = Eigen::Vector3d::Zero();
-  std::optional<Timestamp> loop_searched_, loop_closed_;
-  std::vector<LoopView> loop_;   ///< images that agree on a loop, which is not closed yet
+  LoopCloser loops_;
+  std::optional<Timestamp> loop_closed_;  ///< the last one
   std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
 };
 
