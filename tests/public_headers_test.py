@@ -37,11 +37,11 @@ def preprocess(header):
     command = [os.environ["CXX"], "-std=c++20", "-x", "c++", *shlex.split(" ".join(include_flags())), "-Wall", "-Wextra",
                "-Werror"]
     text = f'#include "edged/{header}"\n'
-    done = subprocess.run([*command, "-fsyntax-only", "-"], input=text, capture_output=True, text=True, check=False)
+    done = subprocess.run([*command, "-fsyntax-only", "-MD", "-MF", "-", "-"], input=text, capture_output=True, text=True,
+                          check=False)
     if done.returncode != 0:
         raise AssertionError(f"edged/{header} does not compile by itself:\n{done.stderr}")
-    made = subprocess.run([*command, "-M", "-"], input=text, capture_output=True, text=True, check=True).stdout
-    return made.replace("\\\n", " ").split()[1:]
+    return done.stdout.replace("\\\n", " ").split()[1:]
 
 
 def public_headers(folder):
