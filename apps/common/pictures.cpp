@@ -12,7 +12,7 @@ namespace {
 constexpr int kQuality = 70;  // of JPEG
 const cv::Scalar kTrackColour(60, 200, 60), kNewTrackColour(60, 160, 255);
 
-constexpr int kGap = 14, kCellWidth = 400, kCaption = 22, kTitleLine = 24;
+constexpr int kGapWidth_px = 14, kCellWidth = 400, kCaption = 22, kTitleLine = 24;
 
 int scaled_height(const cv::Mat& image) {
   return image.empty() ? 0 : cvRound(1.0 * kCellWidth * image.rows / image.cols);
@@ -21,7 +21,7 @@ int scaled_height(const cv::Mat& image) {
 int row_height(const SheetRow& row) {
   int height = 0;
   for (const SheetCell& cell : row) height = std::max(height, scaled_height(cell.image));
-  return kCaption + height + kGap;
+  return kCaption + height + kGapWidth_px;
 }
 
 void draw_cell(cv::Mat& canvas, const SheetCell& cell, cv::Point at) {
@@ -60,15 +60,15 @@ std::vector<unsigned char> track_picture(const cv::Mat& image, const std::vector
 
 cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows) {
   std::size_t columns = 1;
-  int height = kGap + kTitleLine * static_cast<int>(title.size());
+  int height = kGapWidth_px + kTitleLine * static_cast<int>(title.size());
   for (const SheetRow& row : rows) columns = std::max(columns, row.size()), height += row_height(row);
-  const int width = kGap + static_cast<int>(columns) * (kCellWidth + kGap);
+  const int width = kGapWidth_px + static_cast<int>(columns) * (kCellWidth + kGapWidth_px);
   cv::Mat canvas(height, width, CV_8UC3, kPaper);
-  int y = kGap;
-  for (const std::string& line : title) put_text(canvas, line, {kGap, y + 14}, 0.5), y += kTitleLine;
+  int y = kGapWidth_px;
+  for (const std::string& line : title) put_text(canvas, line, {kGapWidth_px, y + 14}, 0.5), y += kTitleLine;
   for (const SheetRow& row : rows) {
-    int x = kGap;
-    for (const SheetCell& cell : row) draw_cell(canvas, cell, {x, y}), x += kCellWidth + kGap;
+    int x = kGapWidth_px;
+    for (const SheetCell& cell : row) draw_cell(canvas, cell, {x, y}), x += kCellWidth + kGapWidth_px;
     y += row_height(row);
   }
   return canvas;

@@ -26,9 +26,9 @@ static_assert(std::endian::native == std::endian::little, "voxels are written as
 constexpr std::size_t kFewestViews = 4;
 constexpr double kFrames_px = 0.7;  // sigma of observations whose errors along a track are correlated
 constexpr double kEvents_px = 1.2;
-constexpr double kDenseSigmas = 2.5;                                // of a dense point: their errors have long tails
-constexpr double kMostPixels = 1e9;                                 // of a slice
-constexpr std::uint8_t kOccupied = 0, kFree = 254, kUnknown = 205;  // as the ROS map server writes them
+constexpr double kDenseSigmas = 2.5;  // of a dense point: their errors have long tails
+constexpr double kMostPixels = 1e9;   // of a slice
+constexpr std::uint8_t kOccupied = 0, kFree = 254, kUnknownCell = 205;  // as the ROS map server writes them
 
 /// Not by OctoMap's functions for whole files, which print to stderr.
 std::string header_of(const char* kind, const octomap::OcTree& tree) {
@@ -37,7 +37,7 @@ std::string header_of(const char* kind, const octomap::OcTree& tree) {
 
 /// Of the ROS map server: y up.
 cv::Mat picture_of(const OccupancySlice& slice) {
-  cv::Mat picture(slice.cells.size(), CV_8UC1, cv::Scalar(kUnknown));
+  cv::Mat picture(slice.cells.size(), CV_8UC1, cv::Scalar(kUnknownCell));
   picture.setTo(kFree, slice.cells == OccupancySlice::kFree);
   picture.setTo(kOccupied, slice.cells == OccupancySlice::kOccupied);
   cv::flip(picture, picture, 0);

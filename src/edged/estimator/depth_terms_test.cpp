@@ -16,8 +16,6 @@
 namespace edged {
 namespace {
 
-constexpr double kStep_s = 0.05;
-
 /// A source whose depths of the whole view are the true median times `bias`. Uses a copy of the world, whose noise is
 /// the same as without this call.
 RegionDepth depth_of_view(TestWorld world, double t, double bias, double sigma_ln) {
@@ -46,9 +44,9 @@ Outcome fly(const TestWorldOptions& options, double duration_s, double bias, con
   double travelled = 0.0, estimated = 0.0;
   Outcome outcome;
   std::optional<std::pair<SE3, SE3>> first, before;  // truth and estimate
-  for (int i = 1; i * kStep_s <= duration_s; ++i) {
-    const double t = i * kStep_s;
-    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+  for (int i = 1; i * kPacket_s <= duration_s; ++i) {
+    const double t = i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
     if (bias > 0.0) input.depth = depth_of_view(world, t, bias, sigma_ln);
     const EstimatorResult result = estimator.add(input);
     if (!estimator.initialized() || estimator.provisional()) continue;
@@ -131,8 +129,8 @@ TEST(DepthTerms, AStartInMotionFarFromWhatTheSourceSaysIsNotBelieved) {
   TestWorld world({});
   Estimator estimator(world.rig(), world.noise(), with_depth());
   for (int i = 1; i <= 40; ++i) {
-    const double t = i * kStep_s;
-    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+    const double t = i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
     input.depth = depth_of_view(world, t, 30.0, 0.6);
     estimator.add(input);
   }

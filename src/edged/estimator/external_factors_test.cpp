@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-constexpr double kStep_s = 0.05, kSampleEvery_s = 0.02;
+constexpr double kSampleEvery_s = 0.02;
 constexpr double kHeightSigma = 0.1, kVelocitySigma = 0.05;
 
 struct Flight {
@@ -66,15 +66,15 @@ Errors fly(const Flight& flight) {
   std::optional<SE3> T_true_est;
   Errors errors;
   int blind = 0, observed = 0;
-  for (int i = 1; i * kStep_s <= flight.end; ++i) {
-    const double t = i * kStep_s;
-    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+  for (int i = 1; i * kPacket_s <= flight.end; ++i) {
+    const double t = i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
     const bool sees = t < flight.blind_from || t >= flight.blind_to;
     if (!sees) {
       for (CameraObservations& view : input.observations) view.features.clear();
       input.keyframe = input.events_quiet = false;
     }
-    input.external = samples_of(flight, sensors, t - kStep_s, t, random);
+    input.external = samples_of(flight, sensors, t - kPacket_s, t, random);
     const EstimatorResult result = estimator.add(input);
     if (!estimator.initialized()) continue;
     const SE3 truth = world.T_W_B(t), estimate = estimator.newest().T_O_B;
@@ -185,9 +185,9 @@ TEST(ExternalFactors, StayInTheWindowWithOneFactorAStateAndSensor) {
   Estimator estimator(world.rig(), world.noise(), {});
   std::mt19937_64 random(5);
   for (int i = 1; i <= 200; ++i) {
-    const double t = i * kStep_s;
-    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
-    input.external = samples_of({.height = true, .velocity = true}, world, t - kStep_s, t, random);
+    const double t = i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
+    input.external = samples_of({.height = true, .velocity = true}, world, t - kPacket_s, t, random);
     estimator.add(input);
   }
   std::map<StateId, int> heights, velocities;
@@ -210,11 +210,11 @@ TEST(ExternalFactors, AreNotMadeWhereTheyAreSwitchedOff) {
   Estimator estimator(world.rig(), world.noise(), config), without(world.rig(), world.noise(), {});
   std::mt19937_64 random(5);
   for (int i = 1; i <= 60; ++i) {
-    const double t = i * kStep_s;
-    EstimatorInput input = world.packet(t, kStep_s, i % 4 == 0);
+    const double t = i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
     without.add(input);
     TestWorld sensors({.rest_s = 1.0});
-    input.external = samples_of({.height = true, .velocity = true}, sensors, t - kStep_s, t, random);
+    input.external = samples_of({.height = true, .velocity = true}, sensors, t - kPacket_s, t, random);
     EXPECT_FALSE(estimator.add(input).velocity_observed);
   }
   EXPECT_EQ(estimator.window().estimates(), without.window().estimates());

@@ -10,7 +10,6 @@
 namespace edged {
 namespace {
 
-constexpr double kEvery_s = 0.05;
 constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 struct Started {
@@ -38,11 +37,11 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
                              const std::optional<BiasPrior>& biases = {}) {
   TestWorld world(options), sensor(options);
   Estimator estimator(world.rig(), world.noise(), {}, {}, biases);
-  for (int i = 1; i * kEvery_s <= patience_s; ++i) {
-    const double t = begin_s + i * kEvery_s;
-    EstimatorInput input = world.packet(t, kEvery_s, i % 4 == 0);
+  for (int i = 1; i * kPacket_s <= patience_s; ++i) {
+    const double t = begin_s + i * kPacket_s;
+    EstimatorInput input = world.packet(t, kPacket_s, i % 4 == 0);
     if (R_B_S) {
-      VelocitySample sample = sensor.velocity(t - kEvery_s / 2, 0.05);
+      VelocitySample sample = sensor.velocity(t - kPacket_s / 2, 0.05);
       sample.v_S = R_B_S->conjugate() * sample.v_S;
       input.external.emplace_back(sample);
     }
@@ -52,7 +51,7 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
       continue;
     }
     Started started;
-    started.after_s = i * kEvery_s;
+    started.after_s = i * kPacket_s;
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const auto& [id, state] : estimator.window().states()) {
       estimated.push_back(state.T_O_B().translation());
@@ -209,7 +208,7 @@ TEST(Initializer, RefusesAnAccelerometerInOtherUnits) {
   Estimator estimator(world.rig(), world.noise(), {});
   EstimatorResult result;
   for (int i = 1; i <= 20; ++i) {
-    EstimatorInput input = world.packet(i * kEvery_s, kEvery_s, true);
+    EstimatorInput input = world.packet(i * kPacket_s, kPacket_s, true);
     std::vector<ImuSample> in_g = input.motion.samples();
     for (ImuSample& sample : in_g) sample.accel_B /= 9.81;
     input.motion = Preintegration(in_g, {0, 0, 0}, {0, 0, 0}, world.noise());

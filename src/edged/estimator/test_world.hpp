@@ -16,6 +16,8 @@
 
 namespace edged {
 
+constexpr double kPacket_s = 0.05;  ///< between packets, in most tests
+
 struct TestWorldOptions {
   double rest_s = 0.0;               ///< at the beginning
   int cameras = 1;                   ///< 2: one more, "events", rotated and shifted relative to "frames"

@@ -9,11 +9,11 @@
 namespace edged {
 namespace {
 
-constexpr float kNone = 128.0F;           // grey level of no increment
-constexpr double kNoise_px2 = 0.3;        // squared motion that shows as much scene as noise
-constexpr double kLeastShare = 0.5;       // of a motion, that the motions so far must explain
-constexpr double kLeastSimilarity = 0.8;  // with what is expected
-constexpr double kFarthest_px = 1.0;      // from the expected place: farther away it is another corner
+constexpr float kNone = 128.0F;             // grey level of no increment
+constexpr double kNoise_px2 = 0.3;          // squared motion that shows as much scene as noise
+constexpr double kLeastShare = 0.5;         // of a motion, that the motions so far must explain
+constexpr double kLeastSimilarity = 0.8;    // with what is expected
+constexpr double kFarthestCorner_px = 1.0;  // from the expected place: farther away it is another corner
 
 /// Events of an edge appear this far behind it along its motion, as a pixel fires once its brightness has changed by
 /// the threshold.
@@ -37,7 +37,7 @@ std::optional<Eigen::Vector2d> GradientPatch::align(const BrightnessIncrements& 
       match_patch(expected(of_patch), seen.image, place.pixel - ahead, place.A, 0.0, strict);
   if (!match) return std::nullopt;
   const Eigen::Vector2d corner = match->pixel + ahead;
-  return (corner - place.pixel).norm() < kFarthest_px ? std::optional(corner) : std::nullopt;
+  return (corner - place.pixel).norm() < kFarthestCorner_px ? std::optional(corner) : std::nullopt;
 }
 
 void GradientPatch::learn(const BrightnessIncrements& seen, const PatchPlace& place, const Eigen::Vector2d& moved,

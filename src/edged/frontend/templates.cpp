@@ -7,7 +7,7 @@
 namespace edged {
 namespace {
 
-constexpr double kFarthest_px = 1.0;  // from the result of the optical flow: farther away it is another corner
+constexpr double kFarthestFromFlow_px = 1.0;  // from the result of the optical flow: farther away it is another corner
 constexpr double kMinDepth_m = 0.05;
 
 }  // namespace
@@ -50,7 +50,7 @@ std::optional<Eigen::Vector2d> Templates::align(FeatureId id, const PatchView& v
   }
   const std::optional<PatchMatch> match =
       match_patch(reference.patch, view.image, corner.pixel, place->A, 0.0, config_);
-  const bool near = match && (match->pixel - corner.pixel).norm() < kFarthest_px;
+  const bool near = match && (match->pixel - corner.pixel).norm() < kFarthestFromFlow_px;
   return near ? std::optional(match->pixel) : std::nullopt;
 }
 

@@ -8,7 +8,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kLongest = std::chrono::seconds(10);
+constexpr Duration kLongestHistory = std::chrono::seconds(10);
 // Drift with the temperature, which the noise of a data sheet does not cover.
 constexpr double kGyroDrift = 2e-3;   // [rad/s]
 constexpr double kAccelDrift = 0.02;  // [m/s^2]
@@ -18,7 +18,7 @@ double squared(double x) { return x * x; }
 }  // namespace
 
 double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
-  while (!entries_.empty() && state.t - entries_.front().t > kLongest) entries_.pop_front();
+  while (!entries_.empty() && state.t - entries_.front().t > kLongestHistory) entries_.pop_front();
   Entry now{state.t, {}, P.diagonal().tail<6>()};
   now.bias << state.bias_gyro, state.bias_accel;
   double most = 0.0;

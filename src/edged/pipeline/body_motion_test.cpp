@@ -9,20 +9,18 @@ namespace {
 
 constexpr double kTurnRate = 0.8;  // [rad/s] about z
 
-Timestamp seconds_in(double s) { return timestamp_from_seconds(s); }
-
 /// A body that moves straight and rotates about the vertical: samples every 5 ms.
 std::vector<ImuSample> samples(double from_s, double to_s) {
   std::vector<ImuSample> imu;
   for (double t = from_s; t < to_s + 1e-6; t += 0.005) {
-    imu.push_back({seconds_in(t), {0, 0, kTurnRate}, {0, 0, 9.81}});
+    imu.push_back({timestamp_from_seconds(t), {0, 0, kTurnRate}, {0, 0, 9.81}});
   }
   return imu;
 }
 
 OdomState moving(double t_s, double speed) {
   OdomState state;
-  state.t = seconds_in(t_s);
+  state.t = timestamp_from_seconds(t_s);
   state.v_O = {speed, 0, 0};
   return state;
 }
@@ -41,7 +39,7 @@ TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
   body.correct(moving(0.05, 2.0));
   const Preintegration motion = body.predict(samples(0.05, 0.1), true);
   EXPECT_TRUE(body.started());
-  EXPECT_EQ(motion.begin(), seconds_in(0.05));
+  EXPECT_EQ(motion.begin(), timestamp_from_seconds(0.05));
   EXPECT_EQ(motion.end(), body.now().t);
   EXPECT_NEAR(body.now().T_O_B.translation().x(), 0.1, 1e-9);
   EXPECT_NEAR(body.moved_on(duration_from_seconds(0.01)).translation().x(), 0.12, 1e-9);
@@ -58,7 +56,7 @@ TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
     body.correct(estimate);
     EXPECT_NEAR(body.poses().front().T.translation().y(), before + 1.0, 1e-9);
   }
-  EXPECT_GE(body.poses().front().t, seconds_in(0.2));
+  EXPECT_GE(body.poses().front().t, timestamp_from_seconds(0.2));
   EXPECT_EQ(body.poses().back().t, body.now().t);
   for (std::size_t i = 1; i < body.poses().size(); ++i) EXPECT_LT(body.poses()[i - 1].t, body.poses()[i].t);
 }
@@ -70,8 +68,8 @@ TEST(BodyMotion, GoesOnAsItDoesInAGapOfTheImu) {
   body.correct(moving(0.05, 2.0));
   body.predict(samples(0.05, 0.1), true);
   const auto gap = [](double from_s, double to_s) {
-    return std::vector<ImuSample>{{seconds_in(from_s), {9, 9, 9}, {1, 1, 1}, true},
-                                  {seconds_in(to_s), {9, 9, 9}, {1, 1, 1}, true}};
+    return std::vector<ImuSample>{{timestamp_from_seconds(from_s), {9, 9, 9}, {1, 1, 1}, true},
+                                  {timestamp_from_seconds(to_s), {9, 9, 9}, {1, 1, 1}, true}};
   };
   body.predict(gap(0.1, 0.15), true);
   EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.1 * kTurnRate, 1e-9);

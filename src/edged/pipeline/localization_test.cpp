@@ -13,8 +13,6 @@
 namespace edged {
 namespace {
 
-constexpr double kPacket_s = 0.05;
-
 class LocalizationInTheTestWorld : public testing::Test {
  protected:
   /// One packet; seen: false: without observations.

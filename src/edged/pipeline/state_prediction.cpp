@@ -13,7 +13,8 @@ namespace {
 
 constexpr Duration kKept = std::chrono::seconds(20);
 constexpr Duration kBack = std::chrono::seconds(1);
-constexpr Duration kLongest = std::chrono::seconds(1);  // longest prediction: dead reckoning soon drifts by metres
+constexpr Duration kLongestPrediction =
+    std::chrono::seconds(1);  // longest prediction: dead reckoning soon drifts by metres
 
 /// The state at the last sample, propagated from `start` at the first one.
 OdomState propagated(const OdomState& start, std::span<const ImuSample> samples) {
@@ -37,7 +38,7 @@ void StatePrediction::add(const ImuSample& sample) {
   if (!imu_.empty() && sample.t <= imu_.back().t) return;
   imu_.push_back(sample);
   if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
-  if (!states_.empty() && sample.t - states_.front().t > kLongest) states_.clear();
+  if (!states_.empty() && sample.t - states_.front().t > kLongestPrediction) states_.clear();
   if (sample.t - imu_.front().t <= 2 * kKept) return;
   const auto keep = std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t);
   imu_.erase(imu_.begin(), keep);
@@ -47,7 +48,7 @@ void StatePrediction::correct(const std::optional<NavState>& estimate) {
   const std::lock_guard lock(mutex_);
   states_.clear();
   if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
-  if (imu_.back().t - estimate->t > kLongest) return;
+  if (imu_.back().t - estimate->t > kLongestPrediction) return;
   imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
   states_ = propagate_all(as_odometry(*estimate), imu_);
 }

@@ -13,12 +13,10 @@ namespace {
 constexpr double kRate = 1.5, kRadius = 2.0;  // [rad/s], [m]: a body on a circle, x outwards, z up
 const Eigen::Vector3d kGyroBias(0.02, -0.01, 0.03), kAccelBias(0.1, 0.2, -0.1);
 
-Timestamp seconds_in(double s) { return timestamp_from_seconds(s); }
-
 NavState true_state(double t_s) {
   const double angle = kRate * t_s;
   NavState state;
-  state.t = seconds_in(t_s);
+  state.t = timestamp_from_seconds(t_s);
   state.T_W_B = SE3(so3::exp({0, 0, angle}), kRadius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
   state.v_W = kRadius * kRate * Eigen::Vector3d(-std::sin(angle), std::cos(angle), 0);
   state.bias_gyro = kGyroBias;
@@ -27,7 +25,7 @@ NavState true_state(double t_s) {
 }
 
 ImuSample sample(double t_s) {
-  return {seconds_in(t_s), Eigen::Vector3d(0, 0, kRate) + kGyroBias,
+  return {timestamp_from_seconds(t_s), Eigen::Vector3d(0, 0, kRate) + kGyroBias,
           Eigen::Vector3d(-kRadius * kRate * kRate, 0, 9.81) + kAccelBias};
 }
 
@@ -48,9 +46,10 @@ TEST(StatePrediction, FollowsACircleByTheImuAlone) {
   expect_near(prediction.newest(), 0.5);
   for (int i = 101; i <= 110; ++i) prediction.add(sample(0.005 * i));
   expect_near(prediction.newest(), 0.55);
-  for (const double t_s : {0.2525, 0.2537, 0.255, 0.4321, 0.55}) expect_near(prediction.at(seconds_in(t_s)), t_s);
-  EXPECT_FALSE(prediction.at(seconds_in(0.252)));
-  EXPECT_FALSE(prediction.at(seconds_in(0.551)));
+  for (const double t_s : {0.2525, 0.2537, 0.255, 0.4321, 0.55})
+    expect_near(prediction.at(timestamp_from_seconds(t_s)), t_s);
+  EXPECT_FALSE(prediction.at(timestamp_from_seconds(0.252)));
+  EXPECT_FALSE(prediction.at(timestamp_from_seconds(0.551)));
 }
 
 TEST(StatePrediction, StartsAnewFromEveryEstimateAndEndsWithTheLast) {
@@ -68,7 +67,7 @@ TEST(StatePrediction, StartsAnewFromEveryEstimateAndEndsWithTheLast) {
   expect_near(prediction.newest(), 0.505);
   prediction.correct(std::nullopt);
   EXPECT_FALSE(prediction.newest());
-  EXPECT_FALSE(prediction.at(seconds_in(0.5)));
+  EXPECT_FALSE(prediction.at(timestamp_from_seconds(0.5)));
 }
 
 TEST(StatePrediction, PassesOverSamplesThatAreNoneOrOutOfOrder) {

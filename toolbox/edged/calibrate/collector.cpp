@@ -68,7 +68,7 @@ void ViewCollector::take_events(const EventBatch& batch) {
   EventCamera& events = event_cameras_[batch.camera];
   if (!events.pictures) {
     TargetViews& views = camera(batch.camera, Modality::Events, sensor->second);
-    events.pictures = std::make_unique<EventPictures>(
+    events.pictures = std::make_unique<TargetPictures>(
         views.width, views.height, [this, &views](Timestamp t, const cv::Mat& picture) { search(views, t, picture); });
   }
   if (last_frame_.empty()) ask_for(events, batch.events.front().t);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/calibrate/event_picture.hpp"
+#include "edged/calibrate/target_picture.hpp"
 #include "edged/calibrate/target_view.hpp"
 
 namespace edged {
@@ -41,7 +41,7 @@ class ViewCollector {
 
  private:
   struct EventCamera {
-    std::unique_ptr<EventPictures> pictures;
+    std::unique_ptr<TargetPictures> pictures;
     std::optional<Timestamp> last_instant;
   };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/calibrate/event_picture.hpp"
+#include "edged/calibrate/target_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,22 +25,22 @@ constexpr double kBlur_px = 0.6;
 
 }  // namespace
 
-EventPictures::EventPictures(int width, int height, Receiver receiver)
+TargetPictures::TargetPictures(int width, int height, Receiver receiver)
     : width_(width), height_(height), receiver_(std::move(receiver)) {
   const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   past_.resize(n), future_.resize(n);
 }
 
-void EventPictures::add(std::span<const Event> events) {
+void TargetPictures::add(std::span<const Event> events) {
   for (const Event& event : events) {
     if (event.x < width_ && event.y < height_) waiting_.push_back(event);
   }
   if (!waiting_.empty()) pass(waiting_.back().t);
 }
 
-void EventPictures::finish() { pass(Timestamp::max()); }
+void TargetPictures::finish() { pass(Timestamp::max()); }
 
-void EventPictures::pass(Timestamp now) {
+void TargetPictures::pass(Timestamp now) {
   if (range_ == 0.0F && waiting_.size() > kFewestEvents * past_.size()) find_range();
   while (!instants_.empty() && (now == Timestamp::max() || now > instants_.front() + kReach)) {
     if (range_ > 0.0F) {
@@ -56,7 +56,7 @@ void EventPictures::pass(Timestamp now) {
 }
 
 /// Half the steps of the strong edges: the events are sorted by the length of the run of equal steps that they are in.
-void EventPictures::find_range() {
+void TargetPictures::find_range() {
   constexpr std::size_t kMostEvents = 3'000'000;
   std::vector<int> run(past_.size(), 0);
   std::vector<Timestamp> last(past_.size(), Timestamp::min());
@@ -84,11 +84,11 @@ void EventPictures::find_range() {
   range_ = std::max(1.0F, 0.5F * static_cast<float>(length));
 }
 
-float EventPictures::stepped(float sum, bool up) const {
+float TargetPictures::stepped(float sum, bool up) const {
   return std::clamp(sum + (up ? 1.0F : -1.0F), -range_, range_);
 }
 
-void EventPictures::take_until(Timestamp t) {
+void TargetPictures::take_until(Timestamp t) {
   for (; !waiting_.empty() && waiting_.front().t <= t; waiting_.pop_front()) {
     const Event& event = waiting_.front();
     Side& past = past_[index(event)];
@@ -98,7 +98,7 @@ void EventPictures::take_until(Timestamp t) {
 
 /// Within an edge the brightness goes on from the last step to the next: without that, every edge would be late by half
 /// a step.
-float EventPictures::brightness(const Side& past, const Side& future, Timestamp t) const {
+float TargetPictures::brightness(const Side& past, const Side& future, Timestamp t) const {
   const bool before = past.known && t - past.t < kReach;
   if (!before) return future.known ? future.sum : 0.0F;
   if (!future.known) return past.sum;
@@ -108,7 +108,7 @@ float EventPictures::brightness(const Side& past, const Side& future, Timestamp 
   return sum + static_cast<float>(past.up ? share : -share);
 }
 
-void EventPictures::make(Timestamp t) {
+void TargetPictures::make(Timestamp t) {
   std::ranges::fill(future_, Side());
   const auto end = std::ranges::upper_bound(waiting_, t + kReach, {}, &Event::t);
   for (auto event = end; event != waiting_.begin();) {

@@ -16,12 +16,12 @@ namespace edged {
 /// Each event is a step of the logarithm of the brightness. Added up from the past, the steps are the brightness at an
 /// instant, and added up backwards from the future they are it as well. A sum stops at black and at white, so that it
 /// does not drift. The mean of both has no delay: an edge is where it is at that instant, whichever way it moves.
-class EventPictures {
+class TargetPictures {
  public:
   /// Receives the instant and a picture (CV_8UC1).
   using Receiver = std::function<void(Timestamp t, const cv::Mat& picture)>;
 
-  EventPictures(int width, int height, Receiver receiver);
+  TargetPictures(int width, int height, Receiver receiver);
 
   /// In the order of time; an instant is to be added before events half a second later.
   void add_instant(Timestamp t) { instants_.push_back(t); }

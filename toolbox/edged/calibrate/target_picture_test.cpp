@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/calibrate/event_picture.hpp"
+#include "edged/calibrate/target_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,11 +34,11 @@ std::vector<Event> moving_bars(int width, int height, double length_s) {
   return out;
 }
 
-TEST(EventPictures, HaveTheirEdgesWhereTheyAreAtThatInstantWhicheverWayTheyMove) {
+TEST(TargetPictures, HaveTheirEdgesWhereTheyAreAtThatInstantWhicheverWayTheyMove) {
   constexpr int kWidth = 96, kHeight = 8;
   const std::vector<Event> events = moving_bars(kWidth, kHeight, 3.0);
   std::vector<double> offs;
-  EventPictures pictures(kWidth, kHeight, [&](Timestamp t, const cv::Mat& picture) {
+  TargetPictures pictures(kWidth, kHeight, [&](Timestamp t, const cv::Mat& picture) {
     // A bar rises from black to white at u = 0.
     const double place = 40.0 * std::sin(4.0 * to_seconds(t));
     for (int x = 20; x < kWidth - 20; ++x) {
@@ -61,9 +61,9 @@ TEST(EventPictures, HaveTheirEdgesWhereTheyAreAtThatInstantWhicheverWayTheyMove)
   EXPECT_LT(std::abs(0.5 * (low + high)), 1.0);
 }
 
-TEST(EventPictures, AreNotMadeWhileNothingMoves) {
+TEST(TargetPictures, AreNotMadeWhileNothingMoves) {
   std::size_t count = 0;
-  EventPictures pictures(32, 32, [&](Timestamp, const cv::Mat&) { ++count; });
+  TargetPictures pictures(32, 32, [&](Timestamp, const cv::Mat&) { ++count; });
   std::vector<Event> events;
   for (int i = 0; i < 20; ++i) events.push_back({timestamp_from_seconds(0.1 * i), 5, 5, true});
   pictures.add_instant(timestamp_from_seconds(1.0));

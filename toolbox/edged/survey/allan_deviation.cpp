@@ -13,9 +13,9 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kFewestPairs = 8;  // the variance is then known to about a third
-constexpr int kParts = 3;                // white noise, instability, walk
-using Parts = Eigen::Matrix<double, kParts, 1>;
+constexpr std::size_t kFewestClusterPairs = 8;  // the variance is then known to about a third
+constexpr int kNoiseParts = 3;                  // white noise, instability, walk
+using Parts = Eigen::Matrix<double, kNoiseParts, 1>;
 
 struct AllanFit {
   Parts parts = Parts::Zero(), sigmas = Parts::Zero();
@@ -24,22 +24,22 @@ struct AllanFit {
 
 /// Least squares with those parts whose bit is set, relative to the points; nothing where one is negative.
 std::optional<AllanFit> fit_with(unsigned chosen, std::span<const AllanDeviation::Point> points) {
-  Eigen::Matrix<double, kParts, kParts> H = Eigen::Matrix<double, kParts, kParts>::Zero();
+  Eigen::Matrix<double, kNoiseParts, kNoiseParts> H = Eigen::Matrix<double, kNoiseParts, kNoiseParts>::Zero();
   Parts b = Parts::Zero();
   double cost = 0.0;
   for (const AllanDeviation::Point& point : points) {
     const double weight = std::sqrt(static_cast<double>(point.pairs)) / (point.deviation * point.deviation);
     Parts row = weight * Parts(1.0 / point.tau_s, 1.0, point.tau_s);
-    for (int i = 0; i < kParts; ++i)
+    for (int i = 0; i < kNoiseParts; ++i)
       if ((chosen >> static_cast<unsigned>(i) & 1U) == 0) row[i] = 0.0;
     const double wanted = std::sqrt(static_cast<double>(point.pairs));
     H += row * row.transpose();
     b += row * wanted;
     cost += wanted * wanted;
   }
-  for (int i = 0; i < kParts; ++i)
+  for (int i = 0; i < kNoiseParts; ++i)
     if ((chosen >> static_cast<unsigned>(i) & 1U) == 0) H(i, i) = 1.0;
-  const Eigen::Matrix<double, kParts, kParts> P = H.inverse();
+  const Eigen::Matrix<double, kNoiseParts, kNoiseParts> P = H.inverse();
   AllanFit fit{P * b, P.diagonal().cwiseSqrt(), 0.0};
   fit.cost = cost - b.dot(fit.parts);
   return fit.parts.allFinite() && fit.parts.minCoeff() >= 0.0 ? std::optional(fit) : std::nullopt;
@@ -72,7 +72,7 @@ std::vector<AllanDeviation::Point> AllanDeviation::points() const {
   std::vector<Point> points;
   double tau_s = period_s_;
   for (const Level& level : levels_) {
-    if (level.pairs >= kFewestPairs && level.sum > 0.0)
+    if (level.pairs >= kFewestClusterPairs && level.sum > 0.0)
       points.push_back({tau_s, std::sqrt(level.sum / (2.0 * static_cast<double>(level.pairs))), level.pairs});
     tau_s *= 2.0;
   }
@@ -80,9 +80,9 @@ std::vector<AllanDeviation::Point> AllanDeviation::points() const {
 }
 
 SignalNoise fit_noise(std::span<const AllanDeviation::Point> points) {
-  EDGED_CHECK(points.size() >= kParts, "{} points", points.size());
+  EDGED_CHECK(points.size() >= kNoiseParts, "{} points", points.size());
   AllanFit best;
-  for (unsigned chosen = 1; chosen < 1U << kParts; ++chosen) {
+  for (unsigned chosen = 1; chosen < 1U << kNoiseParts; ++chosen) {
     const std::optional<AllanFit> fit = fit_with(chosen, points);
     if (fit && fit->cost < best.cost) best = *fit;
   }

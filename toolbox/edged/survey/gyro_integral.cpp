@@ -7,13 +7,13 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kMostSamples = 300'000;                     // of the gyro: five minutes of 1 kHz
+constexpr std::size_t kMostGyroSamples = 300'000;                 // of the gyro: five minutes of 1 kHz
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);  // between samples; a longer one is a gap
 
 }  // namespace
 
 void GyroIntegral::add(const ImuSample& sample) {
-  if (stamps_.size() >= kMostSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
+  if (stamps_.size() >= kMostGyroSamples || (!stamps_.empty() && sample.t <= stamps_.back())) return;
   if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
   if (stamps_.empty()) {
     sum_.push_back(Eigen::Vector3d::Zero());

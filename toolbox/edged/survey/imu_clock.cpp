@@ -11,7 +11,7 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kFewestClockTurns = 30, kMostTurns = 200;
+constexpr std::size_t kFewestClockTurns = 30, kMostClockTurns = 200;
 constexpr double kLeastCorrelation = 0.9;
 constexpr double kFarBetter = 0.4;   // ratio of the unexplained shares with the corrected and with the given clock
 constexpr double kLeastOff = 0.004;  // relative error of the rate; smaller ones are not observable from rotations
@@ -25,7 +25,7 @@ double correlation_at(std::span<const Turn> turns, const GyroIntegral& gyro, dou
     return gyro.first() + duration_from_seconds(rate * to_seconds(t + shift - gyro.first()));
   };
   double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-  const std::size_t every = std::max<std::size_t>(1, turns.size() / kMostTurns);
+  const std::size_t every = std::max<std::size_t>(1, turns.size() / kMostClockTurns);
   for (std::size_t i = 0; i < turns.size(); i += every) {
     const Timestamp begin = on_imu(turns[i].begin), end = on_imu(turns[i].end);
     const auto phi = gyro.between(begin, end);

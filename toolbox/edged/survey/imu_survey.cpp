@@ -10,8 +10,8 @@ namespace edged {
 namespace {
 
 constexpr Duration kPart = std::chrono::milliseconds(50);
-constexpr std::size_t kParts = 10;         // of a stretch
-constexpr std::size_t kFewestSamples = 2;  // of a part
+constexpr std::size_t kParts = 10;        // of a stretch
+constexpr std::size_t kFewestOfPart = 2;  // of a part
 // Limits of the deviations between parts at rest. The noisiest IMUs of phones reach 0.002 rad/s and 0.03 m/s^2. In a
 // hand at rest they are at least three times as large.
 constexpr double kRestGyro = 0.006, kRestAccel = 0.06;
@@ -59,7 +59,7 @@ void ImuSurveyor::add(const ImuSample& sample) {
 
 void ImuSurveyor::end_part() {
   const Sums part = std::exchange(part_, Sums());
-  if (part.count < kFewestSamples) {
+  if (part.count < kFewestOfPart) {
     current_.reset(), rest_.reset();
     return;
   }

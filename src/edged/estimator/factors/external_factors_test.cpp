@@ -14,14 +14,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr BlockKey kBias{BlockKind::HeightBias, 0}, kScaleError{BlockKind::VelocityScale, 0};
-constexpr double kEvery_s = 0.005;
+constexpr double kImuStep_s = 0.005;
 
 /// A body that turns and accelerates, from the truth of its IMU.
 class Motion {
  public:
   Motion() {
     for (int i = 0; i <= 100; ++i) {
-      const double t = kEvery_s * i;
+      const double t = kImuStep_s * i;
       samples_.push_back({timestamp_from_seconds(t), {0.8 + t, -0.5, 0.3 * t}, {0.4, 9.6 - t, 1.5 + 2 * t}});
     }
     OdomState start;
@@ -40,7 +40,7 @@ class Motion {
     const auto piece = slice_imu(samples_, timestamp_from_seconds(from_s), timestamp_from_seconds(to_s));
     return {piece, {0.01, -0.02, 0.03}, {0.1, 0.05, -0.1}, ImuNoise{}};
   }
-  const OdomState& at(double t) const { return states_[static_cast<std::size_t>(std::lround(t / kEvery_s))]; }
+  const OdomState& at(double t) const { return states_[static_cast<std::size_t>(std::lround(t / kImuStep_s))]; }
 
   Blocks blocks(double t) const {
     const OdomState& state = at(t);
@@ -59,7 +59,7 @@ class Motion {
   /// The measurement of a sensor at T_B_S.
   VelocitySample velocity(double t, const SE3& T_B_S, double sigma) const {
     const OdomState& state = at(t);
-    const Vector3d omega = samples_[static_cast<std::size_t>(std::lround(t / kEvery_s))].gyro_B - state.bias_gyro;
+    const Vector3d omega = samples_[static_cast<std::size_t>(std::lround(t / kImuStep_s))].gyro_B - state.bias_gyro;
     const Vector3d v_B = state.T_O_B.R().transpose() * state.v_O + omega.cross(T_B_S.translation());
     return {state.t, T_B_S.R().transpose() * v_B, Vector3d::Constant(sigma)};
   }

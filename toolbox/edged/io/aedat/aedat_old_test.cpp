@@ -15,14 +15,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kWidth = 240, kHeight = 180;
+constexpr int kDavisWidth = 240, kDavisHeight = 180;
 
 void put_big(std::string& out, std::uint32_t word) {
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(word >> static_cast<unsigned>(shift) & 0xFFU);
 }
 
 std::uint32_t address(int x, int y) {
-  return static_cast<std::uint32_t>(kHeight - 1 - y) << 22U | static_cast<std::uint32_t>(kWidth - 1 - x) << 12U;
+  return static_cast<std::uint32_t>(kDavisHeight - 1 - y) << 22U | static_cast<std::uint32_t>(kDavisWidth - 1 - x)
+                                                                       << 12U;
 }
 
 /// 100 events, 10 IMU samples and a frame in which pixel (x, y) has the grey level x.
@@ -42,8 +43,8 @@ std::string made_aedat2() {
         record(0x80000C00U | word << 28U | (word == 2 ? 4096U : word == 6 ? 131U : 0U) << 12U, t);
   }
   for (std::uint32_t signal = 0; signal < 2; ++signal)
-    for (int x = 0; x < kWidth; ++x)
-      for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kDavisWidth; ++x)
+      for (int y = 0; y < kDavisHeight; ++y)
         record(0x80000000U | address(x, y) | signal << 10U |
                    (signal == 0 ? 1000U : static_cast<std::uint32_t>(1000 - 4 * x)),
                16'000 + 4000 * signal);
@@ -74,9 +75,9 @@ std::string made_aedat3() {
     for (const float v : {0.F, 0.F, 1.F, 0.F, 0.F, 2.F, 20.F}) put(imu, v);
   }
   put(frame, 1U | 1U << 1U);
-  for (const std::int32_t v : {15'000, 21'000, 16'000, 20'000, kWidth, kHeight, 0, 0}) put(frame, v);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) put(frame, static_cast<std::uint16_t>(x << 8));
+  for (const std::int32_t v : {15'000, 21'000, 16'000, 20'000, kDavisWidth, kDavisHeight, 0, 0}) put(frame, v);
+  for (int y = 0; y < kDavisHeight; ++y)
+    for (int x = 0; x < kDavisWidth; ++x) put(frame, static_cast<std::uint16_t>(x << 8));
   return "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source 0: DAVIS240C\r\n#!END-HEADER\r\n" + aedat3_packet(1, 8, 101, events) +
          aedat3_packet(3, 36, 10, imu) + aedat3_packet(0, 8, 1, std::string(8, '\1')) +
          aedat3_packet(2, static_cast<std::int32_t>(frame.size()), 1, frame);
@@ -84,7 +85,7 @@ std::string made_aedat3() {
 
 void expect_made(const Recording& recording, std::int64_t begin_us) {
   const Contents c = read_all(*recording.dataset);
-  EXPECT_EQ(recording.dataset->info().event_sensor, cv::Size(kWidth, kHeight));
+  EXPECT_EQ(recording.dataset->info().event_sensor, cv::Size(kDavisWidth, kDavisHeight));
   ASSERT_EQ(c.events.size(), 100u);
   EXPECT_EQ(c.events[7].x, 7);
   EXPECT_EQ(c.events[7].y, 5);
@@ -120,7 +121,7 @@ TEST(OldAedat, CutsAndFlippedBitsAreRefusedOrCounted) {
         bad[random() % bad.size()] ^= static_cast<char>(1U << random() % 8);
       const auto file = folder.write("a.aedat", bad);
       const std::string refusal = input_error([&] {
-        const Recording recording = open_recording(file, nullptr, {.geometry = cv::Size(kWidth, kHeight)});
+        const Recording recording = open_recording(file, nullptr, {.geometry = cv::Size(kDavisWidth, kDavisHeight)});
         read_all(*recording.dataset);
       });
       EXPECT_EQ(refusal.find('\n'), std::string::npos);
