@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks licence lines, header guards, the sizes of files and functions, and our own format (.clang-format).
+"""Checks licence lines, header guards, the sizes of files and functions, names that sources share, and our own format
+(.clang-format).
 
 Usage: check_style.py [ROOT]; prints warnings and errors, exits 1 if there is an error. Sizes above the first number are a
 warning: a place to look. Above the second they are an error.
@@ -17,6 +18,11 @@ FUNCTION_LINES = (60, 100)
 SPDX = ("SPDX-FileCopyrightText: 2026 Edged USLAM developers", "SPDX-License-Identifier: Apache-2.0")
 CODE = {".cpp", ".hpp"}
 SCRIPTS = {".py", ".sh", ".cmake"}
+# Whose sources become one library, which may be compiled as one file.
+MODULES = ("src", "toolbox", "apps", "python", "ros")
+CONSTANTS = re.compile(r"^constexpr [^;]*;", re.MULTILINE)
+CONSTANT = re.compile(r"(?<!= )\b(k[A-Z]\w*)(?= = |\(|\{|\[)")
+CLASS = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?(?: : [^{;]*)? \{", re.MULTILINE)
 # What holds functions. A brace after '=' outside a function opens a list of values; every other one there a function.
 CONTAINER = re.compile(r"\s*(template\s*<.*>\s*)?(namespace|class|struct|union|enum|extern)\b", re.DOTALL)
 NOT_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|^\s*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\])*"|(?<![0-9A-Fa-f])'(?:\\.|[^'\\])'""",
@@ -69,6 +75,27 @@ def check(path, name, errors, warnings):
                 (errors if size > hard else warnings).append(f"{name}:{line}: {what} of {size} lines (aim: {soft})")
 
 
+def check_names(root, paths, errors):
+    """Constants of a module's sources, tests apart, and classes of all headers: each has a name of its own."""
+    first = {}
+    for path in paths:
+        name = path.relative_to(root)
+        if path.suffix == ".hpp":
+            text = path.read_text(errors="replace")
+            namespace = re.search(r"^namespace (\S+) \{", text, re.MULTILINE)
+            within, names = namespace and namespace[1], CLASS.findall(text) if namespace else []
+        elif path.suffix == ".cpp" and name.parts[0] in MODULES:
+            module = next(folder for folder in path.parents if (folder / "CMakeLists.txt").exists())
+            within = (module, path.stem.endswith("_test"))
+            names = [each for group in CONSTANTS.findall(path.read_text()) for each in CONSTANT.findall(group)]
+        else:
+            continue
+        for each in names:
+            other = first.setdefault((within, each), name)
+            if other != name:
+                errors.append(f"{name}: {each} is also in {other}: a file that has both does not compile")
+
+
 def check_format(root, paths, errors):
     """As clang-format of Debian 12 has it; another version sets some lines otherwise, and is not asked."""
     program = shutil.which("clang-format-14") or shutil.which("clang-format")
@@ -89,6 +116,7 @@ def main():
     for path in paths:
         if path.suffix in CODE | SCRIPTS or path.name == "CMakeLists.txt":
             check(path, path.relative_to(root), errors, warnings)
+    check_names(root, paths, errors)
     check_format(root, [path for path in paths if path.suffix in CODE], errors)
     for text in warnings:
         print(f"warning: {text}")
