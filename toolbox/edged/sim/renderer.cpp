@@ -117,19 +117,19 @@ void Renderer::make_blocks() {
   }
 }
 
-bool Renderer::may_see(const Block& block, const View& view) const {
+Renderer::Conditions Renderer::conditions_of(const View& view) {
+  const auto condition = [](const Eigen::Vector3f& form, float length) { return Condition{form, -1e-5F * length}; };
+  const Eigen::Vector3f &a = view.inverse_depth, edge_u = view.half_u * a, edge_v = view.half_v * a;
+  const float length_u = edge_u.norm() + view.u.norm(), length_v = edge_v.norm() + view.v.norm();
+  return {condition(a, a.norm()), condition(edge_u - view.u, length_u), condition(edge_u + view.u, length_u),
+          condition(edge_v - view.v, length_v), condition(edge_v + view.v, length_v)};
+}
+
+bool Renderer::may_see(const Block& block, const Conditions& conditions) {
   const Eigen::Array3f low = block.bearings.min(), high = block.bearings.max();
-  // Bearings are unit vectors, so that rounding errors of the forms are far below the margin.
-  const auto positive_somewhere = [&](const Eigen::Vector3f& form, float length) {
-    return (form.array() * low).max(form.array() * high).sum() > -1e-5F * length;
-  };
-  const auto between = [&](const Eigen::Vector3f& side, float half) {
-    const Eigen::Vector3f edge = half * view.inverse_depth;
-    const float length = edge.norm() + side.norm();
-    return positive_somewhere(edge - side, length) && positive_somewhere(edge + side, length);
-  };
-  return positive_somewhere(view.inverse_depth, view.inverse_depth.norm()) && between(view.u, view.half_u) &&
-         between(view.v, view.half_v);
+  return std::ranges::all_of(conditions, [&](const Condition& each) {
+    return (each.form.array() * low).max(each.form.array() * high).sum() > each.least;
+  });
 }
 
 Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
@@ -176,9 +176,13 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
                  static_cast<float>(face.half_u),
                  static_cast<float>(face.half_v),
                  static_cast<float>(distance)};
-    if (!wide_) cast(views_[i], box, static_cast<int>(i));
+    if (!wide_) {
+      cast(views_[i], box, static_cast<int>(i));
+      continue;
+    }
+    const Conditions conditions = conditions_of(views_[i]);
     for (const Block& block : blocks_)
-      if (may_see(block, views_[i])) cast(views_[i], block.pixels, static_cast<int>(i));
+      if (may_see(block, conditions)) cast(views_[i], block.pixels, static_cast<int>(i));
   }
   shade();
   if (flare_ > 0.0F) flare();

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "edged/rig.hpp"
@@ -62,8 +63,16 @@ class Renderer {
   };
 
   void make_blocks();
+  /// A pixel sees a face where five linear forms of its bearing are positive: inverse depth, and the distances from
+  /// the four sides. Bearings of a wide lens are unit vectors: the margin `least` is far beyond rounding errors.
+  struct Condition {
+    Eigen::Vector3f form;
+    float least;
+  };
+  using Conditions = std::array<Condition, 5>;
+  static Conditions conditions_of(const View& view);
   /// Whether any pixel of the block may see the face.
-  bool may_see(const Block& block, const View& view) const;
+  static bool may_see(const Block& block, const Conditions& conditions);
   PixelBox bounds(const Face& face, const SE3& T_C_W) const;
   void cast(const View& view, const PixelBox& box, int index);
   void shade();
