@@ -7,6 +7,6 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 merged=()
 if [ ! -e build/release/CMakeCache.txt ]; then
-  merged=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=24)
+  merged=(-DCMAKE_UNITY_BUILD=ON)
 fi
 cmake --preset release "${merged[@]}" >/dev/null

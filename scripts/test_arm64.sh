@@ -53,7 +53,7 @@ scripts/setup.sh mmdebstrap g++-aarch64-linux-gnu qemu-user
 cmake --preset release >/dev/null
 cmake --build --preset release --target edged
 cmake -S . -B "$build" -G Ninja --toolchain "$PWD/cmake/aarch64-linux-gnu.cmake" -DEDGED_SYSROOT="$sysroot" \
-  -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=24 \
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
   -DEDGED_TESTS=OFF -DEDGED_BENCH=OFF -DEDGED_PYTHON=OFF >/dev/null
 cmake --build "$build" --target edged
 tape=(-std=c++20 -O2 -Wall -shared -fPIC tests/arm64/flow_tape.cpp -o)

@@ -40,7 +40,7 @@ def _build(build_dir):
         return ROOT / build_dir
     build = ROOT / "build" / "wheel"
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-    merged = [] if (build / "CMakeCache.txt").exists() else ["-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24"]
+    merged = [] if (build / "CMakeCache.txt").exists() else ["-DCMAKE_UNITY_BUILD=ON"]
     _run("cmake", "-S", ROOT, "-B", build, *generator, *merged, "-DCMAKE_BUILD_TYPE=Release", "-DEDGED_TESTS=OFF", "-DEDGED_BENCH=OFF",
          f"-DPython3_EXECUTABLE={sys.executable}")
     _run("cmake", "--build", build, "--target", "edged_python", "edged_manual", "edged_changelog", "--parallel", os.cpu_count() or 1)
