@@ -182,7 +182,7 @@ class PeerOnFastDds(unittest.TestCase):
         # A grid of the first keyframe alone, kept for those who come later.
         nodes = [Node(self), Node(self, "--set", "occupancy.voxel_m=0.1", "--set", "occupancy.period_s=3600", name="second")]
         other_domain = Node(self, domain=self.domain % 100 + 101, name="other")
-        # At half its speed: what comes late on a loaded machine still finds most of it.
+        # At half its speed: what comes late on a loaded machine still finds half of it.
         first = self.start_peer(self.recording, "peer", nodes=2, rate=0.5)
         time.sleep(SECONDS)
         late = self.start_peer("none", "late", listen=3, node="second")

@@ -151,7 +151,7 @@ bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
     if (agreed && loops_.needless(here, map_, t)) {
       loops_.forget();
     } else if (close_loop(t, images)) {
-      const SE3& closed = odom_to_map_.T_M_O();
+      const SE3 closed = odom_to_map_.T_M_O();
       update(filter_, closed, search_map(map_, filter_, config_, closed, images, old_enough), t, images);
     }
     return false;
