@@ -6,10 +6,6 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-# With CMAKE_UNITY_BUILD: sources in one file. With CMake's own 8 headers are read three times as often.
-if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 24)
-endif()
 include(GNUInstallDirs)
 # A program in bin/ finds rigs and networks as it does once installed.
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share)
