@@ -19,37 +19,8 @@ constexpr int kMaxIterations = 20;
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// A view made ready: world to camera, and the ray of its point.
-struct Ray {
-  Matrix3d R_C_W;
-  Vector3d centre_W;
-  Vector2d point;
-  Vector3d direction_W;  // unit length
-};
-
-std::vector<Ray> make_rays(std::span<const View> views) {
-  std::vector<Ray> rays;
-  rays.reserve(views.size());
-  for (const View& view : views) {
-    const Matrix3d R_W_C = view.T_W_C.R();
-    rays.push_back(
-        {R_W_C.transpose(), view.T_W_C.translation(), view.point, (R_W_C * view.point.homogeneous()).normalized()});
-  }
-  return rays;
-}
-
-double largest_angle(const std::vector<Ray>& rays) {
-  double chord2 = 0.0;  // between unit vectors: grows with the angle and keeps its digits where it is small
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    for (std::size_t j = i + 1; j < rays.size(); ++j) {
-      chord2 = std::max(chord2, (rays[i].direction_W - rays[j].direction_W).squaredNorm());
-    }
-  }
-  return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(chord2)));
-}
-
 /// The point nearest to all rays (C6).
-std::optional<Vector3d> nearest_point(const std::vector<Ray>& rays) {
+std::optional<Vector3d> nearest_point(std::span<const Ray> rays) {
   Matrix3d H = Matrix3d::Zero();
   Vector3d b = Vector3d::Zero();
   for (const Ray& ray : rays) {
@@ -71,7 +42,7 @@ struct Linearised {
 };
 
 /// Nothing when the point is not in front of every view.
-std::optional<Linearised> linearise(const std::vector<Ray>& rays, const Vector3d& p_W) {
+std::optional<Linearised> linearise(std::span<const Ray> rays, const Vector3d& p_W) {
   Linearised sum;
   for (const Ray& ray : rays) {
     const Vector3d p_C = ray.R_C_W * (p_W - ray.centre_W);
@@ -89,11 +60,31 @@ std::optional<Linearised> linearise(const std::vector<Ray>& rays, const Vector3d
 
 }  // namespace
 
+Ray ray_of(const View& view) {
+  const Matrix3d R_W_C = view.T_W_C.R();
+  return {R_W_C.transpose(), view.T_W_C.translation(), view.point, (R_W_C * view.point.homogeneous()).normalized()};
+}
+
+double largest_angle(std::span<const Ray> rays) {
+  double chord2 = 0.0;  // between unit vectors: grows with the angle and keeps its digits where it is small
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t j = i + 1; j < rays.size(); ++j) {
+      chord2 = std::max(chord2, (rays[i].direction_W - rays[j].direction_W).squaredNorm());
+    }
+  }
+  return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(chord2)));
+}
+
 std::optional<TriangulatedPoint> triangulate(std::span<const View> views, double min_parallax) {
   if (views.size() < 2) return std::nullopt;
-  const std::vector<Ray> rays = make_rays(views);
+  std::vector<Ray> rays;
+  rays.reserve(views.size());
+  for (const View& view : views) rays.push_back(ray_of(view));
   const double parallax = largest_angle(rays);
-  if (!(parallax >= min_parallax)) return std::nullopt;
+  return parallax >= min_parallax ? triangulate(rays, parallax) : std::nullopt;
+}
+
+std::optional<TriangulatedPoint> triangulate(std::span<const Ray> rays, double parallax) {
   std::optional<Vector3d> start = nearest_point(rays);
   if (!start) return std::nullopt;
 
@@ -118,7 +109,7 @@ std::optional<TriangulatedPoint> triangulate(std::span<const View> views, double
     damping *= 0.1;
     if (converged) break;
   }
-  const double rms = std::sqrt(at->squared_sum / (2.0 * static_cast<double>(views.size())));
+  const double rms = std::sqrt(at->squared_sum / (2.0 * static_cast<double>(rays.size())));
   return TriangulatedPoint{p_W, parallax, rms};
 }
 

@@ -53,11 +53,11 @@ class Judge {
 
   Hypothesis judged(const StartSolver& solver, const Start& x) const {
     Hypothesis hypothesis{x, {}, 0.0};
+    const std::vector<double> misfits = solver.misfits(x);
     for (std::size_t k = 0; k < votes_.size(); ++k) {
-      const double misfit = solver.misfit(k, x);
-      if (misfit > kFits) continue;
+      if (misfits[k] > kFits) continue;
       hypothesis.fit.push_back(k);
-      hypothesis.support += votes_[k] * (1.0 - std::pow(misfit / kFits, 2));
+      hypothesis.support += votes_[k] * (1.0 - std::pow(misfits[k] / kFits, 2));
     }
     return hypothesis;
   }

@@ -165,6 +165,13 @@ StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, c
       biases_(priors.biases),
       motion_(relative_motion(frames, gyro_bias, biases_.accel, noise)),
       tracks_(gather_tracks(frames, rig)) {
+  const std::vector<SE3> cameras = camera_poses(Start::Zero());
+  for (const StartTrack& track : tracks_) {
+    std::vector<Ray>& rays = rays_.emplace_back();
+    for (const StartObservation& seen : track.observations)
+      rays.push_back(ray_of({cameras[pose_index(seen)], seen.point}));
+    parallaxes_.push_back(largest_angle(rays));
+  }
   if (priors.velocity != nullptr) {
     velocities_ = velocity_equations(frames, motion_, gyro_bias, biases_.accel, noise, *priors.velocity);
   }
@@ -188,29 +195,38 @@ void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equatio
   equations.add(N, c);
 }
 
-/// A track's cameras in the frame of the first body.
-std::vector<View> StartSolver::views(const StartTrack& track, const Start& x) const {
-  std::vector<View> views;
-  for (const StartObservation& observation : track.observations) {
-    const RelativeMotion& m = motion_[observation.frame];
-    views.push_back({SE3(m.R, m.position(x)) * rig_->cameras[observation.camera].T_B_C, observation.point});
+/// T_0_C of all frames and cameras, in the frame of the first body.
+std::vector<SE3> StartSolver::camera_poses(const Start& x) const {
+  std::vector<SE3> poses;
+  for (const RelativeMotion& m : motion_) {
+    const SE3 T_0_B(m.R, m.position(x));
+    for (const RigCamera& camera : rig_->cameras) poses.push_back(T_0_B * camera.T_B_C);
   }
-  return views;
+  return poses;
+}
+
+std::vector<Ray> StartSolver::rays_from(std::size_t track, const std::vector<SE3>& cameras) const {
+  std::vector<Ray> rays = rays_[track];
+  for (std::size_t k = 0; k < rays.size(); ++k)
+    rays[k].centre_W = cameras[pose_index(tracks_[track].observations[k])].translation();
+  return rays;
 }
 
 /// One Gauss-Newton term around x, with the point of the track optimized and eliminated.
-void StartSolver::add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const {
-  const std::vector<View> seen_from = views(track, x);
-  const auto point = triangulate(seen_from, kRayNoise);
+void StartSolver::add_reprojection(std::size_t track, const std::vector<SE3>& cameras,
+                                   StartEquations& equations) const {
+  if (parallaxes_[track] < kRayNoise) return;
+  const auto point = triangulate(rays_from(track, cameras), parallaxes_[track]);
   if (!point) return;
   PointAndStartMatrix N = PointAndStartMatrix::Zero();
   PointAndStart c = PointAndStart::Zero();
-  for (std::size_t k = 0; k < seen_from.size(); ++k) {
-    const Vector3d p_C = seen_from[k].T_W_C.inverse() * point->p_W;
-    const Eigen::Vector2d r = (p_C.hnormalized() - seen_from[k].point) / kRayNoise;
-    const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(seen_from[k].T_W_C.R(), p_C) / kRayNoise;
+  for (const StartObservation& seen : tracks_[track].observations) {
+    const SE3& T_0_C = cameras[pose_index(seen)];
+    const Vector3d p_C = T_0_C.inverse() * point->p_W;
+    const Eigen::Vector2d r = (p_C.hnormalized() - seen.point) / kRayNoise;
+    const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(T_0_C.R(), p_C) / kRayNoise;
     Eigen::Matrix<double, 2, 12> J;
-    J << d_r_d_P, -d_r_d_P * motion_[track.observations[k].frame].d_position();
+    J << d_r_d_P, -d_r_d_P * motion_[seen.frame].d_position();
     const double weight = r.norm() < kHuber ? 1.0 : kHuber / r.norm();
     N += weight * J.transpose().lazyProduct(J);
     c -= weight * J.transpose() * r;
@@ -246,7 +262,8 @@ std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, i
   Eigen::Matrix<double, 9, 8> free;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     StartEquations equations;
-    for (const std::size_t track : chosen) add_reprojection(tracks_[track], x, equations);
+    const std::vector<SE3> cameras = camera_poses(x);
+    for (const std::size_t track : chosen) add_reprojection(track, cameras, equations);
     add_velocities(x, equations);
     equations.H.bottomRightCorner<3, 3>() += bias_information * Matrix3d::Identity();
     equations.b.tail<3>() -= bias_information * x.tail<3>();
@@ -270,10 +287,15 @@ Start StartSolver::start_of(const OdomState& last) const {
   return x;
 }
 
-double StartSolver::misfit(std::size_t track, const Start& x) const {
-  const auto point = triangulate(views(tracks_[track], x), 0.0);
-  if (!point) return std::numeric_limits<double>::infinity();
-  return point->rms_residual / tracks_[track].observations.front().sigma;
+std::vector<double> StartSolver::misfits(const Start& x) const {
+  const std::vector<SE3> cameras = camera_poses(x);
+  std::vector<double> misfits;
+  for (std::size_t track = 0; track < tracks_.size(); ++track) {
+    const auto point = triangulate(rays_from(track, cameras), parallaxes_[track]);
+    misfits.push_back(point ? point->rms_residual / tracks_[track].observations.front().sigma
+                            : std::numeric_limits<double>::infinity());
+  }
+  return misfits;
 }
 
 double StartSolver::relative_sigma(const RefinedStart& start) const {

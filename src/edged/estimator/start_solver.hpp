@@ -105,9 +105,9 @@ class StartSolver {
   /// The initialization from which the IMU propagates to a given state at the time of the last view.
   Start start_of(const OdomState& last) const;
 
-  /// Root mean square of a track's reprojection errors under an initialization, with its point optimized [sigma];
-  /// infinite if that fails.
-  double misfit(std::size_t track, const Start& x) const;
+  /// Of each track the root mean square of its reprojection errors under an initialization, with its point optimized
+  /// [sigma]; infinite if that fails.
+  std::vector<double> misfits(const Start& x) const;
 
   /// Standard deviation of the longest baseline over its length.
   double relative_sigma(const RefinedStart& start) const;
@@ -119,15 +119,19 @@ class StartSolver {
   Eigen::Vector3d direction(std::size_t track) const;
 
  private:
-  std::vector<View> views(const StartTrack& track, const Start& x) const;
+  std::vector<SE3> camera_poses(const Start& x) const;
+  std::size_t pose_index(const StartObservation& seen) const { return seen.frame * rig_->cameras.size() + seen.camera; }
+  std::vector<Ray> rays_from(std::size_t track, const std::vector<SE3>& cameras) const;
   void add_algebraic(const StartTrack& track, StartEquations& equations) const;
-  void add_reprojection(const StartTrack& track, const Start& x, StartEquations& equations) const;
+  void add_reprojection(std::size_t track, const std::vector<SE3>& cameras, StartEquations& equations) const;
   void add_velocities(const Start& x, StartEquations& equations) const;
 
   const Rig* rig_;
   BiasPrior biases_;
   std::vector<RelativeMotion> motion_;
   std::vector<StartTrack> tracks_;
+  std::vector<std::vector<Ray>> rays_;  ///< of the tracks; their centres depend on the start
+  std::vector<double> parallaxes_;      ///< of the tracks
   std::vector<StartVelocity> velocities_;
 };
 
