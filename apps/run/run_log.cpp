@@ -7,6 +7,7 @@
 #include "common/counted.hpp"
 #include "common/status_line.hpp"
 #include "common/step_facts.hpp"
+#include "edged/core/angles.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {
@@ -48,6 +49,11 @@ class RunLog : public RunObserver {
     const double t_s = to_seconds(step.t);
     if (!step.started.empty()) spdlog::info(fmt::format("{:.3f} s: started {}", t_s, step.started));
     if (step.relocalized) spdlog::info(fmt::format("{:.3f} s: relocalized in the map", t_s));
+    if (step.loop_closure)
+      spdlog::info(
+          fmt::format("{:.3f} s: loop closed, at the place of {:.3f} s; the pose was {:.3f} m and {:.2f} deg off", t_s,
+                      to_seconds(step.loop_closure->keyframe), step.loop_closure->position_m,
+                      step.loop_closure->rotation_rad / kDegree));
     if (std::exchange(status_, step.status) == step.status) return;
     if (step.status == TrackingStatus::Lost)
       spdlog::warn(fmt::format("lost at {:.3f} s: {}; starting again", t_s, step.lost_because));

@@ -57,6 +57,7 @@ void RunStatistics::add(const Step& step) {
   ++packets_;
   if (is_tracking(step.status)) ++poses_;
   if (step.keyframe) ++keyframes_;
+  if (step.loop_closure) ++loops_closed_;
   if (step.status == TrackingStatus::Lost && last_status_ != TrackingStatus::Lost) ++times_lost_;
   if (step.contradicted && last_status_ != TrackingStatus::Lost) ++times_contradicted_;
   last_status_ = step.status;

@@ -33,6 +33,7 @@ class RunStatistics {
   std::size_t events() const { return events_; }  ///< that reached the odometry
   std::size_t poses() const { return poses_; }    ///< Good and Degraded packets
   std::size_t keyframes() const { return keyframes_; }
+  std::size_t loops_closed() const { return loops_closed_; }
   std::size_t times_lost() const { return times_lost_; }
   /// Of them, those at which the cameras contradicted the IMU.
   std::size_t times_contradicted() const { return times_contradicted_; }
@@ -62,6 +63,7 @@ class RunStatistics {
   Timestamp last_visual_;
   std::optional<Timestamp> last_packet_;
   std::size_t events_ = 0, packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0, times_contradicted_ = 0;
+  std::size_t loops_closed_ = 0;
   std::array<double, 4> seconds_{};
   std::optional<double> first_good_s_;
   TrackingStatus last_status_ = TrackingStatus::Initializing;

@@ -213,6 +213,7 @@ nlohmann::ordered_json to_json(const RunSummary& s) {
                {"first_good_s", number_or_null(s.statistics.first_good_s())},
                {"scale_error_at_first_good", scale_error(s.evaluation, &Evaluation::first_scale)},
                {"scale_error_10s_later", scale_error(s.evaluation, &Evaluation::later_scale)},
+               {"loops_closed", s.statistics.loops_closed()},
                {"times_lost", s.statistics.times_lost()},
                {"duration_s", span},
                {"wall_s", s.wall_s},
@@ -299,7 +300,9 @@ std::string to_table(const RunSummary& s) {
   for (const auto& [sensor, e] : s.external)
     table += line(sensor.c_str(), fmt::format("{} used", e.used),
                   fmt::format("of {}; {} rejected, {} late", counted(e.samples, "sample"), e.rejected, e.late));
-  table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()));
+  const std::size_t loops = s.statistics.loops_closed();
+  table += line("poses / keyframes", fmt::format("{} / {}", s.poses, s.statistics.keyframes()),
+                loops > 0 ? counted(loops, "loop") + " closed" : "");
   table += line(
       "coverage", fmt::format("{:.1f} %", 100.0 * s.statistics.coverage()),
       s.statistics.first_good_s() ? fmt::format("first good pose after {:.2f} s", *s.statistics.first_good_s()) : "");

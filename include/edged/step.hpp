@@ -47,6 +47,13 @@ struct CameraStep {
   std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
 };
 
+/// The body is at a place of long ago: the drift since then is corrected, and the pose jumps.
+struct LoopClosure {
+  Timestamp keyframe;       ///< it shows the place, IMU clock
+  double position_m = 0.0;  ///< the pose was off by that
+  double rotation_rad = 0.0;
+};
+
 /// Images share their pixels with those of the odometry: read them, do not write into them.
 struct Step {
   Timestamp t;  ///< the packet's instant, IMU clock
@@ -58,6 +65,7 @@ struct Step {
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
   /// reference of the covariance with it.
   bool relocalized = false;
+  std::optional<LoopClosure> loop_closure = {};  ///< by this packet
   /// While Lost: the last estimate ended as the cameras contradicted the IMU, so its last poses are wrong.
   bool contradicted = false;
 

@@ -31,8 +31,8 @@ def _how_to_build():
 
 
 try:
-    from ._edged import (EVENT, IMU, POSE, Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, Recording,
-                         RecordedCamera, RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
+    from ._edged import (EVENT, IMU, POSE, Calibration, Camera, CameraStep, FinalTrajectory, InputError, LoopClosure, Measurement, Odometry,
+                         RecordedCamera, Recording, RecordingInfo, State, Status, Step, __version__, known_rigs, load_calibration, load_rig, open_recording, read_trajectory, simulate,
                          simulator_presets)
 except ModuleNotFoundError as _error:
     if _error.name != "edged._edged":
@@ -42,12 +42,12 @@ from ._edged import RunCheck as _RunCheck, append_doc as _append_doc, evaluate_t
 from ._program import write_run
 
 __all__ = [
-    "EVENT", "IMU", "POSE", "Calibration", "Camera", "CameraStep", "FinalTrajectory", "InputError", "Measurement", "Odometry", "Recording",
-    "RecordedCamera", "RecordingInfo", "State", "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
+    "EVENT", "IMU", "POSE", "Calibration", "Camera", "CameraStep", "FinalTrajectory", "InputError", "LoopClosure", "Measurement", "Odometry",
+    "RecordedCamera", "Recording", "RecordingInfo", "State", "Status", "Step", "__version__", "evaluate", "known_rigs", "load_calibration", "load_rig", "make_events", "make_imu", "make_poses",
     "open_recording", "read_trajectory", "run", "simulate", "simulator_presets", "trajectory", "write_run"
 ]
 
-for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Measurement, Odometry, RecordedCamera, Recording, RecordingInfo, State, Status, Step):
+for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, LoopClosure, Measurement, Odometry, RecordedCamera, Recording, RecordingInfo, State, Status, Step):
     _class.__module__ = __name__
 
 

@@ -113,6 +113,18 @@ class CameraStep:
     def event_rate_hz(self) -> float: ...
 
 
+class LoopClosure:
+    """The body is at a place of long ago: the drift since then is corrected, and the pose jumps."""
+    @property
+    def keyframe(self) -> int:
+        """Stamp of the keyframe that shows the place [ns], IMU clock."""
+    @property
+    def position_m(self) -> float:
+        """The pose was off by that."""
+    @property
+    def rotation_rad(self) -> float: ...
+
+
 class Step(_BodyState):
     """What one packet of measurements brought. The state means nothing while status is INITIALIZING. Arrays are the step's own
     memory, read-only, and keep it alive."""
@@ -138,6 +150,9 @@ class Step(_BodyState):
     @property
     def relocalized(self) -> bool:
         """After a loss, or in a loaded map: the pose has jumped to its place in the map."""
+    @property
+    def loop_closure(self) -> LoopClosure | None:
+        """By this packet."""
     @property
     def waiting_for(self) -> str: ...
     @property

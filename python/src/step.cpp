@@ -117,6 +117,10 @@ void bind_step(py::module_& module) {
   });
 
   bind_camera(module);
+  py::class_<LoopClosure>(module, "LoopClosure")
+      .def_readonly("keyframe", &LoopClosure::keyframe)
+      .def_readonly("position_m", &LoopClosure::position_m)
+      .def_readonly("rotation_rad", &LoopClosure::rotation_rad);
   py::class_<Step> step(module, "Step");
   bind_state(step, [](const Step& s) -> const NavState& { return s.state; });
   bind_first_cameras(step);
@@ -136,6 +140,7 @@ void bind_step(py::module_& module) {
                              })
       .def_readonly("keyframe", &Step::keyframe)
       .def_readonly("relocalized", &Step::relocalized)
+      .def_readonly("loop_closure", &Step::loop_closure)
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)

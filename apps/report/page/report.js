@@ -75,6 +75,7 @@ function facts(run) {
   if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
   list.push(['coverage', number(100 * m.coverage, '% of the time Good', 1)]);
   list.push(['first good pose', m.first_good_s === null ? 'never' : 'after ' + number(m.first_good_s, 's', 2)]);
+  if (m.loops_closed > 0) list.push(['loops closed', m.loops_closed]);
   list.push(['poses, keyframes', m.poses + ', ' + m.keyframes]);
   for (const [sensor, n] of Object.entries(m.external || {}))
     list.push([sensor + ' samples', n.used + ' of ' + n.samples + ' used, ' + n.rejected + ' rejected, ' + n.late + ' late']);

@@ -117,6 +117,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.step.keyframe = seen.keyframe;
   output.step.scene_depth = seen.scene_depth;
   output.step.relocalized = relocalized;
+  output.step.loop_closure = mapper_.loop_closure(t);
   output.correction.ended = of_odometry == TrackingStatus::Lost && estimator_.initialized();
   if (output.correction.ended) {
     learn_biases();

@@ -218,17 +218,20 @@ bool Mapper::close_loop(Timestamp t, std::span<const PosedImage> images) {
   const std::optional<Loop> loop =
       loops_.find({t, map_, filter_, odom_to_map_.T_M_O(), path_m_, known().since}, images);
   if (!loop) return false;
+  const SE3 before = filter_.T_M_B();
   const std::optional<SE3> T_M_O = LoopCloser::close(filter_, *loop);
   if (!T_M_O) return false;
+  const SE3 off = before.inverse() * filter_.T_M_B();
+  loop_closure_ = {map_.keyframes()[loop->keyframe].t, off.translation().norm(), so3::log(off.rotation()).norm()};
   odom_to_map_.correct(t, *T_M_O);
-  loop_closed_ = t;
+  closed_at_ = t;
   return true;
 }
 
 /// Initial values of the final trajectory.
 std::optional<TrajectorySmoother::Closed> Mapper::closed() const {
-  if (!loop_closed_) return std::nullopt;
-  TrajectorySmoother::Closed closed{*loop_closed_, {}};
+  if (!closed_at_) return std::nullopt;
+  TrajectorySmoother::Closed closed{*closed_at_, {}};
   for (std::size_t k = 0; k < map_.keyframes().size(); ++k)
     closed.keyframes.emplace(map_.keyframes()[k].number, filter_.keyframes()[k]);
   return closed;

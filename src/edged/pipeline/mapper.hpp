@@ -21,6 +21,7 @@
 #include "edged/pipeline/loop_closer.hpp"
 #include "edged/pipeline/map_search.hpp"
 #include "edged/pipeline/tracked_image.hpp"
+#include "edged/step.hpp"
 
 namespace edged {
 
@@ -54,6 +55,10 @@ class Mapper {
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
   /// The map matches in the images of that instant.
   std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
+  /// By the images of that instant.
+  std::optional<LoopClosure> loop_closure(Timestamp t) const {
+    return closed_at_ == t ? std::optional(loop_closure_) : std::nullopt;
+  }
   /// In M.
   FinalTrajectory final_trajectory() const;
 
@@ -106,7 +111,8 @@ class Mapper {
   double path_m_ = 0.0;  ///< length of the odometry's path in motion
   Eigen::Vector3d p_O_B_ = Eigen::Vector3d::Zero();
   LoopCloser loops_;
-  std::optional<Timestamp> loop_closed_;  ///< the last one
+  std::optional<Timestamp> closed_at_;  ///< of the last loop
+  LoopClosure loop_closure_;            ///< then
   std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
 };
 
