@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "edged/io/ros/wire_writer.hpp"
 
@@ -155,6 +156,18 @@ std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slic
   out.number(static_cast<std::uint32_t>(slice.cells.rows));
   write_pose(out, {Eigen::Quaterniond::Identity(), {slice.corner_W.x(), slice.corner_W.y(), 0.0}});
   out.bytes({slice.cells.data, slice.cells.total()});
+  return out.message();
+}
+
+std::string octomap_message(Wire wire, Timestamp t, const octomap::OcTree& tree, const FrameNames& frames) {
+  std::ostringstream voxels;
+  tree.writeBinaryData(voxels);
+  WireWriter out(wire);
+  write_header(out, wire, t, frames.world);
+  out.number(std::uint8_t{1});  // binary
+  out.text(tree.getTreeType());
+  out.number(tree.getResolution());
+  out.bytes(as_bytes(voxels.str()));
   return out.message();
 }
 

@@ -3,6 +3,8 @@
 // The results of the odometry as serialised messages of ROS 1 or ROS 2.
 #pragma once
 
+#include <octomap/OcTree.h>
+
 #include <deque>
 #include <optional>
 #include <span>
@@ -47,6 +49,10 @@ std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> 
 /// nav_msgs/OccupancyGrid: a slice whose cells have edges of voxel_m, at height 0.
 std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slice, double voxel_m,
                               const FrameNames& frames);
+
+/// octomap_msgs/Octomap: each voxel occupied or free, by what is more likely, in the binary form of OctoMap. Inner
+/// nodes of the tree must be updated.
+std::string octomap_message(Wire wire, Timestamp t, const octomap::OcTree& tree, const FrameNames& frames);
 
 /// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);

@@ -8,8 +8,8 @@
 namespace edged::node {
 
 void OccupancyGridConfig::visit(ConfigFields& fields) {
-  fields.add("voxel_m", voxel_m, {"m", 0, 10, "edge of the voxels of the occupancy grid that is published; 0: none"});
-  fields.add("period_s", period_s, {"s", 0.1, 3600, "between occupancy grids"});
+  fields.add("voxel_m", voxel_m, {"m", 0, 10, "edge of the voxels of the occupancy map that is published; 0: none"});
+  fields.add("period_s", period_s, {"s", 0.1, 3600, "between occupancy maps"});
   fields.add("low_m", low_m,
              {"m", -1e4, 1e4, "heights that the grid shows, from this one on; both 0: those of the path, and a voxel"});
   fields.add("high_m", high_m, {"m", -1e4, 1e4, "up to this one"});

@@ -44,15 +44,21 @@ Outputs::Outputs(Transport& transport, const NodeConfig& config)
       map_(transport.advertise({"~/map", "sensor_msgs/PointCloud2", 1})),
       diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kQueue})),
       map_points_(kMostMapPoints) {
-  if (config.occupancy.voxel_m > 0.0) make_grid(config.occupancy);
+  if (config.occupancy.voxel_m > 0.0) make_occupancy(config.occupancy);
 }
 
-void Outputs::make_grid(const OccupancyGridConfig& config) {
+void Outputs::make_occupancy(const OccupancyGridConfig& config) {
   const bool of_path = config.low_m == 0.0 && config.high_m == 0.0;
   if (!of_path && config.low_m >= config.high_m)
     throw InputError::format("occupancy.low_m {:g}: must be below occupancy.high_m {:g}", config.low_m, config.high_m);
   grid_ = transport_.advertise({"~/occupancy", "nav_msgs/OccupancyGrid", 1, true});
+  octomap_ = transport_.advertise({"~/octomap", "octomap_msgs/Octomap", 1, true});
   const auto show = [this, config, of_path](const OccupancyMap& map) {
+    if (map.left_out > 0 && !std::exchange(told_left_out_, true))
+      spdlog::warn(
+          "occupancy map: keyframes are left out, as it is too large or made too slowly; choose a larger "
+          "occupancy.voxel_m");
+    octomap_->publish(octomap_message(wire_, map.t, map.tree, frames_));
     const HeightRange heights = of_path ? HeightRange{map.path.low_m - config.voxel_m, map.path.high_m + config.voxel_m}
                                         : HeightRange{config.low_m, config.high_m};
     try {

@@ -15,8 +15,8 @@
 
 namespace edged::node {
 
-/// Images, landmarks and the path are made only for subscribers. The occupancy grid is made in a thread of its own, and
-/// kept for those who subscribe later.
+/// Images, landmarks and the path are made only for subscribers. The occupancy map, as a grid and as voxels, is made in
+/// a thread of its own, and kept for those who subscribe later.
 class Outputs {
  public:
   /// Throws InputError for heights of the grid in the wrong order.
@@ -38,7 +38,7 @@ class Outputs {
   void publish_images(const Step& step) const;
   void extend_path(const NavState& state);
   void publish_map(Timestamp t);
-  void make_grid(const OccupancyGridConfig& config);
+  void make_occupancy(const OccupancyGridConfig& config);
 
   Transport& transport_;
   const Wire wire_;
@@ -54,9 +54,9 @@ class Outputs {
   std::optional<Timestamp> path_sent_;
   std::map<std::string, SE3> sent_cameras_;  ///< T_B_C
   std::optional<Timestamp> cameras_sent_;    ///< stamp
-  std::unique_ptr<Publisher> grid_;
-  bool grid_too_large_ = false;                 ///< that has been reported
-  std::unique_ptr<OccupancyWorker> occupancy_;  ///< none without a grid; its thread alone publishes that. Last member
+  std::unique_ptr<Publisher> grid_, octomap_;
+  bool grid_too_large_ = false, told_left_out_ = false;  ///< that has been reported
+  std::unique_ptr<OccupancyWorker> occupancy_;  ///< may be none; its thread alone publishes the two. Last member
 };
 
 }  // namespace edged::node

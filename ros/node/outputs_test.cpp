@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The occupancy grid that the node publishes; the other topics are tested with their messages.
+// The occupancy map that the node publishes, as a grid and as voxels; the other topics are tested with their messages.
 #include "node/outputs.hpp"
 
 #include <gmock/gmock.h>
+#include <octomap/OcTree.h>
+
+#include <sstream>
 
 #include "edged/core/check.hpp"
 #include "edged/io/ros/messages.hpp"
@@ -35,19 +38,43 @@ Step step_with_keyframe(double z) {
   return step;
 }
 
-/// The last grid, once the thread that makes it has ended.
-std::string grid_of(const NodeConfig& config, Wire wire) {
+/// The last message of a latched topic, once the thread that makes it has ended.
+std::string last_of(const std::string& topic, const std::string& type, const NodeConfig& config, Wire wire) {
   KeptTransport transport(wire);
   Outputs(transport, config).publish(step_with_keyframe(1.05), Eigen::Vector3d::Zero());
-  EXPECT_THAT(transport.topics, Contains("~/occupancy nav_msgs/OccupancyGrid"));
-  EXPECT_THAT(transport.latched, Contains("~/occupancy"));
-  return transport.last["~/occupancy"];
+  EXPECT_THAT(transport.topics, Contains(topic + " " + type));
+  EXPECT_THAT(transport.latched, Contains(topic));
+  return transport.last[topic];
 }
 
-class OccupancyGridTopic : public ::testing::TestWithParam<Wire> {};
-INSTANTIATE_TEST_SUITE_P(Wires, OccupancyGridTopic, ::testing::Values(Wire::Ros1, Wire::Cdr));
+std::string grid_of(const NodeConfig& config, Wire wire) {
+  return last_of("~/occupancy", "nav_msgs/OccupancyGrid", config, wire);
+}
 
-TEST_P(OccupancyGridTopic, HasFreeCellsUpToTheOccupiedOneAtTheHeightOfThePath) {
+class OccupancyTopics : public ::testing::TestWithParam<Wire> {};
+INSTANTIATE_TEST_SUITE_P(Wires, OccupancyTopics, ::testing::Values(Wire::Ros1, Wire::Cdr));
+
+TEST_P(OccupancyTopics, TheVoxelsAreReadByOctoMap) {
+  const std::string message = last_of("~/octomap", "octomap_msgs/Octomap", with_grid(), GetParam());
+  WireReader map(GetParam(), as_bytes(message));
+  EXPECT_EQ(map.header(), timestamp_from_seconds(6));
+  EXPECT_EQ(map.number<std::uint8_t>(), 1) << "binary";
+  EXPECT_EQ(map.text(), "OcTree");
+  octomap::OcTree tree(map.number<double>());
+  EXPECT_EQ(tree.getResolution(), 0.1);
+  const ByteSpan data = map.bytes();
+  std::istringstream voxels(std::string(reinterpret_cast<const char*>(data.data()), data.size()));
+  tree.readBinaryData(voxels);
+  const octomap::OcTreeNode* landmark = tree.search(2.05, 0.05, 1.05);
+  const octomap::OcTreeNode* before = tree.search(1.05, 0.05, 1.05);
+  ASSERT_NE(landmark, nullptr);
+  ASSERT_NE(before, nullptr);
+  EXPECT_TRUE(tree.isNodeOccupied(landmark));
+  EXPECT_FALSE(tree.isNodeOccupied(before));
+  EXPECT_EQ(tree.search(2.55, 0.05, 1.05), nullptr) << "unknown behind it";
+}
+
+TEST_P(OccupancyTopics, TheGridHasFreeCellsUpToTheOccupiedOneAtTheHeightOfThePath) {
   const std::string message = grid_of(with_grid(), GetParam());
   WireReader grid(GetParam(), as_bytes(message));
   EXPECT_EQ(grid.header(), timestamp_from_seconds(6));

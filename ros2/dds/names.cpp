@@ -24,6 +24,7 @@ constexpr std::array kTypes = {
     MessageType{"nav_msgs/OccupancyGrid", "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"},
     MessageType{"nav_msgs/Odometry", "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"},
     MessageType{"nav_msgs/Path", "1957a5bb3cee5da65c4e52e52b65a93df227efce4c20f8458b36e73066ca334b"},
+    MessageType{"octomap_msgs/Octomap", "9891a19a05b70ec20aa8f45db3f8300b9ab80afff32c61c549d25087da9625b0"},
     MessageType{"px4_msgs/VehicleOdometry", "4295b96ad312084aa35c84bdcec65ba2f57eb4f6a293d57d52d95acbe99ff817"},
     MessageType{"rmw_dds_common/ParticipantEntitiesInfo",
                 "91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"},

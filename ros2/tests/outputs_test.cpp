@@ -146,6 +146,21 @@ TEST_F(Ros2Outputs, OccupancyGrid) {
   EXPECT_THAT(std::vector<int>(grid->data._buffer, grid->data._buffer + 6), ElementsAre(-1, 100, -1, -1, -1, 0));
 }
 
+TEST_F(Ros2Outputs, Octomap) {
+  TypedPeer<octomap_msgs_msg_dds__Octomap_> peer("/out", octomap_msgs_msg_dds__Octomap__desc);
+  octomap::OcTree tree(0.05);
+  tree.updateNode(octomap::point3d(1.0F, 2.0F, 3.0F), true);
+  const auto* map = passed(peer, "octomap_msgs/Octomap", node::octomap_message(Wire::Cdr, kOutputTime, tree, kNames));
+  ASSERT_TRUE(map);
+  expect_header(map->header, "odom");
+  EXPECT_TRUE(map->binary);
+  EXPECT_STREQ(map->id, "OcTree");
+  EXPECT_EQ(map->resolution, 0.05);
+  std::ostringstream voxels;
+  tree.writeBinaryData(voxels);
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(map->data._buffer), map->data._length), voxels.str());
+}
+
 TEST_F(Ros2Outputs, TrackedImages) {
   TypedPeer<sensor_msgs_msg_dds__Image_> peer("/out", sensor_msgs_msg_dds__Image__desc);
   const CameraStep camera{"cam", Modality::Frames, cv::Mat(20, 30, CV_8UC1, cv::Scalar(50))};

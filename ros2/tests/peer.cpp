@@ -126,6 +126,7 @@ const Output kOutputs[] = {
     {"~/landmarks", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 10}},
     {"~/map", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 1}},
     {"~/occupancy", "nav_msgs::msg::dds_::OccupancyGrid_", {true, true, 1}},
+    {"~/octomap", "octomap_msgs::msg::dds_::Octomap_", {true, true, 1}},
     {"~/tracks/events", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"~/tracks/frames", "sensor_msgs::msg::dds_::Image_", {true, false, 5}},
     {"/tf", "tf2_msgs::msg::dds_::TFMessage_", {true, false, 1000}},
@@ -207,6 +208,18 @@ Json grid_fields(const std::string& bytes) {
   return json;
 }
 
+Json octomap_fields(const std::string& bytes) {
+  Decoder in(bytes);
+  const auto header = in.header();
+  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}};
+  json["binary"] = in.get<bool>();
+  json["id"] = in.get<std::string>();
+  json["resolution"] = in.get<double>();
+  json["bytes"] = in.get<std::vector<std::int8_t>>().size();
+  json["complete"] = in.at_end();
+  return json;
+}
+
 Json image_fields(const std::string& bytes) {
   Decoder in(bytes);
   Json json = {{"frame", in.header().frame}};
@@ -279,7 +292,7 @@ Json fields_of(const std::string& type, const std::string& bytes) {
       {"Path", path_fields},           {"PointCloud2", cloud_fields},
       {"Image", image_fields},         {"TFMessage", transforms_fields},
       {"VehicleOdometry", px4_fields}, {"DiagnosticArray", diagnostics_fields},
-      {"OccupancyGrid", grid_fields}};
+      {"OccupancyGrid", grid_fields},  {"Octomap", octomap_fields}};
   const std::size_t begin = type.rfind(':') + 1;
   return decoders.at(type.substr(begin, type.size() - begin - 1))(bytes);
 }

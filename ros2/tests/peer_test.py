@@ -148,6 +148,10 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertEqual((sum(cells.values()), cells["others"]), (grid["width"] * grid["height"], 0))
         self.assertGreater(cells["free"], 100)
         print(f"grid of {grid['width']} x {grid['height']}: {cells}")
+        voxels = last["~/octomap"]
+        self.assertEqual((voxels["frame"], voxels["binary"], voxels["id"], voxels["resolution"]), ("odom", True, "OcTree", 0.05))
+        self.assertEqual(voxels["stamp_ns"], grid["stamp_ns"])
+        self.assertGreater(voxels["bytes"], 1000)
         for camera in ("events", "frames"):
             image = last[f"~/tracks/{camera}"]
             self.assertEqual(image["bytes"], 3 * image["width"] * image["height"])
@@ -197,7 +201,7 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertLess(largest_difference(late_poses, all_poses), 1e-12)
         seen = json.loads((self.folder / "late.json").read_text())
         self.assertGreater(seen["/tf_static"]["count"], 0)
-        self.assertEqual(seen["~/occupancy"]["count"], 1)
+        self.assertEqual((seen["~/occupancy"]["count"], seen["~/octomap"]["count"]), (1, 1))
 
     def test_a_driver_that_is_killed_and_started_again_is_survived(self):
         node = Node(self)

@@ -28,8 +28,13 @@ void OccupancyWorker::add(const std::vector<KeyframeRecord>& marginalized) {
   if (marginalized.empty()) return;
   {
     const std::lock_guard lock(mutex_);
-    for (const KeyframeRecord& keyframe : marginalized)
-      if (queue_.size() < kCapacity) queue_.push_back(keyframe);
+    for (const KeyframeRecord& keyframe : marginalized) {
+      if (queue_.size() < kCapacity) {
+        queue_.push_back(keyframe);
+      } else {
+        ++left_out_;
+      }
+    }
   }
   more_.notify_one();
 }
@@ -45,8 +50,13 @@ void OccupancyWorker::work() {
       keyframe = std::move(queue_.front());
       queue_.pop_front();
     }
+    map_.left_out = left_out_;
     lock.unlock();
-    if (more) insert(keyframe);
+    if (more && !insert(keyframe)) {
+      lock.lock();
+      ++left_out_;
+      lock.unlock();
+    }
     const bool due = !shown || map_.t < *shown || map_.t - *shown >= period_ || (!more && map_.t != *shown);
     if (map_.tree.size() == 0 || !due) continue;
     shown = map_.t;
@@ -56,13 +66,15 @@ void OccupancyWorker::work() {
   }
 }
 
-void OccupancyWorker::insert(const KeyframeRecord& keyframe) {
-  if (map_.tree.size() > kMostNodes) return;
+/// False if the tree is full.
+bool OccupancyWorker::insert(const KeyframeRecord& keyframe) {
+  map_.t = keyframe.t;
+  if (map_.tree.size() > kMostNodes) return false;
   const double z = keyframe.T_W_B.translation().z();
   map_.path = map_.tree.size() == 0 ? HeightRange{z, z}
                                     : HeightRange{std::min(map_.path.low_m, z), std::max(map_.path.high_m, z)};
-  map_.t = keyframe.t;
   insert_keyframe(map_.tree, keyframe);
+  return true;
 }
 
 }  // namespace edged

@@ -24,6 +24,8 @@ struct OccupancyMap {
   octomap::OcTree tree;
   HeightRange path;  ///< heights of the body at the keyframes
   Timestamp t;       ///< of the newest keyframe
+  /// Keyframes that are missing: too many waited, or the tree was full.
+  std::size_t left_out = 0;
 };
 
 class OccupancyWorker {
@@ -44,7 +46,7 @@ class OccupancyWorker {
 
  private:
   void work();
-  void insert(const KeyframeRecord& keyframe);
+  bool insert(const KeyframeRecord& keyframe);
 
   const Duration period_;
   const Show show_;
@@ -52,6 +54,7 @@ class OccupancyWorker {
   std::mutex mutex_;
   std::condition_variable more_;
   std::deque<KeyframeRecord> queue_;
+  std::size_t left_out_ = 0;
   bool closed_ = false;
   std::jthread thread_;  // last member: it uses the others
 };

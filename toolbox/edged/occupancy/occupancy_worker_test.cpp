@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <future>
+#include <utility>
+
 #include "edged/occupancy/test_keyframe.hpp"
 
 namespace edged {
@@ -28,6 +31,22 @@ TEST(OccupancyWorker, ShowsTheMapOnceAPeriodAndAtTheEnd) {
 TEST(OccupancyWorker, ShowsNothingWithoutAnyVoxel) {
   OccupancyWorker worker(0.05, 2.0, [](const OccupancyMap&) { ADD_FAILURE(); });
   worker.add({KeyframeRecord{}});
+}
+
+TEST(OccupancyWorker, CountsTheKeyframesThatDidNotFitIntoTheQueue) {
+  std::promise<void> full;
+  std::size_t left_out = 0;
+  {
+    OccupancyWorker worker(0.05, 1e6, [&, first = true](const OccupancyMap& map) mutable {
+      if (std::exchange(first, false)) full.get_future().wait();
+      left_out = map.left_out;
+    });
+    const int added = static_cast<int>(OccupancyWorker::kCapacity) + 20;
+    for (int i = 0; i < added; ++i) worker.add({keyframe_before(2.025, 0.01, timestamp_from_seconds(i))});
+    full.set_value();
+  }
+  EXPECT_GE(left_out, 19U) << "one is in work";
+  EXPECT_LE(left_out, 20U);
 }
 
 TEST(OccupancyWorker, GoesOnWhenTheClockJumpsBack) {

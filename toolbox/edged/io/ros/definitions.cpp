@@ -81,6 +81,12 @@ constexpr std::array kFields = {
            "std_msgs/Header header\n"
            "nav_msgs/MapMetaData info\n"
            "int8[] data\n"},
+    Fields{"octomap_msgs/Octomap", "9a45536b45c5e409cd49f04bb2d9999f",
+           "std_msgs/Header header\n"
+           "bool binary\n"
+           "string id\n"
+           "float64 resolution\n"
+           "int8[] data\n"},
     Fields{"nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7",
            "std_msgs/Header header\n"
            "geometry_msgs/PoseStamped[] poses\n"},
