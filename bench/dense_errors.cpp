@@ -39,8 +39,10 @@ int run(const DenseOptions& options) {
   ConfigFields fields = ConfigFields::of(config);
   for (const std::string& assignment : options.simulator) fields.set(assignment);
   const Flight flight = fly(config, options.baseline_m);
+  OdometryConfig odometry;
+  if (options.baseline_m > 0.0) odometry.cameras = "events,events2,frames,frames2";
   for (const std::string& mode : options.modes) {
-    const DenseRun mapped = map_densely(flight, parse_mode(mode));
+    const DenseRun mapped = map_densely(flight, parse_mode(mode), odometry);
     fmt::print("{} {} {}: {}\n", options.preset, options.seed, mode, describe(mapped, score(mapped, config)));
   }
   return kExitOk;

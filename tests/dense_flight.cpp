@@ -31,8 +31,7 @@ double depth_error(const DensePoint& point, const Rendering& truth, int width) {
 
 }  // namespace
 
-DenseRun map_densely(const Flight& flight, Mode mode) {
-  const OdometryConfig config;
+DenseRun map_densely(const Flight& flight, Mode mode, const OdometryConfig& config) {
   const Rig used = used_cameras(flight.calibration.rig, mode, config.cameras);
   const std::vector<RigCamera> images = image_cameras(used);
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});

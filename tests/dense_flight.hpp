@@ -16,7 +16,7 @@ struct DenseRun {
   double span_s = 0.0;  ///< of the odometry's steps
 };
 
-DenseRun map_densely(const Flight& flight, Mode mode);
+DenseRun map_densely(const Flight& flight, Mode mode, const OdometryConfig& config = {});
 
 /// Over all points. The error is that of the depth, over the true one. At the rim of an object its edge belongs to
 /// either side: of the pixel and its neighbours the nearest depth counts.

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
+#include "edged/camera/binning.hpp"
 #include "edged/camera/undistort.hpp"
 
 namespace edged {
@@ -31,6 +33,15 @@ bool has_moved(const CameraModel& before, const CameraModel& now) {
     }
   }
   return false;
+}
+
+/// Means of n x n pixels.
+cv::Mat binned(const cv::Mat& image, int n) {
+  if (n == 1) return image;
+  const cv::Size size(image.cols / n, image.rows / n);
+  cv::Mat coarse;
+  cv::resize(image(cv::Rect(cv::Point(), size * n)), coarse, size, 0.0, 0.0, cv::INTER_AREA);
+  return coarse;
 }
 
 /// Depths of the landmarks that the camera shows: their median, and a range with room on both sides.
@@ -142,11 +153,17 @@ void DenseMapper::add_image(const DenseInstant& instant, const DenseImage& image
 
 DenseView DenseMapper::view_of(const DenseInstant& instant, const DenseImage& image, const EdgeConfig& edges) {
   Camera& camera = cameras_[image.camera];
-  if (camera.pinhole.width() == 0) camera.pinhole = ideal_pinhole(image.model);
-  const bool as_it_is = image.model == camera.pinhole;
-  if (!as_it_is && (!camera.rectifier || has_moved(camera.rectifier->lens(), image.model)))
-    camera.rectifier.emplace(image.model, camera.pinhole);
-  const cv::Mat rectified = as_it_is ? image.image : (*camera.rectifier)(image.image);
+  if (camera.given != image.model) {
+    camera.given = image.model;
+    camera.bin = bin_for(image.model.width(), config_.widest_px);
+    camera.lens = binned(image.model, camera.bin);
+  }
+  if (camera.pinhole.width() == 0) camera.pinhole = ideal_pinhole(camera.lens);
+  const bool as_it_is = camera.lens == camera.pinhole;
+  if (!as_it_is && (!camera.rectifier || has_moved(camera.rectifier->lens(), camera.lens)))
+    camera.rectifier.emplace(camera.lens, camera.pinhole);
+  const cv::Mat coarse = binned(image.image, camera.bin);
+  const cv::Mat rectified = as_it_is ? coarse : (*camera.rectifier)(coarse);
   return {instant.t,
           image.camera,
           image.modality,

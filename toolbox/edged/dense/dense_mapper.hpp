@@ -62,6 +62,7 @@ struct DenseConfig {
                         .most_sigma = 0.03,
                         .least_views = 4}};
   CullConfig cull;
+  int widest_px = 400;          ///< wider images are binned: a pixel of half the width costs a fifth
   double view_spacing = 0.015;  ///< between kept views
   double least_baseline = 0.05, most_baseline = 0.5;
   double reference_spacing = 0.12;      ///< between references
@@ -97,6 +98,9 @@ class DenseMapper {
 
  private:
   struct Camera {
+    CameraModel given;
+    int bin = 1;
+    CameraModel lens;  // given, binned
     CameraModel pinhole;
     std::optional<Rectifier> rectifier;  // none for a pinhole
   };

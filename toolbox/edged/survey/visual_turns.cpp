@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/survey/visual_turns.hpp"
 
+#include <bit>
 #include <opencv2/imgproc.hpp>
 #include <opengv/relative_pose/CentralRelativeAdapter.hpp>
 #include <opengv/relative_pose/methods.hpp>
+
+#include "edged/camera/binning.hpp"
 
 namespace edged {
 namespace {
@@ -17,26 +20,10 @@ constexpr Duration kShortest = std::chrono::milliseconds(10);  // between images
 constexpr Duration kBaseline = std::chrono::milliseconds(80);  // least duration of a rotation: below it noise dominates
 constexpr Duration kLongest = std::chrono::milliseconds(200);  // a longer one is a gap
 
-/// The camera with pixels of side 2^octaves of its own; one that is masked in part is masked.
-CameraModel with_larger_pixels(const CameraModel& camera, int octaves) {
-  if (octaves == 0) return camera;
-  const int n = 1 << octaves, width = camera.width() / n, height = camera.height() / n;
-  const auto centre = [n](double at) { return (at + 0.5) / n - 0.5; };
-  const CameraModel coarse(width, height, camera.fx() / n, camera.fy() / n, centre(camera.cx()), centre(camera.cy()),
-                           camera.distortion(), camera.coefficients());
-  if (!camera.is_masked()) return coarse;
-  std::vector<std::uint8_t> used(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1);
-  for (int y = 0; y < height * n; ++y)
-    for (int x = 0; x < width * n; ++x)
-      if (!camera.uses(x, y)) used[static_cast<std::size_t>((y / n) * width + x / n)] = 0;
-  return coarse.masked(used);
-}
-
-/// By which its images of events are smaller.
+/// By which images of events are binned.
 int octaves_of(const RigCamera& camera) {
-  int octaves = 0;
-  while (camera.modality == Modality::Events && camera.model.width() >> octaves > kWidest_px) ++octaves;
-  return octaves;
+  if (camera.modality != Modality::Events) return 0;
+  return std::countr_zero(static_cast<unsigned>(bin_for(camera.model.width(), kWidest_px)));
 }
 
 TrackerConfig with_corners(int corners) {
@@ -64,7 +51,7 @@ std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d>
 VisualTurns::VisualTurns(const RigCamera& camera, int corners)
     : modality_(camera.modality),
       octaves_(octaves_of(camera)),
-      tracker_(camera.name, with_larger_pixels(camera.model, octaves_), with_corners(corners)),
+      tracker_(camera.name, binned(camera.model, 1 << octaves_), with_corners(corners)),
       event_image_(tracker_.camera().height(), tracker_.camera().width(), CV_8UC1, cv::Scalar(0)),
       events_per_image_(static_cast<std::size_t>(kEventsPerPixel * camera.model.width() * camera.model.height())) {}
 

@@ -55,7 +55,7 @@ class VisualTurns {
   void add_turn(const View& view);
 
   Modality modality_;
-  int octaves_;  ///< by which images of events are smaller
+  int octaves_;  ///< by which images of events are binned
   FeatureTracker tracker_;
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
