@@ -298,6 +298,15 @@ MapFilter::LinearizedPose MapFilter::linearise(std::size_t keyframe, const SE3& 
   return pose;
 }
 
+/// Those of a random walk at two times have the variance of the earlier one in common.
+void MapFilter::loosen(std::span<const double> keyframes, double body) {
+  std::vector<std::pair<Eigen::Index, double>> walk = {{0, body}};
+  for (const std::size_t k : active()) walk.emplace_back(row_[k], keyframes[k]);
+  for (const auto& [row, variance] : walk)
+    for (const auto& [column, other] : walk)
+      P_.block<3, 3>(row, column).diagonal().array() += std::min(variance, other);
+}
+
 double MapFilter::squared_distance(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) const {
   const LinearizedPose pose = linearise(keyframe, T_K_B);
   const Eigen::Index k = row_[keyframe];

@@ -48,8 +48,12 @@ class MapFilter {
   std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected,
                             const std::vector<SE3>& T_B_C);
 
+  /// More drift of the position than the options have: a random walk in M, with these variances at the keyframes, by
+  /// index, and at the body, each the sum of those before it [m^2].
+  void loosen(std::span<const double> keyframes, double body);
+
   /// Squared Mahalanobis distance of the body's pose T_K_B relative to an active keyframe from the predicted one;
-  /// covariance: of the error of T_K_B, and of drift beyond that of the options.
+  /// covariance: of the error of T_K_B.
   double squared_distance(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) const;
   /// Closes a loop: updates all poses with the body's pose relative to an active keyframe. Returns the corrected T_M_O.
   SE3 close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance);

@@ -300,68 +300,6 @@ TEST(MapFilter, ClosesALoopAsTheFullFilterDoes) {
   EXPECT_LT((full.keyframe_covariance() - few.keyframe_covariance()).norm(), 1e-3 * full.keyframe_covariance().norm());
 }
 
-/// A body that walks around a ring of 60 m, with an odometry whose yaw drifts by a constant rate, and its keyframes,
-/// most of them inactive.
-class Ring {
- public:
-  static constexpr int kSteps = 60;
-  static SE3 truth(int step) {
-    const double a = 2.0 * M_PI * step / kSteps;
-    return {so3::exp({0.0, 0.0, a}), {9.5 * std::sin(a), 9.5 * (1.0 - std::cos(a)), 0.0}};
-  }
-
-  Ring() : filter_(config_of_ring(), false, 10) {
-    filter_.restart(SE3(), truth(0), Timestamp{}, 0.0, 0.0);
-    const SE3 drift(so3::exp({0.0, 0.0, 0.001}), {0.001, 0.0, 0.0});
-    for (int k = 0; k < kSteps; ++k) {
-      if (k > 0) T_O_B_ = T_O_B_ * truth(k - 1).inverse() * truth(k) * drift;
-      filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(k));
-      filter_.add_keyframe(SE3(), T_O_B_, timestamp_from_seconds(k));
-    }
-    T_O_B_ = T_O_B_ * truth(kSteps - 1).inverse() * truth(kSteps);
-    filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(kSteps));
-    filter_.activate(std::array{0U});
-  }
-  static MapFilterConfig config_of_ring() {
-    MapFilterConfig config = config_of_world();
-    config.drift_m = 0.005;
-    config.drift_yaw_deg = 0.3;
-    return config;
-  }
-  double worst_error() const {
-    double worst = 0.0;
-    for (int k = 0; k < kSteps; ++k)
-      worst = std::max(
-          worst, (filter_.keyframes()[static_cast<std::size_t>(k)].translation() - truth(k).translation()).norm());
-    return worst;
-  }
-  MapFilter& filter() { return filter_; }
-
-  const Matrix6d covariance = 1e-4 * Matrix6d::Identity();
-
- private:
-  MapFilter filter_;
-  SE3 T_O_B_;
-};
-
-TEST(MapFilter, SpreadsTheCorrectionOfALoopOverItsKeyframes) {
-  Ring ring;
-  const double before = ring.worst_error();
-  EXPECT_GT(before, 0.3);
-  EXPECT_LT(ring.filter().squared_distance(0, SE3(), ring.covariance), 22.5) << "the drift is likely";
-  const SE3 T_M_O = ring.filter().close(0, SE3(), ring.covariance);
-  EXPECT_LT(ring.worst_error(), 0.2 * before);
-  EXPECT_LT(ring.filter().T_M_B().translation().norm(), 0.02);
-  EXPECT_GT(T_M_O.translation().norm(), 0.1);
-  EXPECT_LT(ring.filter().covariance().trace(), 1e-2);
-}
-
-TEST(MapFilter, FindsALoopUnlikelyThatDriftDoesNotExplain) {
-  Ring ring;
-  const SE3 T_K_B(so3::exp({0.0, 0.0, 0.5}), {0.0, 4.0, 1.0});
-  EXPECT_GT(ring.filter().squared_distance(0, T_K_B, ring.covariance), 50.0);
-}
-
 TEST(MapFilter, RemovesAKeyframeThatIsAParentOfOthers) {
   MapFilter filter(config_of_world(), false, 3), full(config_of_world());
   for (MapFilter* each : {&filter, &full}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace edged {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kLoopUnmatched_s = 10.0;
 // Bound on the drift of the odometry.
 constexpr double kLoopDrift_m = 0.3, kLoopDriftPerPath = 0.02;
 constexpr double kLoopDrift_rad = 0.1, kLoopDrift_radpm = 5e-4;
+constexpr double kLoopTilt_rad = 0.1;
+constexpr double kLoopDriftSigmas = 3.0;  // of position, in that bound
 constexpr double kLoopReach = 1.5;        // [scene depths]: from farther away a place has another appearance
 constexpr double kLoopWidest_deg = 60.0;  // between optical axes
 constexpr std::size_t kLoopInliers = 12;
@@ -74,6 +77,15 @@ std::optional<Recognition> old_place(const MapNow& now, const PosedImage& posed)
 
 }  // namespace
 
+bool drift_explains(const SE3& by_odometry, const SE3& by_place, double drift_m) {
+  const Eigen::Quaterniond off = by_odometry.rotation().conjugate() * by_place.rotation();
+  const Eigen::Vector3d up = by_odometry.rotation().conjugate() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up_by_place = by_place.rotation().conjugate() * Eigen::Vector3d::UnitZ();
+  return (by_odometry.translation() - by_place.translation()).norm() <= drift_m &&
+         so3::log(off).norm() <= kLoopDrift_rad + kLoopDrift_radpm * drift_m / kLoopDriftPerPath &&
+         std::atan2(up.cross(up_by_place).norm(), up.dot(up_by_place)) <= kLoopTilt_rad;
+}
+
 bool LoopCloser::needless(const MapSearch& search, const KeyframeMap& map, Timestamp t) const {
   return search.found_before(map, loop_age(t)) >= config_.filter.min_observations;
 }
@@ -94,10 +106,10 @@ std::optional<LoopCloser::LoopView> LoopCloser::view(const MapNow& now, const Po
     view.loop.drift_m = std::max(view.loop.drift_m, drift_since(keyframe, now));
     depth = std::max(depth, std::ranges::find(keyframe.views, posed.image.camera, &MapView::camera)->scene_depth);
   }
-  const SE3 off = now.filter.T_M_B().inverse() * (view.T_M_O * view.T_O_B);
+  const SE3 by_place = view.T_M_O * view.T_O_B;
+  if (!drift_explains(now.filter.T_M_B(), by_place, view.loop.drift_m)) return std::nullopt;
+  const SE3 off = now.filter.T_M_B().inverse() * by_place;
   const double off_m = off.translation().norm(), off_rad = so3::log(off.rotation()).norm();
-  if (off_m > view.loop.drift_m || off_rad > kLoopDrift_rad + kLoopDrift_radpm * view.loop.drift_m / kLoopDriftPerPath)
-    return std::nullopt;
   if (posed.image.model.mean_focal() * (off_m / depth + off_rad) < config_.search_px) return std::nullopt;
   return projected(view, now, images);
 }
@@ -110,7 +122,7 @@ std::optional<LoopCloser::LoopView> LoopCloser::projected(LoopView view, const M
   const std::vector<MapObservation> observations = found.observations();
   if (observations.size() < kLoopInliers) return std::nullopt;
   const std::optional<SE3> T_M_O = there.update(observations, found.candidates.size(), found.T_B_C);
-  if (!T_M_O) return std::nullopt;
+  if (!T_M_O || !drift_explains(now.filter.T_M_B(), *T_M_O * view.T_O_B, view.loop.drift_m)) return std::nullopt;
   std::map<std::uint32_t, int> matches;
   for (const MapObservation& observation : observations) ++matches[observation.keyframe];
   view.loop.keyframe = std::ranges::max_element(matches, {}, [](const auto& each) { return each.second; })->first;
@@ -141,13 +153,21 @@ std::optional<Loop> LoopCloser::find(const MapNow& now, std::span<const PosedIma
   return found->loop;
 }
 
-std::optional<SE3> LoopCloser::close(MapFilter& filter, const Loop& loop) {
+/// The filter does not know scale that drifts: without this it explains the difference by a rotation.
+std::optional<SE3> LoopCloser::close(MapFilter& filter, const KeyframeMap& map, double path_m, const Loop& loop) {
   const auto keyframe = static_cast<std::uint32_t>(loop.keyframe);
-  filter.activate(std::span(&keyframe, 1));
+  const MapKeyframe& old = map.keyframes()[keyframe];
+  const double drift_m2 = std::pow(loop.drift_m / kLoopDriftSigmas, 2);
+  std::vector<double> drifts_m2;
+  for (const MapKeyframe& each : map.keyframes())
+    drifts_m2.push_back(
+        each.t > old.t ? drift_m2 * std::clamp((each.path_m - old.path_m) / (path_m - old.path_m), 0.0, 1.0) : 0.0);
+  MapFilter loosened = filter;
+  loosened.activate(std::span(&keyframe, 1));
+  loosened.loosen(drifts_m2, drift_m2);
   const Matrix6d measured = loop_covariance(kLoopSigma_m, kLoopSigma_rad);
-  if (filter.squared_distance(keyframe, loop.T_K_B, measured + loop_covariance(loop.drift_m / 3.0, 0.0)) >
-      kLoopChiSquare)
-    return std::nullopt;
+  if (loosened.squared_distance(keyframe, loop.T_K_B, measured) > kLoopChiSquare) return std::nullopt;
+  filter = std::move(loosened);
   return filter.close(keyframe, loop.T_K_B, measured);
 }
 

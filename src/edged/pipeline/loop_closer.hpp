@@ -34,6 +34,9 @@ struct Loop {
   double drift_m = 0.0;  ///< bound on the odometry's drift since then
 };
 
+/// Whether the odometry can have drifted so far: T_M_B by itself, and by an old place. Gravity keeps roll and pitch.
+bool drift_explains(const SE3& by_odometry, const SE3& by_place, double drift_m);
+
 class LoopCloser {
  public:
   explicit LoopCloser(const MapConfig& config) : config_(config) {}
@@ -43,7 +46,7 @@ class LoopCloser {
   /// A loop on which images of several positions agree, the last of them these. At least one image.
   std::optional<Loop> find(const MapNow& now, std::span<const PosedImage> images);
   /// Corrects all poses by the loop, if the filter believes it. Returns the corrected T_M_O.
-  static std::optional<SE3> close(MapFilter& filter, const Loop& loop);
+  static std::optional<SE3> close(MapFilter& filter, const KeyframeMap& map, double path_m, const Loop& loop);
   /// The images so far.
   void forget() { views_.clear(); }
 

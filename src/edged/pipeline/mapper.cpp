@@ -219,7 +219,7 @@ bool Mapper::close_loop(Timestamp t, std::span<const PosedImage> images) {
       loops_.find({t, map_, filter_, odom_to_map_.T_M_O(), path_m_, known().since}, images);
   if (!loop) return false;
   const SE3 before = filter_.T_M_B();
-  const std::optional<SE3> T_M_O = LoopCloser::close(filter_, *loop);
+  const std::optional<SE3> T_M_O = LoopCloser::close(filter_, map_, path_m_, *loop);
   if (!T_M_O) return false;
   const SE3 off = before.inverse() * filter_.T_M_B();
   loop_closure_ = {map_.keyframes()[loop->keyframe].t, off.translation().norm(), so3::log(off.rotation()).norm()};
