@@ -82,9 +82,8 @@ DenseScore score(const DenseRun& run, const SimulatorConfig& truth) {
 std::string describe(const DenseRun& run, const DenseScore& score) {
   const DenseCounters& counters = run.mapper.counters();
   return fmt::format(
-      "{} points of {} keyframes ({} without parallax), median error {:.2f} %, {:.2f} % beyond 10 %; {:.1f} % of {} "
-      "edge "
-      "pixels; {:.3f} CPU s/s",
+      "{} points of {} keyframes ({} without parallax), median error {:.2f} %, {:.2f} % beyond 10 %; "
+      "{:.1f} % of {} edge pixels; {:.3f} CPU s/s",
       score.points, counters.keyframes, counters.unmeasured, 100.0 * score.median_error, 100.0 * score.outliers,
       100.0 * score.complete, counters.edges, score.load);
 }

@@ -158,10 +158,10 @@ std::optional<SE3> LoopCloser::close(MapFilter& filter, const KeyframeMap& map, 
   const auto keyframe = static_cast<std::uint32_t>(loop.keyframe);
   const MapKeyframe& old = map.keyframes()[keyframe];
   const double drift_m2 = std::pow(loop.drift_m / kLoopDriftSigmas, 2);
+  const double path = std::max(path_m - old.path_m, 1e-3);  // [m] of the loop; none at rest
   std::vector<double> drifts_m2;
   for (const MapKeyframe& each : map.keyframes())
-    drifts_m2.push_back(
-        each.t > old.t ? drift_m2 * std::clamp((each.path_m - old.path_m) / (path_m - old.path_m), 0.0, 1.0) : 0.0);
+    drifts_m2.push_back(each.t > old.t ? drift_m2 * std::clamp((each.path_m - old.path_m) / path, 0.0, 1.0) : 0.0);
   MapFilter loosened = filter;
   loosened.activate(std::span(&keyframe, 1));
   loosened.loosen(drifts_m2, drift_m2);

@@ -32,7 +32,7 @@ void OccupancyWorker::add(const std::vector<KeyframeRecord>& marginalized) {
       if (queue_.size() < kCapacity) {
         queue_.push_back(keyframe);
       } else {
-        ++left_out_;
+        ++not_queued_;
       }
     }
   }
@@ -50,13 +50,10 @@ void OccupancyWorker::work() {
       keyframe = std::move(queue_.front());
       queue_.pop_front();
     }
-    map_.left_out = left_out_;
+    const std::size_t not_queued = not_queued_;
     lock.unlock();
-    if (more && !insert(keyframe)) {
-      lock.lock();
-      ++left_out_;
-      lock.unlock();
-    }
+    if (more) insert(keyframe);
+    map_.left_out = not_queued + not_inserted_;
     const bool due = !shown || map_.t < *shown || map_.t - *shown >= period_ || (!more && map_.t != *shown);
     if (map_.tree.size() == 0 || !due) continue;
     shown = map_.t;
@@ -66,15 +63,16 @@ void OccupancyWorker::work() {
   }
 }
 
-/// False if the tree is full.
-bool OccupancyWorker::insert(const KeyframeRecord& keyframe) {
+void OccupancyWorker::insert(const KeyframeRecord& keyframe) {
   map_.t = keyframe.t;
-  if (map_.tree.size() > kMostNodes) return false;
+  if (map_.tree.size() > kMostNodes) {
+    ++not_inserted_;
+    return;
+  }
   const double z = keyframe.T_W_B.translation().z();
   map_.path = map_.tree.size() == 0 ? HeightRange{z, z}
                                     : HeightRange{std::min(map_.path.low_m, z), std::max(map_.path.high_m, z)};
   insert_keyframe(map_.tree, keyframe);
-  return true;
 }
 
 }  // namespace edged

@@ -46,15 +46,16 @@ class OccupancyWorker {
 
  private:
   void work();
-  bool insert(const KeyframeRecord& keyframe);
+  void insert(const KeyframeRecord& keyframe);
 
   const Duration period_;
   const Show show_;
-  OccupancyMap map_;  // of the thread
+  OccupancyMap map_;              // of the thread
+  std::size_t not_inserted_ = 0;  // keyframes; of the thread
   std::mutex mutex_;
   std::condition_variable more_;
   std::deque<KeyframeRecord> queue_;
-  std::size_t left_out_ = 0;
+  std::size_t not_queued_ = 0;  // keyframes
   bool closed_ = false;
   std::jthread thread_;  // last member: it uses the others
 };
